@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "swivel/core/problem.hpp"
+#include "swivel/core/robot_model.hpp"
+#include "swivel/core/types.hpp"
+
+namespace swivel {
+
+/// A bounded joint keeps lower <= q <= upper; a continuous one has neither.
+struct JointLimit {
+  double lower = -kPi, upper = kPi;  ///< rad
+  double velocity = 0;               ///< rad/s, 0 where the file gives none
+  bool continuous = false;
+};
+
+/// The seven-joint chain from base to tool, exactly as the URDF has it, as a product of exponentials in the base frame:
+///   X_BT(q) = G_7(q) * home,   G_k(q) = exp([S_1] q_1) ... exp([S_k] q_k),   G_0 = 1.
+/// S_j turns about the line through `point[j]` along `axis[j]` (at q = 0). A body that moves with joint k and has pose X at q = 0
+/// has pose G_k(q) * X. Source: Lynch & Park, Modern Robotics, Eq. (4.14).
+struct Chain {
+  std::array<std::string, kDof> joint_names;
+  std::array<Vector3d, kDof> axis;   ///< unit, base frame, q = 0
+  std::array<Vector3d, kDof> point;  ///< on the axis, base frame, q = 0, m
+  std::array<JointLimit, kDof> limit;
+  Pose home = Pose::Identity();      ///< tool in base at q = 0
+
+  /// G_0 ... G_7.
+  [[nodiscard]] std::array<Pose, kDof + 1> displacements(const Config& q) const;
+  /// Tool in base.
+  [[nodiscard]] Pose tool(const Config& q) const;
+  /// 6x7 geometric Jacobian at the tool origin, base frame: rows 0-2 linear, 3-5 angular.
+  [[nodiscard]] Eigen::Matrix<double, 6, kDof> jacobian(const Config& q) const;
+  /// Yoshikawa 1984: sqrt(max(0, det(J J^T))), J as above. Independent of the reference point.
+  [[nodiscard]] double manipulability(const Config& q) const;
+};
+
+/// Where every link of the robot is at q = 0, and which joint of the chain moves it.
+struct LinkPlacement {
+  int group = 0;                 ///< 0: does not move; k: moves with joints 1..k of the chain
+  Pose pose = Pose::Identity();  ///< link in base, q = 0, other joints held
+};
+
+/// The arm: the last seven movable joints before the tip; every other joint held at `hold` (default 0 or its nearest limit).
+/// Throws InputError for unknown names, a held joint that belongs to the arm or lies outside its limits, fewer than seven joints,
+/// a prismatic joint among the seven.
+struct ArmModel {
+  Chain chain;
+  std::vector<LinkPlacement> links;  ///< by RobotModel link index
+};
+[[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
+                                 const std::map<std::string, double>& hold, const Pose& tool);
+
+/// One collision body of the robot: a link's shape or an attached body.
+struct RobotBody {
+  std::string name;              ///< link name, or the attached body's name
+  int link = -1;                 ///< RobotModel link that carries it
+  bool attached = false;
+  int group = 0;                 ///< see LinkPlacement
+  Shape shape;
+  Pose pose = Pose::Identity();  ///< of the shape in base at q = 0
+};
+/// Links in model order, shapes in file order, then attached bodies in problem order. A cylinder with two spheres of its radius at
+/// its ends reads as one capsule. Throws InputError when an attached body names an unknown link or takes a link's name.
+[[nodiscard]] std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm, const std::vector<AttachedBody>& attached);
+
+/// R_j: a bound on the distance from axis j of any point that joint j moves, over all configurations, metres. By spheres about the
+/// points where neighbouring axes come closest, so it is tight when the shoulder and the wrist are spherical. design.md 1.
+[[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<RobotBody>& bodies);
+
+}  // namespace swivel

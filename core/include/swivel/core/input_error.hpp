@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace swivel {
+
+/// Bad input from outside: one line that names the file, key or row, what is wrong, and what is allowed.
+/// The command line prints it and exits with 2; a library user catches it. Never thrown for "no path exists".
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace swivel

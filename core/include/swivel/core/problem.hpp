@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/robot_model.hpp"
+#include "swivel/core/types.hpp"
+
+namespace swivel {
+
+/// One pose of the tool path: tool frame in the path's frame.
+struct Waypoint {
+  Vector3d position = Vector3d::Zero();
+  Quaterniond orientation = Quaterniond::Identity();  ///< need not be exactly unit: | |q| - 1 | <= 1e-3
+};
+
+/// A body fixed in the base frame. One shape each.
+struct SceneObject {
+  std::string name;
+  Shape shape;
+  Pose pose = Pose::Identity();        ///< in base_link
+  std::vector<std::string> allow;      ///< robot links, attached bodies that may touch it
+};
+
+/// A tool or held part, rigid in `link`.
+struct AttachedBody {
+  std::string name;
+  Shape shape;
+  Pose pose = Pose::Identity();        ///< in the frame of `link`
+  std::string link;
+};
+
+enum class EdgeMode { kContinuous, kNodes };
+enum class CostMetric { kL2, kMax, kTime };
+
+/// design.md 1 and 4. Unset optionals mean "no such limit".
+struct Limits {
+  double clearance = 0.005;         ///< d_safe, m
+  double manipulability = 0.0;      ///< least sqrt(det(J J^T))
+  double joint_margin = 0.0;        ///< rad, kept from both ends of every bounded joint
+  double joint_step = 0.5;          ///< rad, largest move of any joint between neighbouring layers
+  double arm_slope = 20.0;          ///< rad/m, arm-angle change allowed per metre of path
+  std::optional<double> step_error;         ///< rad, second-order estimate
+  std::optional<double> tool_path_error = 0.001;    ///< m
+  std::optional<double> tool_angle_error;   ///< rad
+  std::optional<double> tool_speed;         ///< m/s
+  std::optional<double> tool_turn_speed;    ///< rad/s
+  EdgeMode edges = EdgeMode::kContinuous;
+  std::optional<double> edge_clearance;     ///< d_edge, m; default clearance / 2
+  double edge_tolerance = 0.0005;           ///< h, m
+  [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
+};
+
+struct Resolution {
+  double ds = 0.005;    ///< m
+  double dphi = 0.05;   ///< rad
+  double dalpha = 0.1;  ///< rad of tool rotation
+};
+
+struct Cost {
+  CostMetric metric = CostMetric::kL2;
+  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};
+};
+
+/// Uniform offsets of one scene object for campaign episodes, half-widths. design.md 4.
+struct Vary {
+  std::string object;
+  Vector3d xyz = Vector3d::Zero();
+  Vector3d rpy = Vector3d::Zero();
+};
+
+/// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.
+struct Problem {
+  std::string source;  ///< problem file, for messages
+  std::shared_ptr<const RobotModel> robot;  // shared: every episode and planner reads the same model
+  std::string base_link, tip_link;
+  Pose tool = Pose::Identity();             ///< tool frame in tip_link
+  std::map<std::string, double> hold;       ///< joint name -> position
+  std::vector<AttachedBody> attached;
+  std::string path_frame;                   ///< base_link or the name of a scene object
+  std::vector<Waypoint> waypoints;          ///< in path_frame
+  std::vector<SceneObject> scene;
+  Resolution resolution;
+  Limits limits;
+  std::optional<Config> start;
+  Cost cost;
+  std::vector<Vary> vary;
+};
+
+/// The problem of episode `k` under seed `s`: objects named in `vary` moved (SplitMix64 seeded by (s, k) alone; in the order of
+/// `vary`, x y z r p y; p' = p + d, R' = Rz Ry Rx R about the object's origin).
+[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode);
+
+/// Waypoints in base_link (path_frame applied, quaternions normalised).
+/// Throws InputError for fewer than two distinct waypoints, NaN, or a quaternion off unit by more than 1e-3.
+[[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
+
+}  // namespace swivel

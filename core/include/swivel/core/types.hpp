@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <numbers>
+
+namespace swivel {
+
+inline constexpr int kDof = 7;
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kTwoPi = 2 * std::numbers::pi;
+
+/// Joint positions of the arm, radians, base to tip.
+using Config = Eigen::Matrix<double, kDof, 1>;
+/// A rigid transform; X_AB is the pose of frame B in frame A. Metres.
+using Pose = Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+}  // namespace swivel

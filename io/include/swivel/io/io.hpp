@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Files in and out. Every loader throws InputError: one line with file, key or row, what is wrong and what is allowed.
+#pragma once
+#include <filesystem>
+#include <iosfwd>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "swivel/core/plan.hpp"
+#include "swivel/core/problem.hpp"
+#include "swivel/core/robot_model.hpp"
+
+namespace swivel::io {
+
+/// STL, OBJ, DAE (vertices as stored: no up-axis rotation, as ROS reads them) through assimp; scale per axis, negative mirrors.
+/// The same file and scale loaded twice shares one mesh within `cache`.
+using MeshCache = std::map<std::string, MeshPtr>;
+[[nodiscard]] MeshPtr load_mesh(const std::filesystem::path& file, const Vector3d& scale, MeshCache& cache);
+
+/// URDF (+ SRDF when not empty). Meshes through package:// (`packages`: name -> folder; else walk up from the URDF), file://,
+/// absolute or relative names.
+[[nodiscard]] std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf = {},
+                                                           const std::map<std::string, std::filesystem::path>& packages = {});
+
+/// Tool path: header x,y,z,qw,qx,qy,qz.
+[[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
+
+/// PROBLEM.yaml, design.md 4. Unknown keys are errors with the nearest known key named.
+[[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
+
+/// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits; written beside and renamed.
+void write_trajectory(const std::filesystem::path& csv, const PlanResult& result);
+/// Joint names of the header must be those given.
+[[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names);
+
+/// RESULT.json as text, design.md 4.
+[[nodiscard]] std::string to_json(const PlanResult& result);
+/// Writes text beside the target and renames it over.
+void write_file(const std::filesystem::path& file, const std::string& text);
+
+}  // namespace swivel::io
