@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "swivel/core/arm.hpp"
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// exp([S] q): a turn by q about the line through p along a.
+Pose turn(const Vector3d& a, const Vector3d& p, double q) {
+  Pose X;
+  X.linear() = Eigen::AngleAxisd(q, a).toRotationMatrix();
+  X.translation() = p - X.linear() * p;
+  return X;
+}
+
+Pose joint_motion(const Joint& joint, double position) {
+  switch (joint.type) {
+    case Joint::Type::kFixed:
+      return Pose::Identity();
+    case Joint::Type::kPrismatic:
+      return Pose(Eigen::Translation3d(joint.axis * position));
+    default:
+      return turn(joint.axis, Vector3d::Zero(), position);
+  }
+}
+
+[[noreturn]] void fail(const RobotModel& robot, const std::string& what) { throw InputError(robot.source + ": " + what); }
+
+/// Joints from base to tip, in order.
+std::vector<int> joints_between(const RobotModel& robot, int base, int tip) {
+  std::vector<int> path;
+  for (int link = tip; link != base;) {
+    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
+    if (joint < 0)
+      fail(robot, "robot.tip_link: '" + robot.links[static_cast<std::size_t>(tip)].name + "' is not below base_link '" +
+                      robot.links[static_cast<std::size_t>(base)].name + "': allowed are links that hang from it");
+    path.push_back(joint);
+    link = robot.joints[static_cast<std::size_t>(joint)].parent_link;
+  }
+  std::reverse(path.begin(), path.end());
+  return path;
+}
+
+int require_link(const RobotModel& robot, const std::string& key, const std::string& name) {
+  const int link = robot.find_link(name);
+  if (link < 0) fail(robot, key + ": unknown link '" + name + "': allowed are the links of this file");
+  return link;
+}
+
+/// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
+std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold, const std::vector<int>& arm) {
+  std::vector<double> position(robot.joints.size(), 0.0);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const Joint& joint = robot.joints[j];
+    const bool bounded = joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kPrismatic;
+    if (bounded && std::find(arm.begin(), arm.end(), static_cast<int>(j)) == arm.end()) position[j] = std::clamp(0.0, joint.lower, joint.upper);
+  }
+  for (const auto& [name, value] : hold) {
+    const int j = robot.find_joint(name);
+    if (j < 0) fail(robot, "robot.hold: unknown joint '" + name + "': allowed are the joints of this file");
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    if (std::find(arm.begin(), arm.end(), j) != arm.end()) fail(robot, "robot.hold: joint '" + name + "' is one of the arm's seven: allowed are the others");
+    if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
+    if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
+    if (joint.type != Joint::Type::kContinuous && (value < joint.lower - 1e-9 || value > joint.upper + 1e-9))
+      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " is outside its limits: allowed is " + std::to_string(joint.lower) +
+                      " to " + std::to_string(joint.upper));
+    position[static_cast<std::size_t>(j)] = value;
+  }
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const auto& mimic = robot.joints[j].mimic;
+    if (!mimic) continue;
+    if (std::find(arm.begin(), arm.end(), mimic->joint) != arm.end())
+      fail(robot, "joint '" + robot.joints[j].name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
+    position[j] = mimic->multiplier * position[static_cast<std::size_t>(mimic->joint)] + mimic->offset;
+  }
+  return position;
+}
+
+}  // namespace
+
+std::array<Pose, kDof + 1> Chain::displacements(const Config& q) const {
+  std::array<Pose, kDof + 1> G;
+  G[0].setIdentity();
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const Matrix3d R = Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], axis[k]).toRotationMatrix();
+    G[k + 1].linear().noalias() = G[k].linear() * R;
+    G[k + 1].translation() = G[k].translation() + G[k].linear() * point[k] - G[k + 1].linear() * point[k];
+    G[k + 1].makeAffine();
+  }
+  return G;
+}
+
+Pose Chain::tool(const Config& q) const { return displacements(q)[kDof] * home; }
+
+Eigen::Matrix<double, 6, kDof> Chain::jacobian(const Config& q) const {
+  const auto G = displacements(q);
+  const Vector3d tool_point = G[kDof] * home.translation();
+  Eigen::Matrix<double, 6, kDof> J;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const Vector3d a = G[k].linear() * axis[k];
+    const auto column = static_cast<Eigen::Index>(k);
+    J.block<3, 1>(0, column) = a.cross(tool_point - G[k] * point[k]);
+    J.block<3, 1>(3, column) = a;
+  }
+  return J;
+}
+
+double Chain::manipulability(const Config& q) const {
+  const auto J = jacobian(q);
+  const Eigen::Matrix<double, 6, 6> JJt = J * J.transpose();
+  return std::sqrt(std::max(0.0, JJt.determinant()));
+}
+
+ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link, const std::map<std::string, double>& hold,
+                   const Pose& tool) {
+  const int base = require_link(robot, "robot.base_link", base_link);
+  const int tip = require_link(robot, "robot.tip_link", tip_link);
+  std::vector<int> arm;
+  for (const int j : joints_between(robot, base, tip)) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    if (joint.movable() && !joint.mimic) arm.push_back(j);
+  }
+  if (arm.size() < kDof)
+    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" + tip_link +
+                    "': at least seven are needed");
+  arm.erase(arm.begin(), arm.end() - kDof);
+  for (const int j : arm)
+    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's seven joints must turn");
+  const std::vector<double> position = held_positions(robot, hold, arm);
+
+  // Parents come before children only by luck in a file, so poses are found by recursion to the root.
+  ArmModel model;
+  model.links.resize(robot.links.size());
+  std::vector<char> known(robot.links.size(), 0);
+  const auto place = [&](auto&& self, int link) -> const LinkPlacement& {
+    auto& placement = model.links[static_cast<std::size_t>(link)];
+    if (known[static_cast<std::size_t>(link)]) return placement;
+    known[static_cast<std::size_t>(link)] = 1;
+    const int j = robot.links[static_cast<std::size_t>(link)].parent_joint;
+    if (j < 0) return placement;
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    const LinkPlacement& parent = self(self, joint.parent_link);
+    const auto in_arm = std::find(arm.begin(), arm.end(), j);
+    placement.group = in_arm == arm.end() ? parent.group : static_cast<int>(in_arm - arm.begin()) + 1;
+    placement.pose = parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
+    return placement;
+  };
+  for (std::size_t link = 0; link < robot.links.size(); ++link) place(place, static_cast<int>(link));
+  const Pose root_in_base = model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
+  for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
+
+  Chain& chain = model.chain;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
+    const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
+    chain.joint_names[k] = joint.name;
+    chain.axis[k] = (frame.linear() * joint.axis).normalized();
+    chain.point[k] = frame.translation();
+    chain.limit[k] = {joint.lower, joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous};
+  }
+  chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
+  return model;
+}
+
+}  // namespace swivel
