@@ -30,3 +30,13 @@ function(swivel_component name)
   target_include_directories(swivel_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
   target_link_libraries(swivel_${name} PUBLIC ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
 endfunction()
+
+# swivel_isa_kernels(NAME PREFIX): adds PREFIX_avx2.cpp and PREFIX_avx512.cpp, each with its own instruction set. Chosen at run time.
+function(swivel_isa_kernels name prefix)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    target_sources(swivel_${name} PRIVATE ${prefix}_avx2.cpp ${prefix}_avx512.cpp)
+    set_source_files_properties(${prefix}_avx2.cpp PROPERTIES COMPILE_OPTIONS "-O3;-mavx2")
+    set_source_files_properties(${prefix}_avx512.cpp PROPERTIES COMPILE_OPTIONS "-O3;-mavx512f;-mavx512dq;-mavx512vl;-mprefer-vector-width=512")
+    target_compile_definitions(swivel_${name} PRIVATE SWIVEL_X86_KERNELS)
+  endif()
+endfunction()

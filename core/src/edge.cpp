@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Rounds to a multiple of 2^-40 (for |x| < 2048): sums of costs are then exact in any order.
+double rounded(double x) {
+  constexpr double kShift = 6144.0;  // 1.5 * 2^12, whose last place is 2^-40
+  return (x + kShift) - kShift;
+}
+
+double wrap(double angle) { return angle - kTwoPi * std::round(angle / kTwoPi); }
+
+}  // namespace
+
+Config Lattice::delta(const Config& q0, const Config& q1) const {
+  Config d = q1 - q0;
+  for (int k = 0; k < kDof; ++k)
+    if (continuous_[static_cast<std::size_t>(k)]) d[k] = wrap(d[k]);
+  return d;
+}
+
+bool Lattice::step_allowed(int layer, const Config& delta) const {
+  const Config& bound = step_bound(layer);
+  for (int k = 0; k < kDof; ++k)
+    if (!(std::abs(delta[k]) <= bound[k])) return false;
+  return true;
+}
+
+double Lattice::edge_cost(const Config& delta) const {
+  const auto& w = cost_.weights;
+  double x[kDof];
+  for (std::size_t k = 0; k < kDof; ++k) x[k] = w[k] * delta[static_cast<Eigen::Index>(k)];
+  switch (cost_.metric) {
+    case CostMetric::kL2:
+      // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
+      return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
+    case CostMetric::kMax: {
+      double most = 0;
+      for (const double value : x) most = std::max(most, std::abs(value));
+      return rounded(most);
+    }
+    case CostMetric::kTime: {
+      double most = 0;
+      for (std::size_t k = 0; k < kDof; ++k) most = std::max(most, std::abs(delta[static_cast<Eigen::Index>(k)]) / velocity_[k]);
+      return rounded(most);
+    }
+  }
+  return 0;
+}
+
+bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
+  if (limits_.tool_path_error || limits_.tool_angle_error) {
+    const PathDeviation deviation = path_deviation(*chain_, *path_, layer, q0, delta(q0, q1));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (limits_.tool_path_error && !(deviation.position[k] <= *limits_.tool_path_error)) return false;
+      if (limits_.tool_angle_error && !(deviation.angle[k] <= *limits_.tool_angle_error)) return false;
+    }
+  }
+  if (limits_.step_error) {
+    const double phi_a = phi(layer, a), phi_b = phi(layer + 1, b), dphi = wrap(phi_b - phi_a);
+    if (!(step_error(*this, layer, 0, branch_of(a), phi_a, dphi) <= *limits_.step_error)) return false;
+    if (!(step_error(*this, layer, 1, branch_of(b), phi_b, dphi) <= *limits_.step_error)) return false;
+  }
+  return true;
+}
+
+PathDeviation path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+  const PathLayer& from = path.layer(layer);
+  const Vector3d p0 = from.tool.translation(), along = path.layer(layer + 1).tool.translation() - p0;
+  const double length = along.norm();
+  PathDeviation deviation;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double t = 0.25 * static_cast<double>(k + 1);
+    const Pose tool = chain.tool(q0 + t * delta);
+    const Vector3d d = tool.translation() - p0;
+    double fraction = t;
+    if (length < 1e-9) {
+      deviation.position[k] = d.norm();
+    } else {
+      const Vector3d direction = along / length;
+      deviation.position[k] = (d - d.dot(direction) * direction).norm();
+      fraction = std::clamp(d.dot(direction) / length, 0.0, 1.0);
+    }
+    deviation.angle[k] = Eigen::AngleAxisd(path.at(layer, fraction).linear().transpose() * tool.linear()).angle();
+  }
+  return deviation;
+}
+
+double step_error(const Lattice& lattice, int layer, int end, int branch, double phi, double dphi) {
+  constexpr double kStep = 1e-3;  // of the step parameter; truncation and rounding both stay below 1e-6 of the value
+  const SrsArm& arm = lattice.arm();
+  const ArmPlane& plane = lattice.plane(layer + end);
+  const auto joints = [&](double t, double angle) -> std::optional<Config> {
+    const Pose tool = lattice.path().at(layer, end + t);
+    const ArmPlane carried = carry_plane(arm, plane, tool);
+    if (reach_status(arm, carried.reach) != ReachStatus::kReachable) return std::nullopt;
+    return srs_ik(arm, elbow_circles(arm, carried, tool), angle, branch);
+  };
+  const auto center = joints(0, phi);
+  const auto ahead = joints(kStep, phi + kStep * dphi), behind = joints(-kStep, phi - kStep * dphi);
+  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi), phi_ahead = joints(0, phi + kStep), phi_behind = joints(0, phi - kStep);
+  if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind) return std::numeric_limits<double>::infinity();
+  const auto difference = [](const Config& a, const Config& b) {
+    Config d = a - b;
+    for (int k = 0; k < kDof; ++k) d[k] = wrap(d[k]);
+    return d;
+  };
+  Config second = (difference(*ahead, *center) - difference(*center, *behind)) / (kStep * kStep);
+  // Remove the part in the tangent plane spanned by theta_s and theta_phi (Gram-Schmidt).
+  Config t1 = difference(*s_ahead, *s_behind), t2 = difference(*phi_ahead, *phi_behind);
+  if (t1.norm() > 0) {
+    t1.normalize();
+    second -= second.dot(t1) * t1;
+    t2 -= t2.dot(t1) * t1;
+  }
+  if (t2.norm() > 1e-12) {
+    t2.normalize();
+    second -= second.dot(t2) * t2;
+  }
+  return 0.5 * second.norm();
+}
+
+}  // namespace swivel

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/plan.hpp"
+
+namespace swivel {
+
+const char* to_string(PlanStatus status) {
+  switch (status) {
+    case PlanStatus::kSolved:
+      return "solved";
+    case PlanStatus::kInfeasible:
+      return "infeasible";
+    case PlanStatus::kTimeout:
+      return "timeout";
+    case PlanStatus::kCancelled:
+      return "cancelled";
+  }
+  return "?";
+}
+
+}  // namespace swivel

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/tool_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Axis times angle of the short arc from a to b, in a's frame.
+Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
+  Quaterniond d = a.conjugate() * b;
+  if (d.w() < 0) d.coeffs() = -d.coeffs();
+  const double sine = d.vec().norm();
+  if (sine < 1e-300) return Vector3d::Zero();
+  return d.vec() * (2 * std::atan2(sine, d.w()) / sine);
+}
+
+Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
+  const double angle = rotation.norm();
+  if (angle == 0) return a;
+  return (a * Quaterniond(Eigen::AngleAxisd(t * angle, rotation / angle))).normalized();
+}
+
+}  // namespace
+
+ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source) {
+  constexpr double kSame = 1e-9;
+  constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
+  const auto pose = [](const Vector3d& p, const Quaterniond& q) {
+    Pose X;
+    X.linear() = q.toRotationMatrix();
+    X.translation() = p;
+    return X;
+  };
+  if (waypoints.empty()) throw InputError(source + ": path: no waypoints: at least two are needed");
+  layers_.push_back({0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
+  Waypoint from = waypoints[0];
+  double s = 0;
+  for (std::size_t k = 1; k < waypoints.size(); ++k) {
+    const Waypoint& to = waypoints[k];
+    const double length = (to.position - from.position).norm();
+    const Vector3d rotation = short_arc(from.orientation, to.orientation);
+    const double angle = rotation.norm();
+    if (length <= kSame && angle <= kSame) {
+      ++merged_;
+      continue;
+    }
+    if (angle > kPi - kSame)
+      throw InputError(source + ": path: waypoint " + std::to_string(k) + ": turns by 180 deg from the one before: which way is undefined: allowed is less");
+    const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
+    if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
+      throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) + " cuts the path into more than 2e6 layers: allowed are larger steps");
+    const int steps = static_cast<int>(wanted);
+    for (int step = 1; step <= steps; ++step) {
+      PathLayer& previous = layers_.back();
+      previous.step_length = length / steps;
+      previous.step_angle = angle / steps;
+      previous.step_rotation = rotation / steps;
+      const double t = static_cast<double>(step) / steps;
+      if (step == steps)
+        layers_.push_back({s + length, pose(to.position, to.orientation), static_cast<int>(k), 0, 0, Vector3d::Zero()});
+      else
+        layers_.push_back({s + t * length, pose(from.position + t * (to.position - from.position), turned(from.orientation, rotation, t)), -1, 0, 0,
+                           Vector3d::Zero()});
+    }
+    s += length;
+    from = to;
+  }
+  if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: at least two distinct ones are needed");
+}
+
+Pose ToolPath::at(int i, double t) const {
+  const PathLayer& from = layer(i);
+  const PathLayer& to = layer(i + 1);
+  Pose X;
+  X.translation() = from.tool.translation() + t * (to.tool.translation() - from.tool.translation());
+  X.linear() = from.tool.linear();
+  if (from.step_angle > 0)
+    X.linear() = from.tool.linear() * Eigen::AngleAxisd(t * from.step_angle, from.step_rotation / from.step_angle).toRotationMatrix();
+  return X;
+}
+
+}  // namespace swivel
