@@ -15,7 +15,11 @@ double rounded(double x) {
   return (x + kShift) - kShift;
 }
 
-double wrap(double angle) { return angle - kTwoPi * std::round(angle / kTwoPi); }
+/// To the nearest turn, half turns away from zero: as the vector sweep computes it.
+double wrap(double angle) {
+  const double turns = angle / kTwoPi;
+  return angle - kTwoPi * std::copysign(std::floor(std::abs(turns) + 0.5), turns);
+}
 
 }  // namespace
 
@@ -34,25 +38,14 @@ bool Lattice::step_allowed(int layer, const Config& delta) const {
 }
 
 double Lattice::edge_cost(const Config& delta) const {
-  const auto& w = cost_.weights;
   double x[kDof];
-  for (std::size_t k = 0; k < kDof; ++k) x[k] = w[k] * delta[static_cast<Eigen::Index>(k)];
-  switch (cost_.metric) {
-    case CostMetric::kL2:
-      // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
-      return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
-    case CostMetric::kMax: {
-      double most = 0;
-      for (const double value : x) most = std::max(most, std::abs(value));
-      return rounded(most);
-    }
-    case CostMetric::kTime: {
-      double most = 0;
-      for (std::size_t k = 0; k < kDof; ++k) most = std::max(most, std::abs(delta[static_cast<Eigen::Index>(k)]) / velocity_[k]);
-      return rounded(most);
-    }
-  }
-  return 0;
+  for (std::size_t k = 0; k < kDof; ++k) x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
+  if (cost_.metric == CostMetric::kL2)
+    // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
+    return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
+  double most = 0;
+  for (const double value : x) most = std::max(most, std::abs(value));
+  return rounded(most);
 }
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {

@@ -37,7 +37,8 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
     const JointLimit& limit = chain.limit[static_cast<std::size_t>(k)];
     Images& images = images_[static_cast<std::size_t>(k)];
     continuous_[static_cast<std::size_t>(k)] = limit.continuous;
-    velocity_[static_cast<std::size_t>(k)] = limit.velocity;
+    cost_scale_[static_cast<std::size_t>(k)] =
+        cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[static_cast<std::size_t>(k)];
     if (limit.continuous) {
       images = {-kPi, std::numeric_limits<double>::infinity(), 1};
       continue;
@@ -63,10 +64,10 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   window_ = static_cast<int>(std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
   window_ = std::max(window_, angles_ > 1 ? 1 : 0);
 
-  sine_.resize(static_cast<std::size_t>(2 * angles_));
+  sine_.resize(static_cast<std::size_t>(3 * angles_));
   cosine_.resize(sine_.size());
   for (int j = 0; j < angles_; ++j)
-    for (const int k : {j, j + angles_}) {
+    for (const int k : {j, j + angles_, j + 2 * angles_}) {
       const double phi_j = -kPi + kTwoPi * j / angles_;
       sine_[static_cast<std::size_t>(k)] = std::sin(phi_j);
       cosine_[static_cast<std::size_t>(k)] = std::cos(phi_j);
@@ -85,7 +86,7 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
 
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (int k = 0; k < kDof; ++k)
-    if ((timed || cost_.metric == CostMetric::kTime) && velocity_[static_cast<std::size_t>(k)] <= 0)
+    if ((timed || cost_.metric == CostMetric::kTime) && chain.limit[static_cast<std::size_t>(k)].velocity <= 0)
       throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" + chain.joint_names[static_cast<std::size_t>(k)] +
                        "' has no speed limit in the URDF: allowed are robots whose joints all have one");
   step_bounds_.resize(timed ? m - 1 : 1, Config::Constant(limits_.joint_step));
@@ -98,7 +99,7 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
       if (dt <= 0) continue;  // a step that the given speed does not time
       for (int k = 0; k < kDof; ++k) {
         double& bound = step_bounds_[static_cast<std::size_t>(i)][k];
-        bound = std::min(bound, velocity_[static_cast<std::size_t>(k)] * dt);
+        bound = std::min(bound, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
       }
     }
 
@@ -153,10 +154,12 @@ void Lattice::solve(int layer, int first, int count, LayerNodes& out) const {
     solve_polished(layer, first, count, out);
   if (layer != 0 || !start_) return;
   std::fill(out.valid_.begin(), out.valid_.begin() + static_cast<std::ptrdiff_t>(labels()) * count, std::uint8_t{0});
-  const int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - first, angles_), label = label_of(start_->slot);
-  if (k >= count) return;
-  for (int j = 0; j < kDof; ++j) out.data_[out.q_[static_cast<std::size_t>(label * kDof + j)] + static_cast<std::size_t>(k)] = start_->q[j];
-  out.valid_[static_cast<std::size_t>(label * count + k)] = fault(0, start_->slot).status == NodeStatus::kValid;
+  const int label = label_of(start_->slot);
+  const bool valid = fault(0, start_->slot).status == NodeStatus::kValid;
+  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - first, angles_); k < count; k += angles_) {
+    for (int j = 0; j < kDof; ++j) out.data_[out.q_[static_cast<std::size_t>(label * kDof + j)] + static_cast<std::size_t>(k)] = start_->q[j];
+    out.valid_[static_cast<std::size_t>(label * count + k)] = valid;
+  }
 }
 
 void Lattice::solve_exact(const double* sine, const double* cosine, int layer, int count, LayerNodes& out) const {

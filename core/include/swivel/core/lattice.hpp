@@ -71,7 +71,7 @@ class Lattice {
   /// Slot that stands for the given start in layer 0 (its label, the grid angle nearest to its own).
   [[nodiscard]] int start_slot() const { return start_->slot; }
 
-  /// Nodes j = first ... first + count - 1 (taken around the circle, count <= angles) of every label.
+  /// Nodes j = first ... first + count - 1 of every label, taken around the circle; first < angles, count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
   /// One node; none where it does not exist.
@@ -109,6 +109,8 @@ class Lattice {
   [[nodiscard]] bool asks_path_error() const { return limits_.tool_path_error || limits_.tool_angle_error || limits_.step_error; }
 
   [[nodiscard]] const std::array<bool, kDof>& continuous() const { return continuous_; }
+  /// What each joint's move is multiplied by before the metric: the weights, or 1/speed for CostMetric::kTime.
+  [[nodiscard]] const std::array<double, kDof>& cost_scale() const { return cost_scale_; }
 
  private:
   struct Images {
@@ -134,8 +136,8 @@ class Lattice {
   int angles_ = 0, windings_ = 1, window_ = 1;
   std::array<Images, kDof> images_;
   std::array<bool, kDof> continuous_{};
-  std::array<double, kDof> velocity_{};
-  std::vector<double> sine_, cosine_;  // of the grid angles, twice around
+  std::array<double, kDof> cost_scale_{};
+  std::vector<double> sine_, cosine_;  // of the grid angles, three times around
   std::vector<ArmPlane> planes_;
   std::vector<ReachStatus> reach_;
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/graph/cost_to_go.hpp"
+
+#include <algorithm>
+
+#include "kernels/relax.hpp"
+
+namespace swivel {
+
+CostToGo::CostToGo(const Lattice& lattice)
+    : lattice_(&lattice),
+      g_(static_cast<std::size_t>(lattice.nodes()), kUnreachable),
+      verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown),
+      cache_(static_cast<std::size_t>(lattice.layers())) {
+  // A branch flips only through the zero of a middle angle, so those three joints tell branches apart; joints with several images tell
+  // windings apart. Continuous joints have no plain interval.
+  const auto& limit = lattice.chain().limit;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& l = limit[static_cast<std::size_t>(j)];
+    if (!l.continuous && (j == 1 || j == 3 || j == 5 || l.upper - l.lower > kTwoPi)) separating_.push_back(j);
+  }
+}
+
+CostToGo::~CostToGo() = default;
+
+CostToGo::Nodes CostToGo::nodes(int layer, int first, int count, LayerNodes& scratch) {
+  if (lattice_->arm().exact) {
+    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels();
+    lattice_->solve(layer, first, count, scratch);
+    return {&scratch, 0};
+  }
+  const int window = lattice_->window(), n = lattice_->angles(), padded = (n - window % n) % n;
+  auto& cached = cache_[static_cast<std::size_t>(layer)];
+  if (!cached) {
+    cached = std::make_unique<LayerNodes>();
+    ik_nodes_ += static_cast<std::int64_t>(n + 2 * window) * lattice_->labels();
+    lattice_->solve(layer, padded, n + 2 * window, *cached);
+  }
+  const int shift = (first - padded + n) % n;
+  return {cached.get(), shift + count <= n + 2 * window ? shift : shift - n};
+}
+
+void CostToGo::load(int layer, Block& block) {
+  const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
+  block.layer = layer;
+  block.nodes = nodes(layer, (n - window % n) % n, length, block.own).nodes;
+  const int padded_chunks = (length + kChunk - 1) / kChunk;
+  const std::size_t joints = separating_.size();
+  block.low.resize(static_cast<std::size_t>(labels * padded_chunks) * joints);
+  block.high.resize(block.low.size());
+  for (int label = 0; label < labels; ++label)
+    for (std::size_t s = 0; s < joints; ++s) {
+      const double* q = block.nodes->q(label, separating_[s]);
+      double* low = &block.low[(static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks)];
+      double* high = &block.high[(static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks)];
+      for (int c = 0; c < padded_chunks; ++c) {
+        double least = kUnreachable, most = -kUnreachable;
+        // An unreachable layer has one placeholder run; its nodes are all invalid, so any interval will do.
+        for (int k = c * kChunk; k < std::min(length, (c + 1) * kChunk); ++k) {
+          least = q[k] < least ? q[k] : least;
+          most = q[k] > most ? q[k] : most;
+        }
+        low[c] = least;
+        high[c] = most;
+      }
+    }
+  if (static_cast<int>(g_.size()) > 0) load_values(&g_[index(layer, 0)], block);
+}
+
+void CostToGo::load_values(const double* row, Block& block) const {
+  const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
+  block.value.resize(static_cast<std::size_t>(labels * length));
+  for (int label = 0; label < labels; ++label) {
+    const double* from = row + static_cast<std::ptrdiff_t>(label) * n;
+    double* to = block.value.data() + static_cast<std::ptrdiff_t>(label) * length;
+    std::copy(from + n - window, from + n, to);
+    std::copy(from, from + n, to + window);
+    std::copy(from, from + window, to + window + n);
+  }
+}
+
+bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+  const int n = lattice_->angles(), window = lattice_->window(), padded_chunks = (n + 2 * window + kChunk - 1) / kChunk;
+  const std::size_t joints = separating_.size();
+  const Config& bound = lattice_->step_bound(layer);
+  const int last = std::min(n, (chunk + 1) * kChunk) - 1;  // unpadded angle
+  const int from_first = (window + chunk * kChunk) / kChunk, from_last = (window + last) / kChunk;
+  const int to_first = chunk, to_last = (last + 2 * window) / kChunk;
+  for (std::size_t s = 0; s < joints; ++s) {
+    const std::size_t row_from = (static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks);
+    const std::size_t row_to = (static_cast<std::size_t>(other) * joints + s) * static_cast<std::size_t>(padded_chunks);
+    double low_from = kUnreachable, high_from = -kUnreachable, low_to = kUnreachable, high_to = -kUnreachable;
+    for (int c = from_first; c <= from_last; ++c) {
+      low_from = std::min(low_from, from.low[row_from + static_cast<std::size_t>(c)]);
+      high_from = std::max(high_from, from.high[row_from + static_cast<std::size_t>(c)]);
+    }
+    for (int c = to_first; c <= to_last; ++c) {
+      low_to = std::min(low_to, to.low[row_to + static_cast<std::size_t>(c)]);
+      high_to = std::max(high_to, to.high[row_to + static_cast<std::size_t>(c)]);
+    }
+    if (std::max(low_from - high_to, low_to - high_from) > bound[separating_[s]]) return false;
+  }
+  return true;
+}
+
+void CostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other, double* best) {
+  const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
+  RelaxTask task;
+  task.n = count;
+  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+  task.wraps = false;
+  const Config& bound = lattice_->step_bound(step_layer);
+  const double* to_q[kDof];
+  for (int j = 0; j < kDof; ++j) {
+    const bool turns = lattice_->continuous()[static_cast<std::size_t>(j)];
+    task.wraps |= turns;
+    task.turn[j] = turns ? kTwoPi : 0;
+    task.scale[j] = lattice_->cost_scale()[static_cast<std::size_t>(j)];
+    task.bound[j] = bound[j];
+    task.from[j] = from.nodes->q(label, j) + window + first;
+    to_q[j] = to.nodes->q(other, j) + first;
+  }
+  task.best = best;
+  const double* value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
+  edges_ += static_cast<std::int64_t>(count) * (2 * window + 1);
+  for (int offset = 0; offset <= 2 * window; ++offset) {
+    for (int j = 0; j < kDof; ++j) task.to[j] = to_q[j] + offset;
+    task.value = value + offset;
+    relax_kernels().relax(task);
+  }
+}
+
+void CostToGo::relax_chunk(int step_layer, const Block& from, int label, int chunk, const Block& to, double* row) {
+  const int n = lattice_->angles(), first = chunk * kChunk, count = std::min(kChunk, n - first);
+  double* best = row + static_cast<std::ptrdiff_t>(label) * n + first;
+  std::fill(best, best + count, kUnreachable);
+  relax_run(step_layer, from, label, first, count, to, label, best);
+  for (int other = 0; other < lattice_->labels(); ++other)
+    if (other != label && may_connect(step_layer, from, label, chunk, to, other)) relax_run(step_layer, from, label, first, count, to, other, best);
+}
+
+void CostToGo::relax_layer(int step_layer, const Block& from, const Block& to, double* row) {
+  const int n = lattice_->angles(), labels = lattice_->labels();
+  std::fill(row, row + lattice_->width(), kUnreachable);
+  for (int label = 0; label < labels; ++label) {
+    relax_run(step_layer, from, label, 0, n, to, label, row + static_cast<std::ptrdiff_t>(label) * n);
+    for (int other = 0; other < labels; ++other)
+      for (int chunk = 0; other != label && chunk < chunks(); ++chunk)
+        if (may_connect(step_layer, from, label, chunk, to, other))
+          relax_run(step_layer, from, label, chunk * kChunk, std::min(kChunk, n - chunk * kChunk), to, other,
+                    row + static_cast<std::ptrdiff_t>(label) * n + chunk * kChunk);
+  }
+  drop_invalid(from, row);
+}
+
+void CostToGo::drop_invalid(const Block& block, double* row) const {
+  const int n = lattice_->angles(), window = lattice_->window();
+  const Verdict* verdict = &verdict_[index(block.layer, 0)];
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    const std::uint8_t* valid = block.nodes->valid(label) + window;
+    for (int j = 0; j < n; ++j) {
+      const int slot = label * n + j;
+      if (!valid[j] || verdict[slot] == Verdict::kRemoved) row[slot] = kUnreachable;
+    }
+  }
+}
+
+double CostToGo::relax_one(int layer, int slot) {
+  LayerNodes here_nodes, next_nodes;
+  const int n = lattice_->angles();
+  const Nodes here = nodes(layer, lattice_->angle_of(slot), 1, here_nodes);
+  const int label = lattice_->label_of(slot);
+  if (!here.nodes->valid(label)[here.shift] || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
+  const Config q = here.nodes->config(label, here.shift);
+  const Lattice::Run run = lattice_->successors(layer, slot);
+  const Nodes next = nodes(layer + 1, run.first, run.count, next_nodes);
+  double best = kUnreachable;
+  for (int k = 0; k < run.count; ++k)
+    for (int other = 0; other < lattice_->labels(); ++other) {
+      const int b = other * n + (run.first + k) % n;
+      const double rest = at(layer + 1, b);
+      if (rest == kUnreachable || edge_verdict(layer, slot, b) == Verdict::kRemoved) continue;
+      const Config delta = lattice_->delta(q, next.nodes->config(other, next.shift + k));
+      ++edges_;
+      if (lattice_->step_allowed(layer, delta)) best = std::min(best, lattice_->edge_cost(delta) + rest);
+    }
+  return best;
+}
+
+void CostToGo::sweep(int goal_layer) {
+  goal_ = goal_layer;
+  pending_.clear();
+  const bool start = lattice_->has_start();
+  const auto row = [&](int layer) { return &g_[index(layer, 0)]; };
+  Block* next = &block_[0];
+  Block* here = &block_[1];
+  std::fill(row(goal_layer), row(goal_layer) + lattice_->width(), 0.0);
+  load(goal_layer, *next);
+  drop_invalid(*next, row(goal_layer));
+  load_values(row(goal_layer), *next);
+  for (int layer = goal_layer - 1; layer >= 0; --layer) {
+    if (layer == 0 && start) {
+      std::fill(row(0), row(0) + lattice_->width(), kUnreachable);
+      g_[index(0, lattice_->start_slot())] = relax_one(0, lattice_->start_slot());
+      break;
+    }
+    load(layer, *here);
+    relax_layer(layer, *here, *next, row(layer));
+    const auto removed = removed_edges_.find(layer);
+    if (removed != removed_edges_.end())
+      for (const auto& [a, b] : removed->second) g_[index(layer, a)] = relax_one(layer, a);
+    load_values(row(layer), *here);
+    std::swap(here, next);
+  }
+}
+
+double CostToGo::best() const { return *std::min_element(g_.begin(), g_.begin() + lattice_->width()); }
+
+void CostToGo::remove_node(int layer, int slot) {
+  verdict_[index(layer, slot)] = Verdict::kRemoved;
+  pending_[layer].nodes.push_back(slot);
+}
+
+Verdict CostToGo::edge_verdict(int layer, int a, int b) const {
+  const auto found = edge_verdict_.find({static_cast<std::int64_t>(index(layer, a)), b});
+  return found == edge_verdict_.end() ? Verdict::kUnknown : found->second;
+}
+
+void CostToGo::keep_edge(int layer, int a, int b) { edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kValid; }
+
+void CostToGo::remove_edge(int layer, int a, int b) {
+  edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kRemoved;
+  removed_edges_[layer].emplace_back(a, b);
+  pending_[layer].tails.push_back(a);
+}
+
+CostToGo::Marks CostToGo::reached_by(const Marks& changed, int layer, const Block& from, const Block& to) const {
+  const int n = lattice_->angles(), window = lattice_->window(), labels = lattice_->labels(), count = chunks();
+  Marks widened(changed.size(), 0);  // chunks whose window overlaps a changed chunk
+  for (int label = 0; label < labels; ++label)
+    for (int c = 0; c < count; ++c) {
+      if (!changed[static_cast<std::size_t>(label * count + c)]) continue;
+      const int first = c * kChunk - window, last = std::min(n, (c + 1) * kChunk) - 1 + window;
+      if (last - first + 1 >= n) {
+        std::fill_n(widened.begin() + label * count, count, std::uint8_t{1});
+        continue;
+      }
+      for (int j = first; j <= last; ++j) widened[static_cast<std::size_t>(label * count + ((j + n) % n) / kChunk)] = 1;
+    }
+  Marks result = widened;
+  for (int label = 0; label < labels; ++label)
+    for (int c = 0; c < count; ++c)
+      for (int other = 0; other < labels && !result[static_cast<std::size_t>(label * count + c)]; ++other)
+        if (other != label && widened[static_cast<std::size_t>(other * count + c)] && may_connect(layer, from, label, c, to, other))
+          result[static_cast<std::size_t>(label * count + c)] = 1;
+  return result;
+}
+
+void CostToGo::repair() {
+  const int labels = lattice_->labels(), count = chunks();
+  Marks changed(static_cast<std::size_t>(labels * count), 0);
+  std::vector<double> fresh(static_cast<std::size_t>(lattice_->width()));
+  bool any = false;
+  Block* next = &block_[0];
+  Block* here = &block_[1];
+  while (!pending_.empty() && pending_.rbegin()->first > goal_) pending_.erase(std::prev(pending_.end()));
+  for (int layer = pending_.empty() ? -1 : pending_.rbegin()->first; layer >= 0; --layer) {
+    Marks here_changed(changed.size(), 0);
+    bool here_any = false;
+    double* row = &g_[index(layer, 0)];
+    const auto mark = [&](int slot) {
+      here_changed[static_cast<std::size_t>(lattice_->label_of(slot) * count + lattice_->angle_of(slot) / kChunk)] = 1;
+      here_any = true;
+    };
+    if (any) {
+      if (layer == 0 && lattice_->has_start()) {
+        row[lattice_->start_slot()] = relax_one(0, lattice_->start_slot());
+      } else {
+        if (next->layer != layer + 1) load(layer + 1, *next);
+        load_values(&g_[index(layer + 1, 0)], *next);
+        load(layer, *here);
+        const Marks todo = reached_by(changed, layer, *here, *next);
+        std::copy(row, row + lattice_->width(), fresh.begin());
+        for (int label = 0; label < labels; ++label)
+          for (int c = 0; c < count; ++c)
+            if (todo[static_cast<std::size_t>(label * count + c)]) relax_chunk(layer, *here, label, c, *next, fresh.data());
+        drop_invalid(*here, fresh.data());
+        const auto removed = removed_edges_.find(layer);
+        if (removed != removed_edges_.end())
+          for (const auto& [a, b] : removed->second)
+            if (todo[static_cast<std::size_t>(lattice_->label_of(a) * count + lattice_->angle_of(a) / kChunk)])
+              fresh[static_cast<std::size_t>(a)] = relax_one(layer, a);
+        for (int slot = 0; slot < lattice_->width(); ++slot)
+          if (fresh[static_cast<std::size_t>(slot)] != row[slot]) {
+            row[slot] = fresh[static_cast<std::size_t>(slot)];
+            mark(slot);
+          }
+        std::swap(here, next);
+      }
+    }
+    const auto pending = pending_.find(layer);
+    if (pending != pending_.end()) {
+      for (const int slot : pending->second.nodes)
+        if (row[slot] != kUnreachable) {
+          row[slot] = kUnreachable;
+          mark(slot);
+        }
+      for (const int slot : pending->second.tails) {
+        const double value = layer < goal_ ? relax_one(layer, slot) : row[slot];
+        if (value != row[slot]) {
+          row[slot] = value;
+          mark(slot);
+        }
+      }
+      pending_.erase(pending);
+    }
+    changed.swap(here_changed);
+    any = here_any;
+    if (!any) {
+      if (pending_.empty()) break;
+      layer = pending_.rbegin()->first + 1;  // nothing to do until there
+    }
+  }
+}
+
+double CostToGo::relax_one_forward(int layer, int slot, const std::vector<double>& value) {
+  LayerNodes here_nodes, before_nodes;
+  const int n = lattice_->angles(), label = lattice_->label_of(slot);
+  const Nodes here = nodes(layer, lattice_->angle_of(slot), 1, here_nodes);
+  if (!here.nodes->valid(label)[here.shift] || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
+  const Config q = here.nodes->config(label, here.shift);
+  const Lattice::Run run = lattice_->predecessors(layer - 1, slot);
+  if (run.count == 0) return kUnreachable;
+  const Nodes before = nodes(layer - 1, run.first, run.count, before_nodes);
+  double best = kUnreachable;
+  for (int k = 0; k < run.count; ++k)
+    for (int other = 0; other < lattice_->labels(); ++other) {
+      const int a = other * n + (run.first + k) % n;
+      const double done = value[static_cast<std::size_t>(a)];
+      if (done == kUnreachable || edge_verdict(layer - 1, a, slot) == Verdict::kRemoved) continue;
+      const Config delta = lattice_->delta(before.nodes->config(other, before.shift + k), q);
+      if (lattice_->step_allowed(layer - 1, delta)) best = std::min(best, lattice_->edge_cost(delta) + done);
+    }
+  return best;
+}
+
+int CostToGo::deepest_reachable() {
+  const auto width = static_cast<std::size_t>(lattice_->width());
+  std::vector<double> value(width, 0.0), ahead(width);
+  Block* before = &block_[0];
+  Block* here = &block_[1];
+  load(0, *before);
+  drop_invalid(*before, value.data());
+  const auto any = [](const std::vector<double>& v) { return std::any_of(v.begin(), v.end(), [](double x) { return x != kUnreachable; }); };
+  if (!any(value)) return -1;
+  load_values(value.data(), *before);
+  int layer = 1;
+  for (; layer < lattice_->layers(); ++layer) {
+    load(layer, *here);
+    if (layer == 1 && lattice_->has_start()) {
+      for (std::size_t slot = 0; slot < width; ++slot) ahead[slot] = relax_one_forward(1, static_cast<int>(slot), value);
+    } else {
+      relax_layer(layer - 1, *here, *before, ahead.data());
+      const auto removed = removed_edges_.find(layer - 1);
+      if (removed != removed_edges_.end())
+        for (const auto& [a, b] : removed->second) ahead[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, value);
+    }
+    if (!any(ahead)) break;
+    value.swap(ahead);
+    load_values(value.data(), *here);
+    std::swap(before, here);
+  }
+  block_[0].layer = block_[1].layer = -1;  // their values are not cost-to-go
+  return layer - 1;
+}
+
+}  // namespace swivel

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/graph/eager.hpp"
+
+#include <algorithm>
+#include <boost/graph/astar_search.hpp>
+#include <boost/graph/compressed_sparse_row_graph.hpp>
+#include <boost/graph/dijkstra_shortest_paths.hpp>
+
+#include "valid_nodes.hpp"
+
+namespace swivel {
+
+namespace {
+
+struct EdgeCost {
+  double cost = 0;
+};
+/// Edges point from the goal towards the start, so that a search from the goal yields every node's cost-to-go and ties can be settled
+/// from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer at no cost.
+using Graph = boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
+using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
+
+struct Built {
+  Graph graph;
+  std::vector<std::size_t> first;    // [layer] vertex of the layer's first node
+  std::vector<double> least_before;  // [layer] a lower bound on the cost from layer 0: the heuristic of A*
+  [[nodiscard]] std::size_t layer_of(Vertex v) const {
+    return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), v) - first.begin()) - 1;
+  }
+};
+
+Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, EagerOutcome& outcome) {
+  Built built;
+  std::size_t vertices = 1;
+  for (const auto& layer : valid.layers) {
+    built.first.push_back(vertices);
+    vertices += layer.size();
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> ends;
+  std::vector<EdgeCost> costs;
+  for (std::size_t k = 0; k < valid.layers.back().size(); ++k) {
+    ends.emplace_back(0, built.first.back() + k);
+    costs.push_back({0.0});
+  }
+  built.least_before.assign(valid.layers.size(), 0.0);
+  std::vector<EdgeQuestion> questions;
+  std::vector<std::uint8_t> answers;
+  std::vector<std::pair<std::size_t, std::size_t>> candidate_ends;
+  std::vector<EdgeCost> candidate_costs;
+  for (int layer = 0; layer + 1 < lattice.layers() && !validity.stopped(); ++layer) {
+    const auto i = static_cast<std::size_t>(layer);
+    const auto& next = valid.layers[i + 1];
+    const std::vector<int> index = index_by_slot(lattice, next);
+    questions.clear();
+    candidate_ends.clear();
+    candidate_costs.clear();
+    for (std::size_t a = 0; a < valid.layers[i].size(); ++a) {
+      const ValidNodes::Node& node = valid.layers[i][a];
+      for_each_successor(lattice, layer, node, next, index, outcome.edges, [&](int b, const Config& delta) {
+        const auto& head = next[static_cast<std::size_t>(b)];
+        candidate_ends.emplace_back(built.first[i + 1] + static_cast<std::size_t>(b), built.first[i] + a);
+        candidate_costs.push_back({lattice.edge_cost(delta)});
+        if (validity.asks_edges()) questions.push_back({layer, node.slot, head.slot, node.q, head.q});
+      });
+    }
+    answers.assign(candidate_ends.size(), 1);
+    if (validity.asks_edges()) validity.edges(questions, answers);
+    double least = kUnreachable;
+    for (std::size_t e = 0; e < candidate_ends.size(); ++e) {
+      if (!answers[e]) continue;
+      ends.push_back(candidate_ends[e]);
+      costs.push_back(candidate_costs[e]);
+      least = std::min(least, candidate_costs[e].cost);
+    }
+    built.least_before[i + 1] = built.least_before[i] + (least == kUnreachable ? 0.0 : least);
+  }
+  if (!validity.stopped())
+    built.graph = Graph(boost::edges_are_unsorted_multi_pass, ends.begin(), ends.end(), costs.begin(), vertices);
+  return built;
+}
+
+/// Stops once every vertex that can lie on an optimal path has its final distance.
+struct OptimumKnown {};
+struct AStarVisitor : boost::default_astar_visitor {
+  const Built* built;
+  const std::vector<double>* distance;
+  double* optimum;
+  std::int64_t* expansions;
+  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e) : built(b), distance(d), optimum(o), expansions(e) {}
+  void examine_vertex(Vertex v, const Graph&) const {
+    ++*expansions;
+    if (v == 0) return;
+    const std::size_t layer = built->layer_of(v);
+    const double total = (*distance)[v] + built->least_before[layer];
+    if (total > *optimum) throw OptimumKnown{};
+    if (layer == 0) *optimum = std::min(*optimum, (*distance)[v]);
+  }
+};
+
+std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOutcome& outcome) {
+  const Graph& graph = built.graph;
+  std::vector<double> distance(num_vertices(graph), kUnreachable);
+  const auto index = get(boost::vertex_index, graph);
+  const auto distance_map = boost::make_iterator_property_map(distance.begin(), index);
+  const auto weight = get(&EdgeCost::cost, graph);
+  if (search == EagerSearch::kDijkstra) {
+    boost::dijkstra_shortest_paths(graph, Vertex{0}, boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable));
+    outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
+    return distance;
+  }
+  double optimum = kUnreachable;
+  // From the last layer back: what is left is at least the cheapest edge of every layer before.
+  const auto heuristic = [&](Vertex v) { return v == 0 ? built.least_before.back() : built.least_before[built.layer_of(v)]; };
+  try {
+    boost::astar_search(graph, Vertex{0}, heuristic,
+                        boost::weight_map(weight)
+                            .distance_map(distance_map)
+                            .distance_inf(kUnreachable)
+                            .visitor(AStarVisitor(&built, &distance, &optimum, &outcome.expansions)));
+  } catch (const OptimumKnown&) {
+  }
+  return distance;
+}
+
+/// Smallest slots first among equal costs: vertices of a layer are numbered in slot order.
+SlotPath extract(const Built& built, const ValidNodes& valid, const std::vector<double>& distance, double& cost) {
+  Vertex at = 0;
+  cost = kUnreachable;
+  for (std::size_t k = 0; k < valid.layers[0].size(); ++k)
+    if (distance[built.first[0] + k] < cost) {
+      at = built.first[0] + k;
+      cost = distance[at];
+    }
+  if (cost == kUnreachable) return {};
+  SlotPath path;
+  for (std::size_t layer = 0;; ++layer) {
+    path.push_back(valid.layers[layer][at - built.first[layer]].slot);
+    if (layer + 1 == valid.layers.size()) return path;
+    Vertex next = 0;
+    for (auto [e, end] = in_edges(at, built.graph); e != end; ++e) {
+      const Vertex b = source(*e, built.graph);
+      if (built.graph[*e].cost + distance[b] == distance[at] && (next == 0 || b < next)) next = b;
+    }
+    at = next;
+  }
+}
+
+int deepest_layer(const Built& built, const ValidNodes& valid) {
+  std::vector<char> reached(num_vertices(built.graph), 0);
+  for (std::size_t k = 0; k < valid.layers[0].size(); ++k) reached[built.first[0] + k] = 1;
+  int deepest = valid.layers[0].empty() ? -1 : 0;
+  for (std::size_t layer = 1; layer < valid.layers.size() && deepest == static_cast<int>(layer) - 1; ++layer)
+    for (std::size_t k = 0; k < valid.layers[layer].size(); ++k)
+      for (auto [e, end] = out_edges(built.first[layer] + k, built.graph); e != end; ++e)
+        if (reached[target(*e, built.graph)]) {
+          reached[built.first[layer] + k] = 1;
+          deepest = static_cast<int>(layer);
+        }
+  return deepest;
+}
+
+}  // namespace
+
+EagerOutcome eager_search(const Lattice& lattice, Validity& validity, EagerSearch search) {
+  EagerOutcome outcome;
+  const ValidNodes valid = find_valid_nodes(lattice, validity);
+  outcome.ik_nodes = valid.ik_nodes;
+  const Built built = build(lattice, valid, validity, outcome);
+  if (validity.stopped()) {
+    outcome.stopped = true;
+    return outcome;
+  }
+  const std::vector<double> distance = costs_to_go(built, search, outcome);
+  outcome.path = extract(built, valid, distance, outcome.cost);
+  if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid);
+  return outcome;
+}
+
+}  // namespace swivel

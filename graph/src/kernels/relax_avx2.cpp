@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "relax.hpp"
+#define SWIVEL_ISA avx2
+#include "relax.inl"
+
+namespace swivel {
+const RelaxKernels& avx2_relax_kernels() {
+  static constexpr RelaxKernels kernels{&avx2::relax};
+  return kernels;
+}
+}  // namespace swivel

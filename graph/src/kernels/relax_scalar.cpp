@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "relax.hpp"
+#define SWIVEL_ISA scalar
+#include "relax.inl"
+
+namespace swivel {
+const RelaxKernels& scalar_relax_kernels() {
+  static constexpr RelaxKernels kernels{&scalar::relax};
+  return kernels;
+}
+}  // namespace swivel

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "valid_nodes.hpp"
+
+namespace swivel {
+
+ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
+  ValidNodes valid;
+  valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
+  LayerNodes nodes;
+  std::vector<NodeQuestion> questions;
+  std::vector<std::uint8_t> answers;
+  for (int layer = 0; layer < lattice.layers() && !validity.stopped(); ++layer) {
+    lattice.solve(layer, nodes);
+    valid.ik_nodes += lattice.width();
+    questions.clear();
+    for (int slot = 0; slot < lattice.width(); ++slot)
+      if (nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)])
+        questions.push_back({layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot))});
+    answers.assign(questions.size(), 0);
+    validity.nodes(questions, answers);
+    for (std::size_t k = 0; k < questions.size(); ++k)
+      if (answers[k]) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
+  }
+  return valid;
+}
+
+std::vector<int> index_by_slot(const Lattice& lattice, const std::vector<ValidNodes::Node>& nodes) {
+  std::vector<int> index(static_cast<std::size_t>(lattice.width()), -1);
+  for (std::size_t k = 0; k < nodes.size(); ++k) index[static_cast<std::size_t>(nodes[k].slot)] = static_cast<int>(k);
+  return index;
+}
+
+}  // namespace swivel

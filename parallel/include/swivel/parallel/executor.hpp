@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <functional>
+#include <memory>
+
+namespace swivel {
+
+/// Runs index ranges on a fixed number of threads. What runs must write only to its own index (and its worker's workspace), so that
+/// results do not depend on the number of threads.
+class Executor {
+ public:
+  /// kThreads: plain std::thread, for thread sanitizers, which do not understand an uninstrumented TBB.
+  enum class Backend { kTbb, kThreads };
+  /// threads < 1: as many as the machine has cores.
+  explicit Executor(int threads, Backend backend = Backend::kTbb);
+  ~Executor();
+  Executor(Executor&&) noexcept;
+  Executor& operator=(Executor&&) noexcept;
+
+  [[nodiscard]] int threads() const;
+  /// Calls body(index, worker) for index = 0 ... count - 1, worker in 0 ... threads() - 1, each worker on one thread at a time.
+  /// Exceptions of body reach the caller.
+  void for_each(int count, const std::function<void(int index, int worker)>& body);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace swivel

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/parallel/executor.hpp"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace swivel {
+
+struct Executor::Impl {
+  int threads = 1;
+  Backend backend = Backend::kTbb;
+  std::unique_ptr<tbb::task_arena> arena;
+};
+
+Executor::Executor(int threads, Backend backend) : impl_(std::make_unique<Impl>()) {
+  impl_->threads = threads >= 1 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  impl_->backend = backend;
+  if (backend == Backend::kTbb && impl_->threads > 1) impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
+}
+Executor::~Executor() = default;
+Executor::Executor(Executor&&) noexcept = default;
+Executor& Executor::operator=(Executor&&) noexcept = default;
+
+int Executor::threads() const { return impl_->threads; }
+
+void Executor::for_each(int count, const std::function<void(int, int)>& body) {
+  if (impl_->threads == 1 || count <= 1) {
+    for (int index = 0; index < count; ++index) body(index, 0);
+    return;
+  }
+  if (impl_->backend == Backend::kTbb) {
+    impl_->arena->execute([&] {
+      tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
+        const int worker = tbb::this_task_arena::current_thread_index();
+        for (int index = range.begin(); index != range.end(); ++index) body(index, worker);
+      });
+    });
+    return;
+  }
+  std::atomic<int> next{0};
+  std::exception_ptr failure;
+  std::mutex failure_mutex;
+  std::vector<std::thread> workers;
+  for (int worker = 0; worker < std::min(impl_->threads, count); ++worker)
+    workers.emplace_back([&, worker] {
+      try {
+        for (int index; (index = next.fetch_add(1)) < count;) body(index, worker);
+      } catch (...) {
+        const std::lock_guard lock(failure_mutex);
+        if (!failure) failure = std::current_exception();
+      }
+    });
+  for (std::thread& worker : workers) worker.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace swivel
