@@ -113,4 +113,15 @@ SearchOutcome path_first(CostToGo& togo, Validity& validity, const PathFirstOpti
   }
 }
 
+std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
+  for (;;) {
+    const int optimistic = togo.deepest_reachable();
+    if (optimistic < 0) return -1;
+    togo.sweep(optimistic);
+    const SearchOutcome outcome = path_first(togo, validity, options, counters);
+    if (outcome.stopped) return std::nullopt;
+    if (!outcome.path.empty()) return optimistic;
+  }
+}
+
 }  // namespace swivel

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "swivel/graph/cost_to_go.hpp"
@@ -33,5 +34,10 @@ struct SearchCounters {
 /// found before, remove what fails, repair the cost-to-go, repeat. The first path found valid is the least-cost path, and the smallest
 /// in slot order among equals; when none is left, the removed cut proves that none exists.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters);
+
+/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node; none when
+/// stopped. Leaves the cost-to-go with that layer as its goal.
+[[nodiscard]] std::optional<int> deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                                                     SearchCounters& counters);
 
 }  // namespace swivel

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/arm.hpp"
+#include "swivel/core/plan.hpp"
+#include "swivel/core/problem.hpp"
+#include "swivel/core/srs.hpp"
+#include "swivel/graph/eager.hpp"
+#include "swivel/parallel/executor.hpp"
+
+namespace swivel {
+
+/// The same question, answered four ways; all give the same trajectory, bit for bit.
+enum class PlannerKind {
+  kEager,     ///< the paper: everything validated, explicit graph
+  kEagerDp,   ///< the same without stored edges
+  kLazy,      ///< path-first over the implicit lattice
+  kParallel,  ///< lazy with collision work in batches over threads
+};
+[[nodiscard]] const char* to_string(PlannerKind kind);
+/// Throws InputError for an unknown name.
+[[nodiscard]] PlannerKind planner_from_string(const std::string& name);
+
+struct PlanOptions {
+  PlannerKind planner = PlannerKind::kParallel;
+  int threads = 0;                             ///< 0: all cores; kLazy always uses one
+  std::optional<double> timeout_s;
+  const std::atomic<bool>* cancel = nullptr;   ///< set from elsewhere to stop
+  bool report = true;                          ///< fill what only a report needs: min_clearance, tool-path error, arm_angle, diagnosis
+  EagerSearch eager_search = EagerSearch::kDijkstra;
+  Executor::Backend backend = Executor::Backend::kTbb;
+  /// Called now and then from the planning thread with one phrase on what is going on.
+  std::function<void(const std::string&)> progress;
+};
+
+/// What depends on the robot alone, not on path, scene poses or start: built once, shared by every plan of the robot.
+/// Immutable and safe to share between threads.
+class PreparedRobot {
+ public:
+  /// Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ...
+  explicit PreparedRobot(const Problem& problem);
+  [[nodiscard]] const ArmModel& arm() const { return arm_; }
+  [[nodiscard]] const SrsArm& srs() const { return srs_; }
+  [[nodiscard]] const std::vector<RobotBody>& bodies() const { return bodies_; }
+  [[nodiscard]] const std::array<double, kDof>& radii() const { return radii_; }
+
+ private:
+  ArmModel arm_;
+  SrsArm srs_;
+  std::vector<RobotBody> bodies_;
+  std::array<double, kDof> radii_;
+};
+
+/// Plans one problem. Const, reentrant, deterministic at any thread count (except where it times out).
+/// Throws InputError for problems that make no sense; "no path" is a status, not an exception.
+[[nodiscard]] PlanResult plan(const Problem& problem, const PlanOptions& options = {});
+/// The same on a robot prepared before (by a problem with the same robot section).
+[[nodiscard]] PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options = {});
+
+}  // namespace swivel

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <atomic>
+#include <vector>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/lattice.hpp"
+#include "swivel/graph/validity.hpp"
+#include "swivel/parallel/executor.hpp"
+#include "swivel/parallel/stop.hpp"
+
+namespace swivel {
+
+/// The costly predicates of design.md 1, asked of the collision world on the executor's threads.
+class CollisionValidity final : public Validity {
+ public:
+  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop);
+
+  void nodes(std::span<const NodeQuestion> questions, std::span<std::uint8_t> answers) override;
+  void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
+  [[nodiscard]] bool asks_edges() const override;
+  [[nodiscard]] bool stopped() const override;
+
+  [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
+  [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
+  [[nodiscard]] std::int64_t fcl_calls() const;
+
+ private:
+  const Lattice* lattice_;
+  const World* world_;
+  EdgeRule rule_;
+  Executor* executor_;
+  const Stop* stop_;
+  std::vector<World::Query> queries_;  // one per worker
+  std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
+};
+
+/// The edge rule of a problem.
+[[nodiscard]] EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii);
+
+}  // namespace swivel
