@@ -1,12 +1,28 @@
 option(SWIVEL_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SWIVEL_BENCH "Build the benchmarks" OFF)
 option(SWIVEL_WERROR "Treat warnings as errors" OFF)
+option(SWIVEL_FRAME_POINTERS "Keep frame pointers, for profilers" OFF)
 set(SWIVEL_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
+set(SWIVEL_PGO "" CACHE STRING "Profile-guided optimisation (GCC): empty, generate or use")
+set_property(CACHE SWIVEL_PGO PROPERTY STRINGS "" generate use)
+set(SWIVEL_PGO_DIR "${PROJECT_SOURCE_DIR}/build/pgo-data" CACHE PATH "Where the profiles of SWIVEL_PGO lie")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 set(CMAKE_CXX_EXTENSIONS OFF)
+# A package found by one component must be seen where that component is linked.
+set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+if(PROJECT_IS_TOP_LEVEL AND NOT SWIVEL_PGO AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+  find_program(SWIVEL_CCACHE ccache)
+  mark_as_advanced(SWIVEL_CCACHE)
+  if(SWIVEL_CCACHE)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${SWIVEL_CCACHE}")
+  endif()
+endif()
 
 # Compile settings of every target of the project, and of nobody else.
 add_library(swivel_settings INTERFACE)
@@ -16,19 +32,51 @@ target_compile_options(swivel_settings INTERFACE -Wall -Wextra -Wpedantic -Wshad
 if(SWIVEL_WERROR)
   target_compile_options(swivel_settings INTERFACE -Werror)
 endif()
+if(SWIVEL_FRAME_POINTERS)
+  target_compile_options(swivel_settings INTERFACE -fno-omit-frame-pointer -mno-omit-leaf-frame-pointer)
+endif()
 if(SWIVEL_SANITIZE)
   target_compile_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE})
 endif()
+# The prefix path keeps the build folder out of the .gcda names, which GCC would else look for under the wrong folder and
+# silently not find; missing-profile is an error for the same reason.
+if(SWIVEL_PGO STREQUAL "generate")
+  target_compile_options(swivel_settings INTERFACE -fprofile-generate=${SWIVEL_PGO_DIR} -fprofile-update=atomic
+                                                   -fprofile-prefix-path=${CMAKE_BINARY_DIR})
+  target_link_options(swivel_settings INTERFACE -fprofile-generate=${SWIVEL_PGO_DIR})
+elseif(SWIVEL_PGO STREQUAL "use")
+  target_compile_options(swivel_settings INTERFACE -fprofile-use=${SWIVEL_PGO_DIR} -fprofile-partial-training
+                                                   -fprofile-prefix-path=${CMAKE_BINARY_DIR} -Werror=missing-profile)
+elseif(SWIVEL_PGO)
+  message(FATAL_ERROR "SWIVEL_PGO is '${SWIVEL_PGO}': allowed are empty, generate and use")
+endif()
 
-# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ...): one library, one include root, one layer.
+# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ...): one library, one include root, one layer, installed.
 function(swivel_component name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(swivel_${name} STATIC ${arg_SOURCES})
   add_library(swivel::${name} ALIAS swivel_${name})
+  set_target_properties(swivel_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(swivel_${name} PUBLIC cxx_std_20)
-  target_include_directories(swivel_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_include_directories(swivel_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
+                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(swivel_${name} PUBLIC ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
+  install(TARGETS swivel_${name} EXPORT swivelTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
+  set_property(GLOBAL APPEND PROPERTY SWIVEL_COMPONENTS ${name})
+endfunction()
+
+# Once, after the components: targets, config and version file, so that find_package(swivel) works.
+function(swivel_install_package)
+  set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/swivel)
+  get_property(SWIVEL_COMPONENTS GLOBAL PROPERTY SWIVEL_COMPONENTS)
+  configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/swivelConfig.cmake.in ${PROJECT_BINARY_DIR}/swivelConfig.cmake
+                                INSTALL_DESTINATION ${folder})
+  write_basic_package_version_file(${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(EXPORT swivelTargets NAMESPACE swivel:: DESTINATION ${folder} COMPONENT dev)
+  install(FILES ${PROJECT_BINARY_DIR}/swivelConfig.cmake ${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake DESTINATION ${folder}
+          COMPONENT dev)
 endfunction()
 
 # swivel_isa_kernels(NAME PREFIX): adds PREFIX_avx2.cpp and PREFIX_avx512.cpp, each with its own instruction set. Chosen at run time.
