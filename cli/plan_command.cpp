@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "progress.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+struct PlanArguments {
+  std::string problem, planner = "parallel", edges, out, json;
+  int threads = 0;
+  double ds = 0, dphi = 0, timeout = 0;
+  bool quiet = false;
+  EpisodeChoice episode;
+};
+
+double ms(const PlanResult& result, const char* key) {
+  const auto found = result.time_ms.find(key);
+  return found == result.time_ms.end() ? 0.0 : found->second;
+}
+
+void print_summary(const PlanResult& result) {
+  switch (result.status) {
+    case PlanStatus::kSolved: {
+      std::printf("solved: %d layers, cost %.6g, tool-path error %.3f mm mean %.3f mm max", result.lattice.layers, result.cost,
+                  result.tool_path_error_mm.mean, result.tool_path_error_mm.max);
+      if (result.min_clearance) std::printf(", clearance at least %.1f mm", 1e3 * *result.min_clearance);
+      std::printf("\n");
+      break;
+    }
+    case PlanStatus::kInfeasible: {
+      const Diagnosis& d = result.diagnosis;
+      if (d.reached_layer)
+        std::printf("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where %s stops it\n", *d.reached_layer,
+                    result.lattice.layers - 1, *d.reached_s, d.reason.c_str());
+      else
+        std::printf("no path at this resolution: the first layer has no valid node (%s)\n", d.reason.c_str());
+      constexpr std::size_t kMostLines = 40;
+      for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) {
+        const EmptyLayer& empty = d.empty_layers[k];
+        std::printf("  layer %d%s, s = %.4f m: no valid node: %s\n", empty.layer,
+                    empty.waypoint >= 0 ? (" (waypoint " + std::to_string(empty.waypoint) + ")").c_str() : "", empty.s, empty.reason.c_str());
+      }
+      if (d.empty_layers.size() > kMostLines) std::printf("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
+      break;
+    }
+    default:
+      std::printf("stopped: %s\n", to_string(result.status));
+  }
+  const Counters& c = result.counters;
+  std::printf("%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
+              result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"), ms(result, "prepare"), ms(result, "plan"),
+              static_cast<long long>(c.nodes_checked), static_cast<long long>(result.lattice.nodes), static_cast<long long>(c.edges_checked),
+              static_cast<long long>(c.fcl_calls));
+  for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+}
+
+double positive(double value, const char* option) {
+  if (!(value > 0) || !std::isfinite(value)) throw InputError(std::string(option) + ": not a positive number: allowed are values above 0");
+  return value;
+}
+
+int run(const CLI::App& command, const PlanArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  PlanOptions options;
+  options.planner = planner_from_string(arguments.planner);
+  if (arguments.threads < 0) throw InputError("--threads: " + std::to_string(arguments.threads) + ": allowed are 0 (all cores) and above");
+  options.threads = arguments.threads;
+  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  if (command.count("--ds")) problem.resolution.ds = positive(arguments.ds, "--ds");
+  if (command.count("--dphi")) {
+    problem.resolution.dphi = positive(arguments.dphi, "--dphi");
+    if (problem.resolution.dphi > kTwoPi) throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
+  }
+  if (!arguments.edges.empty()) {
+    if (arguments.edges != "continuous" && arguments.edges != "nodes")
+      throw InputError("--edges: unknown mode '" + arguments.edges + "': allowed are continuous, nodes");
+    problem.limits.edges = arguments.edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+  }
+  if (command.count("--timeout")) options.timeout_s = positive(arguments.timeout, "--timeout");
+  const double load = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+
+  std::signal(SIGINT, [](int) { interrupted = true; });
+  options.cancel = &interrupted;
+  ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
+  options.progress = [&](const std::string& phrase) { progress.show(phrase); };
+  PlanResult result = plan(problem, options);
+  progress.clear();
+  result.time_ms["load"] = load;
+
+  if (!arguments.out.empty()) {
+    if (result.status == PlanStatus::kSolved)
+      io::write_trajectory(arguments.out, result);
+    else
+      std::filesystem::remove(arguments.out);
+  }
+  if (arguments.json == "-")
+    std::cout << io::to_json(result) << '\n';
+  else if (!arguments.json.empty())
+    io::write_file(arguments.json, io::to_json(result) + "\n");
+  if (!arguments.quiet && arguments.json != "-") print_summary(result);
+  switch (result.status) {
+    case PlanStatus::kSolved:
+      return kOk;
+    case PlanStatus::kInfeasible:
+      return kNo;
+    default:
+      return kStopped;
+  }
+}
+
+}  // namespace
+
+void EpisodeChoice::add_to(CLI::App& command) {
+  command.add_option("--seed", seed, "campaign seed of --episode");
+  command.add_option("--episode", episode, "plan the problem of this campaign episode");
+}
+
+Problem EpisodeChoice::apply(const Problem& problem) const {
+  if (seed.has_value() != episode.has_value()) throw InputError("--seed, --episode: one without the other: allowed are both or neither");
+  return seed ? episode_problem(problem, *seed, *episode) : problem;
+}
+
+void add_plan(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("plan", "Plan a joint trajectory");
+  auto arguments = std::make_shared<PlanArguments>();  // shared: lives as long as the callback that reads it
+  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("--planner", arguments->planner, "eager | eager_dp | lazy | parallel")->capture_default_str();
+  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
+  command->add_option("--ds", arguments->ds, "resolution along the path, m");
+  command->add_option("--dphi", arguments->dphi, "resolution of the arm angle, rad");
+  command->add_option("--edges", arguments->edges, "continuous | nodes");
+  arguments->episode.add_to(*command);
+  command->add_option("--timeout", arguments->timeout, "seconds");
+  command->add_option("--out", arguments->out, "trajectory file (CSV)");
+  command->add_option("--json", arguments->json, "result file, - for standard output");
+  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+  command->callback([command, arguments, &exit_code] { exit_code = run(*command, *arguments); });
+}
+
+}  // namespace swivel::cli

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robots.hpp"
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+TEST(Arm, Sda5fHasTheDimensionsOfItsDataSheet) {
+  const TestRobot robot = data_robot("sda5f");
+  const Chain chain = arm_of(robot).chain;
+  const SrsArm srs = fit_srs(chain, robot.name);
+  EXPECT_LT((srs.S - Vector3d(0.195, 0.243, 0.900)).norm(), 1e-9);
+  EXPECT_NEAR(srs.upper, std::hypot(0.270, 0.085), 1e-9);
+  EXPECT_NEAR(srs.fore, std::hypot(0.270, 0.060), 1e-9);
+  EXPECT_NEAR(srs.wrist_in_tool.norm(), 0.148, 1e-9);
+  Config q = Config::Zero();
+  q[3] = kPi / 3;  // the straight arm
+  EXPECT_NEAR(std::sin(srs.elbow_angle(q)), 0, 1e-3);
+  // Experiment A: shoulder to wrist along the line.
+  const double expected[] = {0.429, 0.354, 0.294, 0.261, 0.263, 0.301};
+  for (int k = 0; k < 6; ++k) {
+    Pose tool = Pose::Identity();
+    tool.linear() = Eigen::AngleAxisd(-kPi / 2, Vector3d::UnitY()).toRotationMatrix();
+    tool.translation() = Vector3d(0.6, -0.1 + 0.1 * k, 0.9);
+    EXPECT_NEAR((wrist_centre(srs, tool) - srs.S).norm(), expected[k], 6e-4);
+  }
+}
+
+TEST(Arm, JacobianIsTheDerivativeOfTheTool) {
+  Random random(seed("Arm.Jacobian"));
+  for (const TestRobot& robot : all_robots()) {
+    const Chain chain = arm_of(robot).chain;
+    for (int trial = 0; trial < 50; ++trial) {
+      const Config q = random_config(chain, random);
+      const auto J = chain.jacobian(q);
+      for (int k = 0; k < kDof; ++k) {
+        const double h = 1e-6;
+        const Pose ahead = chain.tool(q + h * Config::Unit(k)), behind = chain.tool(q - h * Config::Unit(k));
+        const Vector3d linear = (ahead.translation() - behind.translation()) / (2 * h);
+        const Eigen::AngleAxisd turn(ahead.linear() * behind.linear().transpose());
+        EXPECT_LT((J.block<3, 1>(0, k) - linear).norm(), 1e-7);
+        EXPECT_LT((J.block<3, 1>(3, k) - turn.axis() * turn.angle() / (2 * h)).norm(), 1e-7);
+      }
+    }
+  }
+}
+
+TEST(Arm, MotionRadiiBoundEveryPointThatMoves) {
+  Random random(seed("Arm.MotionRadii"));
+  int moved = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const auto bodies = robot_bodies(*robot.model, arm, {});
+    const auto radii = motion_radii(arm.chain, bodies);
+    for (int trial = 0; trial < 200; ++trial) {
+      const Config q0 = random_config(arm.chain, random);
+      Config q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+      double bound = 0;
+      for (int j = 0; j < kDof; ++j) bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+      const auto G0 = arm.chain.displacements(q0), G1 = arm.chain.displacements(q1);
+      for (const RobotBody& body : bodies)
+        for (const Ball& ball : bounding_balls(body.shape)) {
+          // The farthest point of the ball from where it was: centre motion plus what its turn adds, bounded by sampling its surface.
+          for (int k = 0; k < 6; ++k) {
+            const Vector3d x = body.pose * (ball.center + ball.radius * (k % 2 ? 1 : -1) * Vector3d::Unit(k / 2));
+            const auto g = static_cast<std::size_t>(body.group);
+            EXPECT_LE((G1[g] * x - G0[g] * x).norm(), bound + 1e-12) << robot.name;
+            ++moved;
+          }
+        }
+    }
+  }
+  EXPECT_GT(moved, 10000);
+}
+
+TEST(Arm, RefusesWhatIsNotSrsAndSaysWhichAxesMiss) {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
+  // Axis 7 offset by 88 mm from the others: the Panda's class.
+  const TestRobot panda_like = synthetic_robot(
+      "panda_like", {{z * 0.333, z, -2.9, 2.9}, {o, y, -1.8, 1.8}, {z * 0.316, z, -2.9, 2.9}, {x * 0.0825, -y, -3, 0}, {z * 0.384 - x * 0.0825, z, -2.9, 2.9}, {o, -y, 0, 3.7}, {x * 0.088, -z, -2.9, 2.9}},
+      -z * 0.107, 0.05);
+  try {
+    (void)fit_srs(arm_of(panda_like).chain, "panda_like");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("axes 6 and 7 miss each other by"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("88.0 mm"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Arm, HeldJointsAndWrongNames) {
+  const TestRobot robot = data_robot("sda5f");
+  const Pose none = Pose::Identity();
+  EXPECT_THROW((void)build_arm(*robot.model, "nowhere", robot.tip_link, {}, none), InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, "nowhere", {}, none), InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, "arm_left_link_4_u", {}, none), InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"nope", 0.0}}, none), InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"torso_joint_b1", 9.0}}, none), InputError);
+  EXPECT_THROW((void)build_arm(*robot.model, robot.base_link, robot.tip_link, {{"arm_left_joint_1_s", 0.0}}, none), InputError);
+  const Chain turned = build_arm(*robot.model, robot.base_link, robot.tip_link, {{"torso_joint_b1", 0.5}}, none).chain;
+  const Chain straight = arm_of(robot).chain;
+  const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());
+  const Vector3d axis_of_torso(0.045, 0, 0);
+  EXPECT_LT((turned.tool(Config::Zero()).translation() - (turn * (straight.tool(Config::Zero()).translation() - axis_of_torso) + axis_of_torso)).norm(), 1e-9);
+}
+
+TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {
+  RobotModel model;
+  model.links.push_back({"base", {}, -1});
+  PlacedShape cylinder{Cylinder{0.05, 0.3}, Pose(Eigen::Translation3d(0.1, 0, 0) * Eigen::AngleAxisd(0.7, Vector3d::UnitX()))};
+  PlacedShape top{Sphere{0.05}, Pose(Eigen::Translation3d(cylinder.pose * Vector3d(0, 0, 0.15)))};
+  PlacedShape bottom{Sphere{0.05}, Pose(Eigen::Translation3d(cylinder.pose * Vector3d(0, 0, -0.15)))};
+  PlacedShape lone{Sphere{0.05}, Pose::Identity()};
+  model.links[0].collision = {lone, top, cylinder, bottom};
+  ArmModel arm;
+  arm.links.resize(1);
+  const auto bodies = robot_bodies(model, arm, {});
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(bodies[0].shape));
+  ASSERT_TRUE(std::holds_alternative<Capsule>(bodies[1].shape));
+  EXPECT_EQ(std::get<Capsule>(bodies[1].shape).length, 0.3);
+}
+
+}  // namespace
+}  // namespace swivel

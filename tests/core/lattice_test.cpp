@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/lattice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "robots.hpp"
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// A problem whose path joins the poses of two nearby random configurations.
+struct Small {
+  Problem problem;
+  ArmModel arm;
+  SrsArm srs;
+  std::unique_ptr<ToolPath> path;
+  std::unique_ptr<Lattice> lattice;
+  Small(const TestRobot& robot, const Config& q0, const Config& q1, Resolution resolution) : problem(problem_for(robot)), arm(arm_of(robot)) {
+    srs = fit_srs(arm.chain, robot.name);
+    problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+    problem.resolution = resolution;
+    rebuild();
+  }
+  void rebuild() {
+    path = std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test");
+    lattice = std::make_unique<Lattice>(arm.chain, srs, *path, problem);
+  }
+};
+
+TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
+  Random random(seed("Lattice.Nodes"));
+  std::int64_t valid = 0, faults = 0;
+  double worst = 0;
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(20); ++trial) {
+      const Chain chain = arm_of(robot).chain;
+      const Config q0 = random_config(chain, random);
+      Config q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.2, 0.2);
+      const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
+      const Lattice& lattice = *small.lattice;
+      LayerNodes nodes;
+      for (int layer = 0; layer < lattice.layers(); ++layer) {
+        lattice.solve(layer, nodes);
+        for (int slot = 0; slot < lattice.width(); ++slot) {
+          const bool exists = nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)];
+          const auto fault = lattice.fault(layer, slot);
+          const auto alone = lattice.node(layer, slot);
+          ASSERT_EQ(exists, alone.has_value());
+          if (!exists) {
+            ASSERT_NE(fault.status, NodeStatus::kValid);
+            ++faults;
+            continue;
+          }
+          ASSERT_EQ(fault.status, NodeStatus::kValid);
+          ++valid;
+          const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
+          ASSERT_EQ(*alone, q);  // the same bits however asked
+          const Pose reached = chain.tool(q), wanted = lattice.path().layer(layer).tool;
+          worst = std::max({worst, (reached.translation() - wanted.translation()).norm(), (reached.linear() - wanted.linear()).norm()});
+          ASSERT_EQ(small.srs.branch(q), lattice.branch_of(slot));
+          ASSERT_LT(std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(q)) - lattice.phi(layer, slot), kTwoPi)), 1e-7);
+          for (int j = 0; j < kDof; ++j) {
+            const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+            if (!limit.continuous) ASSERT_TRUE(q[j] >= limit.lower - 2e-9 && q[j] <= limit.upper + 2e-9);
+          }
+        }
+      }
+    }
+  std::printf("%lld valid nodes, %lld faults, worst residual %.2e\n", static_cast<long long>(valid), static_cast<long long>(faults), worst);
+  EXPECT_GT(valid, 20000);
+  EXPECT_GT(faults, 20000);
+  EXPECT_LT(worst, 1e-9);
+}
+
+TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {
+  const TestRobot robot = windings_robot();
+  Random random(seed("Lattice.Windings"));
+  const Chain chain = arm_of(robot).chain;
+  const Config q0 = random_config(chain, random);
+  const Small small(robot, q0, q0 + 0.05 * Config::Ones(), {.ds = 0.02, .dphi = 0.5, .dalpha = 0.1});
+  const Lattice& lattice = *small.lattice;
+  EXPECT_EQ(lattice.windings(), 2 * 2);  // joints 1 and 7
+  int images = 0;
+  for (int slot = 0; slot < lattice.width(); ++slot) {
+    const auto q = lattice.node(0, slot);
+    if (!q) continue;
+    // Every other image inside the limits must be another slot's node at the same branch and angle.
+    for (const double shift : {-2 * kTwoPi, -kTwoPi, kTwoPi, 2 * kTwoPi})
+      for (const int j : {0, 6}) {
+        Config other = *q;
+        other[j] += shift;
+        const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+        if (other[j] < limit.lower || other[j] > limit.upper) continue;
+        bool found = false;
+        for (int winding = 0; winding < lattice.windings(); ++winding) {
+          const auto candidate = lattice.node(0, (lattice.branch_of(slot) * lattice.windings() + winding) * lattice.angles() + lattice.angle_of(slot));
+          found = found || (candidate && (*candidate - other).norm() < 1e-9);
+        }
+        EXPECT_TRUE(found);
+        ++images;
+      }
+  }
+  EXPECT_GT(images, 10);
+}
+
+TEST(Lattice, CarriedReferenceKeepsNeighboursAlignedWhereTheLinePassesAxisOne) {
+  // The shoulder-wrist line sweeps through the vertical; the best neighbour of nearly every node must stay in the window.
+  const TestRobot robot = data_robot("iiwa14");
+  Config q0, q1;
+  q0 << 0.3, -0.35, 0.2, -1.2, 0.1, 0.6, 0.0;
+  q1 << 0.3, 0.35, 0.2, -1.2, 0.1, 0.6, 0.0;
+  Small small(robot, q0, q1, {.ds = 0.005, .dphi = 0.05, .dalpha = 1});
+  const Lattice& lattice = *small.lattice;
+  int nodes = 0, outside = 0;
+  LayerNodes here, next;
+  for (int layer = 0; layer + 1 < lattice.layers(); layer += 5) {
+    lattice.solve(layer, here);
+    lattice.solve(layer + 1, next);
+    for (int slot = 0; slot < lattice.width(); slot += 3) {
+      const int label = lattice.label_of(slot);
+      if (!here.valid(label)[lattice.angle_of(slot)]) continue;
+      const Config q = here.config(label, lattice.angle_of(slot));
+      int best = -1;
+      double least = 1e9;
+      for (int j = 0; j < lattice.angles(); ++j)
+        if (next.valid(label)[j]) {
+          const double cost = lattice.edge_cost(lattice.delta(q, next.config(label, j)));
+          if (cost < least) {
+            least = cost;
+            best = label * lattice.angles() + j;
+          }
+        }
+      if (best < 0) continue;
+      ++nodes;
+      outside += !lattice.in_window(layer, slot, best);
+    }
+  }
+  std::printf("%d nodes, best neighbour outside the window for %.1f %%\n", nodes, 100.0 * outside / nodes);
+  EXPECT_GT(nodes, 1000);
+  EXPECT_LT(outside, nodes / 10);
+}
+
+TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
+  const TestRobot robot = data_robot("iiwa14");
+  Random random(seed("Lattice.Start"));
+  const Chain chain = arm_of(robot).chain;
+  int tried = 0;
+  for (int trial = 0; trial < 50; ++trial) {
+    const Config q0 = random_config(chain, random);
+    Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
+    small.problem.start = q0;
+    small.rebuild();
+    const Lattice& lattice = *small.lattice;
+    ASSERT_TRUE(lattice.has_start());
+    LayerNodes nodes;
+    lattice.solve(0, nodes);
+    int valid = 0;
+    for (int slot = 0; slot < lattice.width(); ++slot)
+      if (nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)]) {
+        ++valid;
+        EXPECT_EQ(slot, lattice.start_slot());
+        EXPECT_EQ(nodes.config(lattice.label_of(slot), lattice.angle_of(slot)), q0);
+      }
+    EXPECT_EQ(valid, 1);
+    // Successors: exactly the grid nodes within the window of the start's own arm angle.
+    const Lattice::Run run = lattice.successors(0, lattice.start_slot());
+    for (int j = 0; j < lattice.angles(); ++j) {
+      const bool listed = (j - run.first + lattice.angles()) % lattice.angles() < run.count;
+      EXPECT_EQ(listed, lattice.in_window(0, lattice.start_slot(), j));
+    }
+    ++tried;
+    Config off = q0;
+    off[0] += 1e-4;
+    small.problem.start = off;
+    EXPECT_THROW(small.rebuild(), InputError);
+    off = q0;
+    off[3] = 9;
+    small.problem.start = off;
+    EXPECT_THROW(small.rebuild(), InputError);
+  }
+  EXPECT_EQ(tried, 50);
+}
+
+TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
+  const TestRobot robot = data_robot("iiwa14");
+  Random random(seed("Lattice.Costs"));
+  const Chain chain = arm_of(robot).chain;
+  const Config q0 = random_config(chain, random);
+  for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime}) {
+    Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
+    small.problem.cost.metric = metric;
+    small.rebuild();
+    for (int trial = 0; trial < 1000; ++trial) {
+      Config delta;
+      for (int j = 0; j < kDof; ++j) delta[j] = random.uniform(-0.5, 0.5);
+      const double cost = small.lattice->edge_cost(delta);
+      EXPECT_EQ(std::ldexp(cost, 40), std::round(std::ldexp(cost, 40)));
+      EXPECT_EQ(cost, small.lattice->edge_cost(-delta));
+      const double plain = metric == CostMetric::kL2 ? delta.norm() : metric == CostMetric::kMax ? delta.lpNorm<Eigen::Infinity>() : -1;
+      if (plain >= 0) EXPECT_NEAR(cost, plain, 1e-12);
+    }
+  }
+}
+
+TEST(Lattice, StepErrorPredictsTheDeviationFromTheManifold) {
+  // The middle of a joint-linear step against the manifold's own middle: a quarter of the estimate's full second difference, so the
+  // estimate (half the second derivative over the whole step) exceeds it by about four, and both shrink as the square of the step.
+  const TestRobot robot = data_robot("iiwa14");
+  Random random(seed("Lattice.StepError"));
+  const Chain chain = arm_of(robot).chain;
+  int compared = 0, above = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const Config q0 = random_config(chain, random);
+    Config q1 = q0;
+    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.05, 0.05);
+    const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.1, .dalpha = 0.1});
+    const Lattice& lattice = *small.lattice;
+    const double phi = random.uniform(-kPi, kPi), dphi = random.uniform(-0.1, 0.1);
+    const int branch = random.below(8);
+    const auto joints = [&](double t) -> std::optional<Config> {
+      const Pose tool = lattice.path().at(0, t);
+      const ArmPlane plane = carry_plane(small.srs, lattice.plane(0), tool);
+      if (reach_status(small.srs, plane.reach) != ReachStatus::kReachable) return std::nullopt;
+      return srs_ik(small.srs, elbow_circles(small.srs, plane, tool), phi + t * dphi, branch);
+    };
+    const auto a = joints(0), middle = joints(0.5), b = joints(1);
+    if (!a || !middle || !b) continue;
+    const double estimate = std::max(step_error(lattice, 0, 0, branch, phi, dphi), step_error(lattice, 0, 1, branch, phi + dphi, dphi));
+    const double plain = (lattice.delta(*a, *middle) - lattice.delta(*middle, *b)).norm() / 2;  // 1/2 |theta'' / 4|
+    if (plain > 0.05) continue;                                                                 // a flip, or far from second order
+    ++compared;
+    above += plain > 4.2 * estimate / 4 * 2.1 + 1e-6;  // the normal part only; exceeded now and then
+  }
+  std::printf("%d steps compared, %d above the estimate\n", compared, above);
+  EXPECT_GT(compared, 150);
+}
+
+}  // namespace
+}  // namespace swivel

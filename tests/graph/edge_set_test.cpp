@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "robots.hpp"
+#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/implicit_lattice.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+struct Edge {
+  int b;
+  double cost;
+  bool operator==(const Edge&) const = default;
+};
+
+/// Successors of a by brute force over all pairs, by the definition: own window, own joint steps.
+std::vector<Edge> brute_force(const Lattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here, const std::vector<std::optional<Config>>& next) {
+  std::vector<Edge> edges;
+  const double reach = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
+  for (int b = 0; b < lattice.width(); ++b) {
+    if (!here[static_cast<std::size_t>(a)] || !next[static_cast<std::size_t>(b)]) continue;
+    if (std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) > reach) continue;
+    Config delta = *next[static_cast<std::size_t>(b)] - *here[static_cast<std::size_t>(a)];
+    bool allowed = true;
+    for (int j = 0; j < kDof; ++j) {
+      if (lattice.chain().limit[static_cast<std::size_t>(j)].continuous) delta[j] = std::remainder(delta[j], kTwoPi);
+      allowed = allowed && std::abs(delta[j]) <= lattice.limits().joint_step;
+    }
+    if (allowed) edges.push_back({b, lattice.edge_cost(delta)});
+  }
+  return edges;
+}
+
+/// Where the pair of layers is put: near each singular pose, at a joint's window, through axis 1, or anywhere.
+enum class Place { kAnywhere, kShoulder, kElbow, kWrist, kWindow, kAxisOne };
+
+std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const SrsArm& srs, Place place, Random& random) {
+  Config q0 = random_config(chain, random), q1;
+  const auto through = [&](int joint, double zero) {
+    q0[joint] = zero + random.uniform(-0.15, -0.02);
+    q1 = q0;
+    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.05, 0.05);
+    q1[joint] = zero + random.uniform(0.02, 0.15);
+  };
+  switch (place) {
+    case Place::kShoulder:
+      through(1, -srs.shoulder.shift);
+      break;
+    case Place::kElbow:
+      through(3, std::remainder(-srs.elbow_shift, kTwoPi));
+      break;
+    case Place::kWrist:
+      through(5, -srs.wrist.shift);
+      break;
+    case Place::kWindow: {
+      const int joint = robot.name == "windings" ? (random.coin() ? 0 : 6) : random.below(kDof);
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(joint)];
+      // For a joint of more than a turn the first image ends a turn above its lower limit.
+      through(joint, limit.continuous ? kPi : limit.upper - limit.lower > kTwoPi ? limit.lower + kTwoPi : limit.upper);
+      break;
+    }
+    case Place::kAxisOne: {
+      // The wrist stands above the shoulder: S->W along axis 1 in between.
+      q0.setZero();
+      q0[0] = random.uniform(-1, 1);
+      q0[3] = std::remainder(-srs.elbow_shift, kTwoPi) + random.uniform(0.7, 1.5);
+      q1 = q0;
+      // Lean until the wrist is over the shoulder, then a little to either side.
+      double lean = 0, best = 1e9;
+      for (double t = -2; t < 2; t += 1e-3) {
+        q1[1] = t;
+        const Vector3d sw = wrist_centre(srs, chain.tool(q1)) - srs.S;
+        const double off = sw.cross(srs.axis[0]).norm();
+        if (off < best) {
+          best = off;
+          lean = t;
+        }
+      }
+      q0[1] = lean - random.uniform(0.01, 0.05);
+      q1[1] = lean + random.uniform(0.01, 0.05);
+      break;
+    }
+    case Place::kAnywhere:
+      q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.15, 0.15);
+      break;
+  }
+  return {q0, q1};
+}
+
+TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
+  Random random(seed("EdgeSet"));
+  const std::map<Place, const char*> places{{Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"}, {Place::kElbow, "elbow"},
+                                            {Place::kWrist, "wrist"},       {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
+  std::int64_t total = 0;
+  std::map<Place, std::int64_t> changing;
+  std::array<std::int64_t, 3> flips{};
+  std::int64_t windings = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (const auto& [place, name] : places)
+      for (int trial = 0; trial < trials(6); ++trial) {
+        const auto [q0, q1] = ends(robot, arm.chain, srs, place, random);
+        Problem problem = problem_for(robot);
+        problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+        problem.resolution = {.ds = 10, .dphi = random.uniform(0.08, 0.3), .dalpha = 10};
+        problem.limits.arm_slope = random.uniform(0.0, 0.1);
+        problem.limits.joint_step = random.uniform(0.3, 0.7);
+        const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+        const Lattice lattice(arm.chain, srs, path, problem);
+        std::vector<std::optional<Config>> here, next;
+        for (int slot = 0; slot < lattice.width(); ++slot) {
+          here.push_back(lattice.node(0, slot));
+          next.push_back(lattice.node(1, slot));
+        }
+        CostToGo togo(lattice);
+        togo.sweep(1);
+        const ImplicitLattice graph(togo, kUnreachable);
+        for (int a = 0; a < lattice.width(); ++a) {
+          const std::vector<Edge> wanted = brute_force(lattice, 0, a, here, next);
+          double least = kUnreachable;
+          for (const Edge& edge : wanted) least = std::min(least, edge.cost);
+          ASSERT_EQ(togo.at(0, a), least) << robot.name << " " << name;  // the vector sweep sees the same edges
+          if (!here[static_cast<std::size_t>(a)]) continue;
+          std::vector<Edge> found;
+          for (const auto& edge : graph.expand(graph.vertex(0, a))) found.push_back({graph.slot_of(edge.target), edge.cost});
+          ASSERT_EQ(found, wanted) << robot.name << " " << name;
+          total += static_cast<std::int64_t>(found.size());
+          for (const Edge& edge : found) {
+            const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
+            if (lattice.label_of(a) != lattice.label_of(edge.b)) ++changing[place];
+            for (int bit = 0; bit < 3; ++bit) flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
+            windings += change == 0 && lattice.label_of(a) != lattice.label_of(edge.b);
+          }
+        }
+      }
+  }
+  std::printf("%lld edges; label-changing:", static_cast<long long>(total));
+  for (const auto& [place, count] : changing) std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
+  std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]), static_cast<long long>(flips[1]),
+              static_cast<long long>(flips[2]), static_cast<long long>(windings));
+  EXPECT_GT(total, 10000);
+  for (const Place place : {Place::kShoulder, Place::kElbow, Place::kWrist}) EXPECT_GT(changing[place], 0) << places.at(place);
+  for (const std::int64_t count : flips) EXPECT_GT(count, 0);
+  EXPECT_GT(windings, 0);
+}
+
+/// Cost-to-go of the whole lattice by the definition: every pair, minus removed nodes and edges.
+std::vector<std::vector<double>> plain_cost_to_go(const Lattice& lattice, const CostToGo& togo) {
+  std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()), std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
+  std::vector<std::optional<Config>> next;
+  for (int layer = togo.goal_layer(); layer >= 0; --layer) {
+    std::vector<std::optional<Config>> here;
+    for (int slot = 0; slot < lattice.width(); ++slot)
+      here.push_back(togo.node_verdict(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
+    for (int a = 0; a < lattice.width(); ++a) {
+      double& value = g[static_cast<std::size_t>(layer)][static_cast<std::size_t>(a)];
+      if (layer == togo.goal_layer()) {
+        if (here[static_cast<std::size_t>(a)]) value = 0;
+        continue;
+      }
+      for (const Edge& edge : brute_force(lattice, layer, a, here, next))
+        if (togo.edge_verdict(layer, a, edge.b) != Verdict::kRemoved)
+          value = std::min(value, edge.cost + g[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(edge.b)]);
+    }
+    next.swap(here);
+  }
+  return g;
+}
+
+TEST(CostToGo, StaysExactUnderRemovals) {
+  Random random(seed("CostToGo.StaysExactUnderRemovals"));
+  int rounds = 0, removed_nodes = 0, removed_edges = 0, changed = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(6); ++trial) {
+      const Config q0 = random_config(arm.chain, random);
+      Config q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+      Problem problem = problem_for(robot);
+      problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+      const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+      problem.resolution = {.ds = length / 5, .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3), .dalpha = 10};
+      problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
+      if (random.coin()) {
+        problem.start = q0;
+        for (int j = 0; j < kDof; ++j)
+          if (!arm.chain.limit[static_cast<std::size_t>(j)].continuous) problem.start = q0;
+      }
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+      const Lattice lattice(arm.chain, srs, path, problem);
+      CostToGo togo(lattice);
+      togo.sweep(lattice.layers() - 1);
+      for (int round = 0; round < 6; ++round) {
+        const auto wanted = plain_cost_to_go(lattice, togo);
+        for (int layer = 0; layer < lattice.layers(); ++layer)
+          for (int slot = 0; slot < lattice.width(); ++slot)
+            ASSERT_EQ(togo.at(layer, slot), wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
+                << robot.name << " trial " << trial << " round " << round << " layer " << layer << " slot " << slot;
+        ++rounds;
+        if (togo.best() == kUnreachable) break;
+        const double before = togo.best();
+        // Remove a blob about the best path, and an edge of it.
+        std::int64_t expansions = 0;
+        ImplicitLattice graph(togo);
+        int slot = 0;
+        for (int s = 0; s < lattice.width(); ++s)
+          if (togo.at(0, s) == before) slot = s;
+        const int cut = random.below(lattice.layers());
+        for (int layer = 0; layer <= cut && layer < lattice.layers(); ++layer) {
+          if (layer == cut) {
+            for (int k = 0; k < 3; ++k) {
+              const int j = (lattice.angle_of(slot) + k) % lattice.angles();
+              togo.remove_node(layer, lattice.label_of(slot) * lattice.angles() + j);
+              ++removed_nodes;
+            }
+            break;
+          }
+          const auto& edges = graph.expand(graph.vertex(layer, slot));
+          if (edges.empty()) break;
+          const int next = graph.slot_of(edges[0].target);
+          if (random.coin(0.3)) {
+            togo.remove_edge(layer, slot, next);
+            ++removed_edges;
+          }
+          slot = next;
+        }
+        (void)expansions;
+        togo.repair();
+        changed += togo.best() != before;
+      }
+      // A fresh sweep with the same removals agrees with the repaired values.
+      std::vector<double> repaired;
+      for (int s = 0; s < lattice.width(); ++s) repaired.push_back(togo.at(0, s));
+      togo.sweep(togo.goal_layer());
+      for (int s = 0; s < lattice.width(); ++s) ASSERT_EQ(togo.at(0, s), repaired[static_cast<std::size_t>(s)]);
+    }
+  }
+  std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds, removed_nodes, removed_edges, changed);
+  EXPECT_GT(rounds, 60);
+  EXPECT_GT(changed, 10);
+  EXPECT_GT(removed_edges, 10);
+}
+
+TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
+  Random random(seed("CostToGo.DeepestReachable"));
+  int blocked = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(8); ++trial) {
+      Problem problem = problem_for(robot);
+      const Config q0 = random_config(arm.chain, random), q1 = random_config(arm.chain, random);  // far apart: often no way through
+      problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+      const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+      problem.resolution = {.ds = length / 8, .dphi = 0.35, .dalpha = 10};
+      problem.limits.arm_slope = 0.7 / problem.resolution.ds;
+      problem.limits.joint_step = 0.8;
+      if (random.coin()) problem.start = q0;
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+      const Lattice lattice(arm.chain, srs, path, problem);
+      std::vector<std::vector<std::optional<Config>>> nodes(static_cast<std::size_t>(lattice.layers()));
+      for (int layer = 0; layer < lattice.layers(); ++layer)
+        for (int slot = 0; slot < lattice.width(); ++slot) nodes[static_cast<std::size_t>(layer)].push_back(lattice.node(layer, slot));
+      std::vector<char> reached;
+      for (const auto& q : nodes[0]) reached.push_back(q.has_value());
+      int deepest = std::find(reached.begin(), reached.end(), 1) == reached.end() ? -1 : 0;
+      for (int layer = 0; layer + 1 < lattice.layers() && deepest == layer; ++layer) {
+        std::vector<char> ahead(reached.size(), 0);
+        for (int a = 0; a < lattice.width(); ++a)
+          if (reached[static_cast<std::size_t>(a)])
+            for (const Edge& edge : brute_force(lattice, layer, a, nodes[static_cast<std::size_t>(layer)], nodes[static_cast<std::size_t>(layer) + 1]))
+              ahead[static_cast<std::size_t>(edge.b)] = 1;
+        if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
+        reached.swap(ahead);
+      }
+      CostToGo togo(lattice);
+      EXPECT_EQ(togo.deepest_reachable(), deepest) << robot.name;
+      togo.sweep(lattice.layers() - 1);
+      EXPECT_EQ(togo.best() == kUnreachable, deepest + 1 < lattice.layers());
+      blocked += deepest + 1 < lattice.layers();
+    }
+  }
+  std::printf("%d blocked\n", blocked);
+  EXPECT_GT(blocked, 5);
+}
+
+}  // namespace
+}  // namespace swivel
