@@ -57,7 +57,7 @@ function(swivel_component name)
   cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   add_library(swivel_${name} STATIC ${arg_SOURCES})
   add_library(swivel::${name} ALIAS swivel_${name})
-  set_target_properties(swivel_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(swivel_${name} PROPERTIES EXPORT_NAME ${name})
   target_compile_features(swivel_${name} PUBLIC cxx_std_20)
   target_include_directories(swivel_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
                                                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
