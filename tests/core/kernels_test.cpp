@@ -12,14 +12,14 @@ namespace {
 
 using namespace test;
 
-struct Run {
+struct Angles {
   std::vector<double> out;
-  explicit Run(std::size_t n) : out(7 * n) {}
+  explicit Angles(std::size_t n) : out(7 * n) {}
 };
 
-Run run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base, const std::vector<double>& s, const std::vector<double>& c) {
+Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base, const std::vector<double>& s, const std::vector<double>& c) {
   const std::size_t n = s.size();
-  Run result(n);
+  Angles result(n);
   TripleTask task;
   for (std::size_t row = 0; row < 5; ++row)
     for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
@@ -60,13 +60,13 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
       c.push_back(std::cos(phi.back()));
     }
     const double base[3] = {random.uniform(-7, 1), random.uniform(-7, 1), random.uniform(-7, 1)};
-    const Run scalar = run(*units[0], circles[0].shoulder, srs.shoulder.shift, base, s, c);
+    const Angles scalar = run(*units[0], circles[0].shoulder, srs.shoulder.shift, base, s, c);
     for (std::size_t unit = 1; unit < units.size(); ++unit) {
-      const Run other = run(*units[unit], circles[0].shoulder, srs.shoulder.shift, base, s, c);
+      const Angles other = run(*units[unit], circles[0].shoulder, srs.shoulder.shift, base, s, c);
       ASSERT_EQ(0, std::memcmp(scalar.out.data(), other.out.data(), scalar.out.size() * sizeof(double))) << units[unit]->name;
     }
     for (int k = 0; k < n; ++k) {  // one at a time: the same bits however asked
-      const Run alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base, {s[static_cast<std::size_t>(k)]}, {c[static_cast<std::size_t>(k)]});
+      const Angles alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base, {s[static_cast<std::size_t>(k)]}, {c[static_cast<std::size_t>(k)]});
       for (int row = 0; row < 7; ++row)
         ASSERT_EQ(alone.out[static_cast<std::size_t>(row)], scalar.out[static_cast<std::size_t>(row * n + k)]);
       for (int sign = 0; sign < 2; ++sign) {

@@ -132,6 +132,7 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
           if (!here[static_cast<std::size_t>(a)]) continue;
           std::vector<Edge> found;
           for (const auto& edge : graph.expand(graph.vertex(0, a))) found.push_back({graph.slot_of(edge.target), edge.cost});
+          std::sort(found.begin(), found.end(), [](const Edge& x, const Edge& y) { return x.b < y.b; });
           ASSERT_EQ(found, wanted) << robot.name << " " << name;
           total += static_cast<std::int64_t>(found.size());
           for (const Edge& edge : found) {

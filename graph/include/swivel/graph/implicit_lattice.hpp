@@ -34,7 +34,7 @@ class ImplicitLattice {
   [[nodiscard]] double cost_to_go(Vertex v) const { return v == root() ? togo_->best() : togo_->at(layer_of(v), slot_of(v)); }
   [[nodiscard]] const CostToGo& values() const { return *togo_; }
 
-  /// The edges that leave v, in slot order. Valid until the next call: a search looks at one vertex's edges at a time.
+  /// The edges that leave v. Valid until the next call: a search looks at one vertex's edges at a time.
   [[nodiscard]] const std::vector<Edge>& expand(Vertex v) const;
 
  private:

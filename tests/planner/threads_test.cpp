@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+
+#include "random_problem.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+class Backends : public testing::TestWithParam<Executor::Backend> {};
+
+TEST_P(Backends, ForEachVisitsEveryIndexOnceAndPassesExceptionsOn) {
+  for (const int threads : {1, 2, 3, 8}) {
+    Executor executor(threads, GetParam());
+    EXPECT_EQ(executor.threads(), threads);
+    for (const int count : {0, 1, 7, 1000}) {
+      std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
+      executor.for_each(count, [&](int index, int worker) {
+        EXPECT_LT(worker, threads);
+        ++visits[static_cast<std::size_t>(index)];
+      });
+      for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+    }
+    EXPECT_THROW(executor.for_each(50, [](int index, int) { if (index == 17) throw std::runtime_error("x"); }), std::runtime_error);
+  }
+}
+
+TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
+  const std::uint64_t base = seed("Backends.SameResult");
+  const auto robots = all_robots();
+  int compared = 0;
+  for (int trial = 0; trial < trials(20); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    std::optional<PlanResult> first;
+    for (const int threads : {1, 2, 3, 8}) {
+      PlanOptions options;
+      options.threads = threads;
+      options.backend = GetParam();
+      const PlanResult result = plan(problem, options);
+      if (!first) {
+        first = result;
+        continue;
+      }
+      ASSERT_EQ(result.status, first->status);
+      ASSERT_EQ(result.cost, first->cost);
+      ASSERT_EQ(result.counters.fcl_calls, first->counters.fcl_calls);
+      ASSERT_EQ(result.counters.nodes_checked, first->counters.nodes_checked);
+      ASSERT_EQ(result.counters.edges_checked, first->counters.edges_checked);
+      ASSERT_EQ(result.trajectory.size(), first->trajectory.size());
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q);
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 3 * trials(20));
+}
+INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
+                         [](const auto& info) { return info.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
+
+TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
+  const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  const PreparedRobot robot(problem);
+  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+    PlanOptions options;
+    options.planner = planner;
+    options.timeout_s = 1e-9;
+    EXPECT_EQ(plan(robot, problem, options).status, PlanStatus::kTimeout) << to_string(planner);
+    const std::atomic<bool> cancelled{true};
+    options.timeout_s.reset();
+    options.cancel = &cancelled;
+    const PlanResult result = plan(robot, problem, options);
+    EXPECT_EQ(result.status, PlanStatus::kCancelled) << to_string(planner);
+    EXPECT_TRUE(result.trajectory.empty());
+  }
+}
+
+}  // namespace
+}  // namespace swivel
