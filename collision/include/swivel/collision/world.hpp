@@ -13,16 +13,18 @@
 
 namespace swivel {
 
-/// Two bodies that must keep clear of each other. Robot bodies come first; scene objects follow.
+/// Two bodies that must keep clear of each other.
 struct BodyPair {
   int a = 0, b = 0;  ///< indices into World::body_names(), a < b
 };
 
 /// Work counted per query object; add up over threads.
 struct CollisionCounters {
-  std::int64_t fcl_calls = 0;
+  std::int64_t fcl_calls = 0;     ///< fcl::collide and fcl::distance
+  std::int64_t fcl_failures = 0;  ///< of those, the ones that threw; the bodies then count as touching
   CollisionCounters& operator+=(const CollisionCounters& o) {
     fcl_calls += o.fcl_calls;
+    fcl_failures += o.fcl_failures;
     return *this;
   }
 };
@@ -33,20 +35,28 @@ struct CollisionCounters {
 /// equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:
-  /// Which pairs count (design.md 1): not disabled by the SRDF, not rigid to each other, not parent and child, not allowed to touch;
-  /// without an SRDF, and for attached bodies, also not below max(d_safe, d_edge + h) in all of many seeded samples.
+  /// Which pairs count (design.md 1): not disabled by the SRDF, not rigid to each other, not parent and child, not allowed to
+  /// touch; without an SRDF, and for attached bodies, also not below max(d_safe, d_edge + h) in all of many seeded samples. Throws
+  /// InputError for a mesh without triangles.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem);
+  /// The robot of `like` in front of another scene: shares its robot pairs and the trees of every mesh that a world of this family
+  /// has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
+  World(const World& like, const std::vector<SceneObject>& scene);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
+  /// Robot bodies in the order of bodies(), then scene objects. A link with several shapes has its name several times.
   [[nodiscard]] const std::vector<std::string>& body_names() const;
+  /// In the order in which first_below asks: the environment before the robot itself, inflated booleans before distances, the tool
+  /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
   /// Open meshes (treated as surfaces) and the like.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
-  /// Mutable state of one caller: placed FCL objects, counters. Cheap enough to make one per thread, not one per question.
+  /// Mutable state of one caller: where the bodies are, counters. Cheap enough to make one per thread, not one per question.
+  /// The world must outlive it, and may be moved meanwhile.
   class Query {
    public:
     explicit Query(const World& world);
@@ -54,11 +64,11 @@ class World {
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
 
-    /// First pair (in an order fixed by the world) whose clearance at q is below d, or none: "clearance >= d" for all pairs.
+    /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A function of (q, d) alone.
     [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d);
-    /// Exact-as-FCL least clearance over all pairs and where, m; negative or zero when touching; none when there are no pairs.
+    /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.
     struct Clearance {
-      double distance = 0;
+      double distance = 0;  ///< m; 0 when touching or one inside the other
       BodyPair pair;
     };
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
@@ -74,18 +84,21 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The motion from q0 to q1, straight in joint space: its bound, and the verdict by bisection.
-/// radii: core motion_radii. Returns the first failing midpoint's pair, or none when the edge is free:
-/// clearance >= d_edge is proved for the whole motion exactly as design.md 1 "Edge collision" defines it.
-/// `first_below(q, d)` is asked at midpoints only.
+/// What edge_blocked must prove: clearance >= d_edge on the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0);
+/// the caller unwraps continuous joints). design.md 1 "Edge collision".
 struct EdgeRule {
-  std::array<double, kDof> radii{};
-  double d_edge = 0, h = 0.0005;
-  /// Number of midpoints N: the smallest power of two with B / (2 N) <= h, B = sum |dq_j| R_j.
+  std::array<double, kDof> radii{};  ///< core motion_radii, m
+  double d_edge = 0, h = 0.0005;     ///< m; h > 0
+  /// A bound on how far any point moves, m: sum |dq_j| R_j.
+  [[nodiscard]] double motion(const Config& q0, const Config& q1) const;
+  /// Number of midpoints N: the smallest power of two with B / (2 N) <= h, B = motion.
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1) const;
 };
+/// None when every midpoint t = (m + 1/2) / N has clearance >= d_edge + h; else a pair that comes too near. By bisection, coarse to
+/// fine: an interval is free when its middle is clear by as much as the interval can move, blocked when its middle is below d_edge.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1);
-/// The plain rule, every leaf asked: what edge_blocked must agree with.
-[[nodiscard]] std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1);
+/// The same by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint that fails.
+[[nodiscard]] std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0,
+                                                         const Config& q1);
 
 }  // namespace swivel

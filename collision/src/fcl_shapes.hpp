@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/geometry/collision_geometry.h>
+#include <fcl/math/bv/OBB.h>
+#include <fcl/math/bv/RSS.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bound.hpp"
+#include "closed_mesh.hpp"
+#include "swivel/core/shape.hpp"
+
+namespace swivel {
+
+/// What collision needs of one mesh, computed once. Const calls are safe from many threads.
+class MeshModel {
+ public:
+  /// Throws InputError for a mesh without triangles.
+  explicit MeshModel(MeshPtr mesh);
+  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
+  [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const { return boolean_tree_; }
+  /// For distances, which an OBB cannot bound. Built at the first call, since many worlds ask booleans only.
+  [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
+  /// Set when the mesh is closed.
+  [[nodiscard]] const std::optional<ClosedMesh>& solid() const { return solid_; }
+  /// A point of every connected part.
+  [[nodiscard]] const std::vector<Vector3d>& part_points() const { return part_points_; }
+
+ private:
+  MeshPtr mesh_;
+  fcl::BVHModel<fcl::OBBd> boolean_tree_;
+  std::optional<ClosedMesh> solid_;
+  std::vector<Vector3d> part_points_;
+  mutable std::once_flag distance_tree_once_;
+  mutable fcl::BVHModel<fcl::RSSd> distance_tree_;
+};
+
+/// Models by mesh, so that one file serves many links, and one world's trees the next world. Safe from many threads.
+class MeshStore {
+ public:
+  std::shared_ptr<const MeshModel> model(const MeshPtr& mesh);
+
+ private:
+  std::mutex mutex_;
+  std::map<const TriangleMesh*, std::shared_ptr<const MeshModel>> models_;  // a model keeps its mesh alive
+};
+
+/// One shape as FCL and the tests around it see it.
+struct FclShape {
+  enum class Kind { kRound, kSolid, kMesh };  ///< sphere or capsule; box or cylinder; mesh
+  Kind kind = Kind::kSolid;
+  Shape shape;
+  std::shared_ptr<const fcl::CollisionGeometryd> geometry;  // shared: worlds of one robot; null for a mesh
+  std::shared_ptr<const MeshModel> mesh;                    // shared through the store; null unless a mesh
+  Bound bound;
+};
+[[nodiscard]] FclShape make_fcl_shape(const Shape& shape, MeshStore& store);
+
+}  // namespace swivel

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pair_test.hpp"
+
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <algorithm>
+#include <exception>
+#include <limits>
+
+namespace swivel {
+
+namespace {
+
+/// A point of `inner` lies in the solid mesh `outer`.
+bool holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
+  if (!outer.shape->mesh || !outer.shape->mesh->solid()) return false;
+  const ClosedMesh& solid = *outer.shape->mesh->solid();
+  const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
+  if (!inner.shape->mesh) return solid.contains(to_outer.translation());
+  const auto& points = inner.shape->mesh->part_points();
+  return std::any_of(points.begin(), points.end(), [&](const Vector3d& p) { return solid.contains(to_outer * p); });
+}
+
+/// For bodies whose surfaces do not meet. FCL sees a mesh as a surface, so it cannot tell.
+bool one_inside_other(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+  return holds_a_point(a, b) || holds_a_point(b, a);
+}
+
+}  // namespace
+
+bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
+  using Kind = FclShape::Kind;
+  bool near = false;
+  if (a.shape->kind == Kind::kRound) {
+    near = inflated_meets(a, b, true, d);
+  } else if (b.shape->kind == Kind::kRound) {
+    near = inflated_meets(b, a, false, d);
+  } else {
+    // FCL skips subtrees that cannot beat the result it is given, so a result that starts just above d gives the verdict of a fresh
+    // one without searching for a minimum that nobody asks for.
+    constexpr double kAbove = 1e-5;
+    const double found = distance(a, b, d + kAbove);
+    near = found < d || found <= 0;
+  }
+  return near || one_inside_other(a, b);
+}
+
+double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+  const double found = distance(a, b, std::numeric_limits<double>::max());
+  return found <= 0 || one_inside_other(a, b) ? 0 : found;
+}
+
+bool PairTest::inflated_meets(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first, double d) {
+  const fcl::CollisionGeometryd* tree = other.shape->mesh ? &other.shape->mesh->boolean_tree() : nullptr;
+  const fcl::CollisionGeometryd& still = tree ? *tree : *other.shape->geometry;
+  const auto ask = [&](const fcl::CollisionGeometryd& grown) {
+    return round_first ? meets(grown, *round.pose, still, *other.pose) : meets(still, *other.pose, grown, *round.pose);
+  };
+  if (const auto* sphere = std::get_if<Sphere>(&round.shape->shape)) return ask(fcl::Sphered(sphere->radius + d));
+  const auto& capsule = std::get<Capsule>(round.shape->shape);
+  return ask(fcl::Capsuled(capsule.radius + d, capsule.length));
+}
+
+bool PairTest::meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b) {
+  const fcl::CollisionRequestd request(1, false);
+  fcl::CollisionResultd result;
+  ++counters_.fcl_calls;
+  try {
+    return fcl::collide<double>(&a, X_a, &b, X_b, request, result) > 0;
+  } catch (const std::exception&) {
+    ++counters_.fcl_failures;
+    return true;
+  }
+}
+
+/// FCL's distance where it is below `bound`, else `bound`; zero or negative when the surfaces meet or FCL fails.
+double PairTest::distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double bound) {
+  const auto geometry = [](const PlacedShapeRef& body) -> const fcl::CollisionGeometryd* {
+    if (body.shape->mesh) return &body.shape->mesh->distance_tree();
+    return body.shape->geometry.get();
+  };
+  const fcl::DistanceRequestd request(false, false, 0.0, 0.0, 1e-6, fcl::GST_LIBCCD);
+  fcl::DistanceResultd result(bound);
+  ++counters_.fcl_calls;
+  try {
+    fcl::distance<double>(geometry(a), *a.pose, geometry(b), *b.pose, request, result);
+    return result.min_distance;
+  } catch (const std::exception&) {
+    ++counters_.fcl_failures;
+    return 0;
+  }
+}
+
+}  // namespace swivel

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "fcl_shapes.hpp"
+#include "swivel/collision/world.hpp"
+
+namespace swivel {
+
+/// A body where it is.
+struct PlacedShapeRef {
+  const FclShape* shape;
+  const Pose* pose;  ///< of the shape, base frame
+};
+
+/// FCL's verdicts on one pair of bodies, and a count of what they took; so it belongs to one thread.
+/// Every verdict is a function of its arguments alone: fresh results, a before b, no cached guess, no penetration depth (which can
+/// throw and abort).
+class PairTest {
+ public:
+  /// clearance(a, b) < d; d >= 0. True also where FCL fails, which is counted.
+  bool below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
+  /// Clearance, m; 0 when touching, inside each other, or where FCL fails.
+  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b);
+  [[nodiscard]] const CollisionCounters& counters() const { return counters_; }
+
+ private:
+  bool inflated_meets(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first, double d);
+  bool meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b);
+  double distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double bound);
+
+  CollisionCounters counters_;
+};
+
+}  // namespace swivel
