@@ -99,7 +99,7 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = segments_of(problem);
-  const World world(*problem.robot, robot.arm(), problem);
+  const World& world = robot.world();
   World::Query query(world);
   const Limits& limits = problem.limits;
   EdgeRule rule = edge_rule(limits, robot.radii());

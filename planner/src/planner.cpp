@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
@@ -133,8 +134,8 @@ PlannerKind planner_from_string(const std::string& name) {
 PreparedRobot::PreparedRobot(const Problem& problem)
     : arm_(build_arm(*problem.robot, problem.base_link, problem.tip_link, problem.hold, problem.tool)),
       srs_(fit_srs(arm_.chain, problem.robot->source)),
-      bodies_(robot_bodies(*problem.robot, arm_, problem.attached)),
-      radii_(motion_radii(arm_.chain, bodies_)) {}
+      world_(*problem.robot, arm_, problem),
+      radii_(motion_radii(arm_.chain, world_.bodies())) {}
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
   Stopwatch watch;
@@ -158,7 +159,7 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
   result.time_ms["lattice"] = watch.lap();
-  const World world(*problem.robot, robot.arm(), problem);
+  const World world(robot.world(), problem.scene);
   result.time_ms["world"] = watch.lap();
   result.warnings = world.warnings();
   result.lattice = {lattice.layers(), lattice.angles(), kBranches, lattice.windings(), lattice.window(), lattice.nodes(), path.merged_waypoints()};

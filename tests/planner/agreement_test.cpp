@@ -27,7 +27,7 @@ Answer brute_force(const Problem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World world(*problem.robot, robot.arm(), problem);
+  const World& world = robot.world();
   World::Query query(world);
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
   const auto layers = static_cast<std::size_t>(lattice.layers()), width = static_cast<std::size_t>(lattice.width());

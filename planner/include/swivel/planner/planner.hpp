@@ -47,13 +47,14 @@ class PreparedRobot {
   explicit PreparedRobot(const Problem& problem);
   [[nodiscard]] const ArmModel& arm() const { return arm_; }
   [[nodiscard]] const SrsArm& srs() const { return srs_; }
-  [[nodiscard]] const std::vector<RobotBody>& bodies() const { return bodies_; }
   [[nodiscard]] const std::array<double, kDof>& radii() const { return radii_; }
+  /// Robot pairs and the trees of all meshes met so far; the worlds of single plans are made from it.
+  [[nodiscard]] const World& world() const { return world_; }
 
  private:
   ArmModel arm_;
   SrsArm srs_;
-  std::vector<RobotBody> bodies_;
+  World world_;
   std::array<double, kDof> radii_;
 };
 
