@@ -9,6 +9,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <mutex>
+#include <set>
 #include <string_view>
 
 #include "bad_input.hpp"
@@ -47,7 +48,8 @@ urdf::ModelInterfaceSharedPtr parse_quietly(const std::string& xml, const std::s
     thrown = error.what();
   }
   console_bridge::restorePreviousOutputHandler();
-  if (!model)
+  // A complaint counts even where urdfdom goes on: it drops collision geometry that it cannot read.
+  if (!model || !messages.text().empty())
     bad_input(file, "not a valid robot (" + (thrown.empty() ? messages.text() : thrown) + ")", "a URDF 1.0 robot, xacro expanded");
   return model;
 }
@@ -106,6 +108,8 @@ class ModelBuilder {
     tinyxml2::XMLDocument document;
     tinyxml2::XMLElement& robot = load_robot_xml(urdf_, "URDF", document);
     strip(robot);
+    check_names(robot, "link");
+    check_names(robot, "joint");
     tinyxml2::XMLPrinter printer(nullptr, true);
     document.Print(&printer);
     parsed_ = parse_quietly(printer.CStr(), urdf_.string());
@@ -122,6 +126,17 @@ class ModelBuilder {
  private:
   [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const {
     return at_line(urdf_.string(), element.GetLineNum()) + ": " + element.Name() + " '" + element.Attribute("name") + "'";
+  }
+
+  /// urdfdom drops a link without a name and goes on.
+  void check_names(tinyxml2::XMLElement& robot, const char* kind) const {
+    std::set<std::string> names;
+    for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
+      const char* const name = element.Attribute("name");
+      if (name == nullptr || *name == '\0')
+        bad_input(at_line(urdf_.string(), element.GetLineNum()), std::string(kind) + " without a name", "a name of its own");
+      if (!names.insert(name).second) bad_input(where(element), "name is taken", "a name of its own");
+    });
   }
 
   void add_link(const tinyxml2::XMLElement& element) {
