@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh_name.hpp"
+
+#include <optional>
+
+#include "bad_input.hpp"
+
+namespace swivel::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_file(const fs::path& file) {
+  std::error_code error;
+  return fs::is_regular_file(file, error);
+}
+
+/// A package may be the folder itself or lie in it.
+std::optional<fs::path> find_in(const fs::path& folder, const std::string& package, const fs::path& rest, bool folder_is_package) {
+  if (is_file(folder / package / rest)) return folder / package / rest;
+  if (folder_is_package && is_file(folder / rest)) return folder / rest;
+  return std::nullopt;
+}
+
+fs::path resolve_package(const std::string& name, const std::string& path, const fs::path& urdf, const Packages& packages,
+                         const std::string& where) {
+  const auto slash = path.find('/');
+  const std::string package = path.substr(0, slash);
+  const std::string rest =
+      slash == std::string::npos
+          ? ""
+          : path.substr(path.find_first_not_of('/', slash) == std::string::npos ? path.size() : path.find_first_not_of('/', slash));
+  const std::string what = "mesh '" + name + "' not found";
+  if (package.empty() || rest.empty()) bad_input(where, "mesh name '" + name + "' is incomplete", "package://<package>/<file>");
+  if (const auto known = packages.find(package); known != packages.end()) {
+    if (const auto file = find_in(known->second, package, rest, true)) return *file;
+    bad_input(where, what + " in " + known->second.string() + ", given as package '" + package + "'",
+              "a folder for the package that contains " + rest);
+  }
+  const fs::path start = fs::absolute(urdf).lexically_normal().parent_path();
+  for (fs::path folder = start;; folder = folder.parent_path()) {
+    if (const auto file = find_in(folder, package, rest, folder.filename() == package)) return *file;
+    if (folder == folder.parent_path()) break;
+  }
+  bad_input(where, what + " walking up from " + start.string(),
+            "a file " + rest + " in a folder '" + package + "' at or above the URDF, or robot.packages");
+}
+
+}  // namespace
+
+fs::path resolve_mesh_name(const std::string& name, const fs::path& urdf, const Packages& packages, const std::string& where) {
+  constexpr std::string_view kPackage = "package://", kFile = "file://";
+  if (name.starts_with(kPackage)) return resolve_package(name, name.substr(kPackage.size()), urdf, packages, where);
+  std::string path = name;
+  if (name.starts_with(kFile))
+    path = name.substr(kFile.size());
+  else if (name.find("://") != std::string::npos)
+    bad_input(where, "unknown scheme in mesh name '" + name + "'", "package://, file://, or a file name");
+  const fs::path file = (urdf.parent_path() / path).lexically_normal();  // an absolute path stays as it is
+  if (!is_file(file))
+    bad_input(where, "mesh '" + name + "' not found (" + file.string() + ")", "an existing STL, OBJ, DAE or PLY file");
+  return file;
+}
+
+}  // namespace swivel::io

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "bad_input.hpp"
+#include "csv.hpp"
+#include "files.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
+  const CsvTable table = read_csv(csv, {"x", "y", "z", "qw", "qx", "qy", "qz"});
+  std::vector<Waypoint> waypoints;
+  waypoints.reserve(table.rows.size());
+  for (const CsvTable::Row& row : table.rows) {
+    const std::vector<double>& v = row.values;
+    Waypoint waypoint;
+    waypoint.position = {v[0], v[1], v[2]};
+    waypoint.orientation = Quaterniond(v[3], v[4], v[5], v[6]);
+    const double norm = waypoint.orientation.norm();
+    if (!(std::abs(norm - 1) <= 1e-3))
+      bad_input(row.where + ": qw,qx,qy,qz", "quaternion has length " + format_double(norm),
+                "a quaternion of length 1 within 1e-3");
+    waypoints.push_back(waypoint);
+  }
+  return waypoints;
+}
+
+}  // namespace swivel::io

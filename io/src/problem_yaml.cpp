@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "bad_input.hpp"
+#include "files.hpp"
+#include "srdf.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/io/io.hpp"
+#include "urdf.hpp"
+#include "yaml_value.hpp"
+
+namespace swivel::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::string> kPoseKeys{"xyz", "rpy", "quat"};
+const std::vector<std::string> kShapeKeys{"box", "cylinder", "sphere", "capsule", "mesh"};
+
+std::vector<std::string> keys(std::initializer_list<std::vector<std::string>> groups) {
+  std::vector<std::string> all;
+  for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+Vector3d vector3_or_zero(const YamlSection& section, const std::string& key, Range range) {
+  const auto value = section.find_filled(key);
+  return value ? value->vector3(range) : Vector3d::Zero();
+}
+
+/// rpy = Rz Ry Rx.
+Quaterniond from_rpy(const Vector3d& rpy) {
+  return Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
+         Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
+}
+
+/// As written: not zero, but not yet of unit length.
+Quaterniond orientation(const YamlSection& section) {
+  const auto rpy = section.find_filled("rpy"), quat = section.find_filled("quat");
+  if (rpy && quat) quat->fail("rpy and quat are both given", "one of rpy, quat");
+  if (rpy) return from_rpy(rpy->vector3(Range::kFinite));
+  if (!quat) return Quaterniond::Identity();
+  const std::vector<double> q = quat->numbers(4, Range::kFinite);
+  const Quaterniond result(q[0], q[1], q[2], q[3]);
+  if (!(result.norm() > 1e-9) || !std::isfinite(result.norm()))
+    quat->fail("quaternion has no direction", "[w, x, y, z] of length 1");
+  return result;
+}
+
+Pose pose(const YamlSection& section) {
+  Pose result = Pose::Identity();
+  result.translation() = vector3_or_zero(section, "xyz", Range::kFinite);
+  result.linear() = orientation(section).normalized().toRotationMatrix();
+  return result;
+}
+
+Waypoint waypoint(const YamlValue& value) {
+  const YamlSection section = value.section(kPoseKeys);
+  Waypoint result;
+  result.position = section.require("xyz", "a list of 3 numbers").vector3(Range::kFinite);
+  result.orientation = orientation(section);
+  const double norm = result.orientation.norm();
+  if (!(std::abs(norm - 1) <= 1e-3))
+    section.find("quat")->fail("quaternion has length " + format_double(norm), "a quaternion of length 1 within 1e-3");
+  return result;
+}
+
+template <class Round>
+Round round_shape(const YamlValue& value) {
+  const YamlSection section = value.section({"radius", "length"});
+  const double radius = section.require("radius", "a finite number > 0").number(Range::kPositive);
+  return {radius, section.require("length", "a finite number > 0").number(Range::kPositive)};
+}
+
+Sphere sphere(const YamlValue& value) {
+  if (!value.is_map()) return {value.number(Range::kPositive)};
+  return {value.section({"radius"}).require("radius", "a finite number > 0").number(Range::kPositive)};
+}
+
+/// Calls `read`; what it finds wrong in another file is reported with the key that named that file.
+template <class Read>
+auto with_key(const YamlValue& key, const Read& read) {
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw InputError(key.where() + ": " + error.what());
+  }
+}
+
+class ProblemReader {
+ public:
+  explicit ProblemReader(const fs::path& file)
+      : file_(file), root_(load_yaml(file).section({"robot", "path", "scene", "resolution", "limits", "start", "cost", "vary"})) {}
+
+  Problem read() {
+    problem_.source = file_.string();
+    read_robot(root_.require("robot", "a section with urdf, base_link, tip_link"));
+    read_scene();
+    read_path(root_.require("path", "a section with waypoints or file"));
+    if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
+    if (const auto value = root_.find_filled("limits")) read_limits(*value);
+    if (const auto value = root_.find_filled("start")) read_start(*value);
+    if (const auto value = root_.find_filled("cost")) read_cost(*value);
+    if (const auto value = root_.find_filled("vary")) read_vary(*value);
+    return std::move(problem_);
+  }
+
+ private:
+  [[nodiscard]] fs::path resolve(const YamlValue& name) const { return (file_.parent_path() / name.text()).lexically_normal(); }
+
+  std::string link_name(const YamlValue& value) const {
+    if (problem_.robot->find_link(value.text()) < 0)
+      value.fail("unknown link '" + value.text() + "'", "a link of " + problem_.robot->source);
+    return value.text();
+  }
+
+  [[nodiscard]] bool is_attached(const std::string& name) const {
+    return std::any_of(problem_.attached.begin(), problem_.attached.end(), [&](const auto& body) { return body.name == name; });
+  }
+  [[nodiscard]] bool is_object(const std::string& name) const {
+    return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const auto& object) { return object.name == name; });
+  }
+
+  void read_robot(const YamlValue& value) {
+    const YamlSection section = value.section({"urdf", "srdf", "packages", "base_link", "tip_link", "tool", "hold", "attached"});
+    const YamlValue urdf = section.require("urdf", "the name of a URDF file");
+    const auto srdf = section.find_filled("srdf");
+    const YamlValue base = section.require("base_link", "the name of a link"),
+                    tip = section.require("tip_link", "the name of a link");
+    const auto packages = read_packages(section);
+    const std::shared_ptr<RobotModel> robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages); });
+    if (srdf) with_key(*srdf, [&] { load_srdf(resolve(*srdf), *robot); });
+    problem_.robot = robot;
+    problem_.base_link = link_name(base);
+    problem_.tip_link = link_name(tip);
+    if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section(kPoseKeys));
+    if (const auto hold = section.find_filled("hold")) read_hold(*hold);
+    if (const auto attached = section.find_filled("attached"))
+      for (const YamlValue& item : attached->items()) read_attached(item);
+  }
+
+  [[nodiscard]] Packages read_packages(const YamlSection& section) const {
+    Packages packages;
+    const auto value = section.find_filled("packages");
+    if (!value) return packages;
+    for (const auto& [name, folder] : value->entries()) {
+      std::error_code error;
+      const fs::path path = resolve(folder);
+      if (!fs::is_directory(path, error)) folder.fail("no such folder: " + path.string(), "an existing folder");
+      packages[name] = path;
+    }
+    return packages;
+  }
+
+  void read_hold(const YamlValue& value) {
+    for (const auto& [joint, position] : value.entries()) {
+      if (problem_.robot->find_joint(joint) < 0)
+        position.fail("unknown joint '" + joint + "'", "a joint of " + problem_.robot->source);
+      problem_.hold[joint] = position.number(Range::kFinite);
+    }
+  }
+
+  void read_attached(const YamlValue& value) {
+    const YamlSection section = value.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"link"}}));
+    AttachedBody body;
+    const YamlValue name = section.require("name", "a name");
+    body.name = name.text();
+    if (problem_.robot->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
+    if (is_attached(body.name)) name.fail("'" + body.name + "' is attached twice", "a name of its own");
+    body.shape = shape(section);
+    body.pose = pose(section);
+    const auto link = section.find_filled("link");
+    body.link = link ? link_name(*link) : problem_.tip_link;
+    problem_.attached.push_back(std::move(body));
+  }
+
+  Shape shape(const YamlSection& section) {
+    std::vector<YamlValue> given;
+    std::string kind;
+    for (const std::string& key : kShapeKeys)
+      if (const auto value = section.find(key)) {
+        given.push_back(*value);
+        kind = key;
+      }
+    const std::string allowed = "exactly one of box, cylinder, sphere, capsule, mesh";
+    if (given.empty()) section.self().fail("has no shape", allowed);
+    if (given.size() > 1) given.back().fail("a second shape", allowed);
+    const YamlValue& value = given.front();
+    const auto scale = section.find_filled("scale");
+    if (scale && kind != "mesh") scale->fail("scale of a " + kind, "scale with mesh only");
+    if (kind == "box") return Box{value.vector3(Range::kPositive)};
+    if (kind == "cylinder") return round_shape<Cylinder>(value);
+    if (kind == "capsule") return round_shape<Capsule>(value);
+    if (kind == "sphere") return sphere(value);
+    const fs::path file = resolve(value);
+    const Vector3d factors = scale ? mesh_scale(*scale) : Vector3d::Ones();
+    return with_key(value, [&] { return load_mesh(file, factors, meshes_); });
+  }
+
+  static Vector3d mesh_scale(const YamlValue& value) {
+    const Vector3d factors = value.is_sequence() ? value.vector3(Range::kFinite) : Vector3d::Constant(value.number(Range::kFinite));
+    if ((factors.array() == 0).any()) value.fail("is zero", "a number or [x, y, z], none of them 0");
+    return factors;
+  }
+
+  void read_scene() {
+    const auto value = root_.find_filled("scene");
+    if (!value) return;
+    for (const YamlValue& item : value->items()) {
+      const YamlSection section = item.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"allow"}}));
+      const YamlValue name = section.require("name", "a name");
+      SceneObject object;
+      object.name = name.text();
+      if (object.name == problem_.base_link) name.fail("'" + object.name + "' is the base link", "a name of its own");
+      if (is_attached(object.name)) name.fail("'" + object.name + "' is an attached body", "a name of its own");
+      if (is_object(object.name)) name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
+      object.shape = shape(section);
+      object.pose = pose(section);
+      if (const auto allow = section.find_filled("allow"))
+        for (const YamlValue& body : allow->items()) object.allow.push_back(body_name(body));
+      problem_.scene.push_back(std::move(object));
+    }
+  }
+
+  std::string body_name(const YamlValue& value) const {
+    if (problem_.robot->find_link(value.text()) < 0 && !is_attached(value.text()))
+      value.fail("unknown body '" + value.text() + "'", "a link of the robot or the name of an attached body");
+    return value.text();
+  }
+
+  void read_path(const YamlValue& value) {
+    const YamlSection section = value.section({"frame", "waypoints", "file"});
+    problem_.path_frame = problem_.base_link;
+    if (const auto frame = section.find_filled("frame")) {
+      problem_.path_frame = frame->text();
+      if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
+        frame->fail("unknown frame '" + problem_.path_frame + "'", "'" + problem_.base_link + "' or the name of a scene object");
+    }
+    const auto waypoints = section.find_filled("waypoints"), file = section.find_filled("file");
+    const char* const allowed = "exactly one of waypoints, file";
+    if (waypoints && file) file->fail("waypoints and file are both given", allowed);
+    if (!waypoints && !file) value.fail("has neither waypoints nor file", allowed);
+    if (file) {
+      problem_.waypoints = with_key(*file, [&] { return load_path(resolve(*file)); });
+      return;
+    }
+    for (const YamlValue& item : waypoints->items()) problem_.waypoints.push_back(waypoint(item));
+    if (problem_.waypoints.size() < 2)
+      waypoints->fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
+  }
+
+  void read_resolution(const YamlValue& value) {
+    const YamlSection section = value.section({"ds", "dphi", "dalpha"});
+    Resolution& resolution = problem_.resolution;
+    set(section, "ds", Range::kPositive, resolution.ds);
+    set(section, "dphi", Range::kPositive, resolution.dphi);
+    set(section, "dalpha", Range::kPositive, resolution.dalpha);
+    if (resolution.dphi > kTwoPi) section.find("dphi")->fail("is more than a turn", "a finite number > 0, at most 2*pi");
+  }
+
+  void read_limits(const YamlValue& value) {
+    const YamlSection section =
+        value.section({"clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "step_error", "tool_path_error",
+                       "tool_angle_error", "tool_speed", "tool_turn_speed", "edges", "edge_clearance", "edge_tolerance"});
+    Limits& limits = problem_.limits;
+    set(section, "clearance", Range::kNonNegative, limits.clearance);
+    set(section, "manipulability", Range::kNonNegative, limits.manipulability);
+    set(section, "joint_margin", Range::kNonNegative, limits.joint_margin);
+    set(section, "joint_step", Range::kPositive, limits.joint_step);
+    set(section, "arm_slope", Range::kPositive, limits.arm_slope);
+    set(section, "step_error", Range::kPositive, limits.step_error);
+    set(section, "tool_path_error", Range::kPositive, limits.tool_path_error);
+    set(section, "tool_angle_error", Range::kPositive, limits.tool_angle_error);
+    set(section, "tool_speed", Range::kPositive, limits.tool_speed);
+    set(section, "tool_turn_speed", Range::kPositive, limits.tool_turn_speed);
+    set(section, "edge_clearance", Range::kNonNegative, limits.edge_clearance);
+    set(section, "edge_tolerance", Range::kPositive, limits.edge_tolerance);
+    if (const auto edges = section.find("edges"))
+      limits.edges = choice<EdgeMode>(*edges, {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
+  }
+
+  void read_start(const YamlValue& value) {
+    const YamlValue joints = value.section({"joints"}).require("joints", "a list of 7 numbers");
+    problem_.start = Config::Map(joints.numbers(kDof, Range::kFinite).data());
+  }
+
+  void read_cost(const YamlValue& value) {
+    const YamlSection section = value.section({"metric", "weights"});
+    if (const auto metric = section.find("metric"))
+      problem_.cost.metric =
+          choice<CostMetric>(*metric, {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
+    if (const auto weights = section.find("weights")) {
+      const std::vector<double> values = weights->numbers(kDof, Range::kNonNegative);
+      std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
+    }
+  }
+
+  void read_vary(const YamlValue& value) {
+    for (const YamlValue& item : value.items()) {
+      const YamlSection section = item.section({"object", "xyz", "rpy"});
+      const YamlValue object = section.require("object", "the name of a scene object");
+      if (!is_object(object.text())) object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
+      problem_.vary.push_back({object.text(), vector3_or_zero(section, "xyz", Range::kNonNegative),
+                               vector3_or_zero(section, "rpy", Range::kNonNegative)});
+    }
+  }
+
+  /// Keeps the default where the key is absent.
+  static void set(const YamlSection& section, const char* key, Range range, double& target) {
+    if (const auto value = section.find(key)) target = value->number(range);
+  }
+  /// The same; an explicit null means "no such limit".
+  static void set(const YamlSection& section, const char* key, Range range, std::optional<double>& target) {
+    if (const auto value = section.find(key)) target = value->is_null() ? std::nullopt : std::optional(value->number(range));
+  }
+
+  template <class Enum>
+  static Enum choice(const YamlValue& value, const std::vector<std::pair<std::string, Enum>>& choices) {
+    std::string allowed;
+    for (const auto& [name, result] : choices) {
+      if (value.text() == name) return result;
+      allowed += (allowed.empty() ? "" : ", ") + name;
+    }
+    value.fail("is '" + value.text() + "'", "one of " + allowed);
+  }
+
+  const fs::path& file_;
+  YamlSection root_;
+  Problem problem_;
+  MeshCache meshes_;
+};
+
+}  // namespace
+
+Problem load_problem(const fs::path& yaml) {
+  return ProblemReader(yaml).read();
+}
+
+}  // namespace swivel::io

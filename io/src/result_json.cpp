@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+using Json = nlohmann::ordered_json;  // keys in the order of the contract, for people who read the file
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json lattice_json(const LatticeInfo& lattice) {
+  return {{"layers", lattice.layers},
+          {"phi", lattice.phi},
+          {"branches", lattice.branches},
+          {"windings", lattice.windings},
+          {"window", lattice.window},
+          {"nodes", lattice.nodes},
+          {"merged_waypoints", lattice.merged_waypoints}};
+}
+
+Json counters_json(const Counters& counters) {
+  return {{"ik_nodes", counters.ik_nodes},
+          {"edges", counters.edges},
+          {"nodes_checked", counters.nodes_checked},
+          {"edges_checked", counters.edges_checked},
+          {"fcl_calls", counters.fcl_calls},
+          {"certified_free", counters.certified_free},
+          {"certified_colliding", counters.certified_colliding},
+          {"expansions", counters.expansions},
+          {"iterations", counters.iterations}};
+}
+
+Json time_json(const std::map<std::string, double>& time_ms) {
+  Json json = {{"load", 0.0}, {"prepare", 0.0}, {"plan", 0.0}, {"report", 0.0}};
+  Json stages = Json::object();
+  for (const auto& [name, value] : time_ms) (json.contains(name) ? json : stages)[name] = value;
+  json["stages"] = std::move(stages);
+  return json;
+}
+
+Json diagnosis_json(const Diagnosis& diagnosis) {
+  Json layers = Json::array();
+  for (const EmptyLayer& layer : diagnosis.empty_layers)
+    layers.push_back({{"layer", layer.layer},
+                      {"waypoint", layer.waypoint < 0 ? Json(nullptr) : Json(layer.waypoint)},
+                      {"s", layer.s},
+                      {"reason", layer.reason}});
+  return {{"reached_layer", or_null(diagnosis.reached_layer)},
+          {"reached_s", or_null(diagnosis.reached_s)},
+          {"reason", diagnosis.reason},
+          {"empty_layers", std::move(layers)},
+          {"removed", diagnosis.removed}};
+}
+
+Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
+  Json rows = Json::array();
+  for (const TrajectoryRow& row : trajectory)
+    rows.push_back(
+        {{"s", row.s}, {"phi", row.phi}, {"branch", row.branch}, {"joints", std::vector<double>(row.q.begin(), row.q.end())}});
+  return rows;
+}
+
+}  // namespace
+
+std::string to_json(const PlanResult& result) {
+  const bool solved = result.status == PlanStatus::kSolved;
+  // Numbers about a trajectory are null where there is none: a zero would read as a perfect one.
+  const auto if_solved = [&](double value) { return solved ? Json(value) : Json(nullptr); };
+  Json json;
+  json["status"] = to_string(result.status);
+  json["cost"] = if_solved(result.cost);
+  json["planner"] = result.planner;
+  json["threads"] = result.threads;
+  json["lattice"] = lattice_json(result.lattice);
+  json["counters"] = counters_json(result.counters);
+  json["time_ms"] = time_json(result.time_ms);
+  json["tool_path_error_mm"] = {{"mean", if_solved(result.tool_path_error_mm.mean)},
+                                {"max", if_solved(result.tool_path_error_mm.max)}};
+  json["min_clearance"] = or_null(result.min_clearance);
+  json["min_manipulability"] = if_solved(result.min_manipulability);
+  json["arm_angle"] = result.arm_angle;
+  json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
+  json["trajectory"] = trajectory_json(result.trajectory);
+  json["warnings"] = result.warnings;
+  // File and joint names need not be UTF-8: replace what is not, rather than fail.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace swivel::io

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "srdf.hpp"
+
+#include <set>
+#include <string>
+
+#include "bad_input.hpp"
+#include "xml.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+using Pair = std::pair<std::string, std::string>;
+
+std::string attribute(const tinyxml2::XMLElement& element, const char* name, const std::string& file) {
+  const char* const value = element.Attribute(name);
+  if (value == nullptr || *value == '\0')
+    bad_input(at_line(file, element.GetLineNum()), std::string("<") + element.Name() + "> without " + name,
+              "a link name in every " + std::string(name));
+  return value;
+}
+
+Pair ordered(std::string a, std::string b) {
+  return a < b ? Pair{std::move(a), std::move(b)} : Pair{std::move(b), std::move(a)};
+}
+
+}  // namespace
+
+void load_srdf(const std::filesystem::path& srdf, RobotModel& robot) {
+  const std::string file = srdf.string();
+  tinyxml2::XMLDocument document;
+  const tinyxml2::XMLElement& root = load_robot_xml(srdf, "SRDF", document);
+  const auto for_each = [&](const char* name, const auto& visit) {
+    for (auto* e = root.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) visit(*e);
+  };
+  const auto pair_of = [&](const tinyxml2::XMLElement& e) {
+    return ordered(attribute(e, "link1", file), attribute(e, "link2", file));
+  };
+  // As MoveIt reads them: defaults first, then pairs enabled again, then pairs disabled.
+  std::set<Pair> disabled;
+  for_each("disable_default_collisions", [&](const auto& e) {
+    const std::string link = attribute(e, "link", file);
+    for (const Link& other : robot.links)
+      if (other.name != link) disabled.insert(ordered(link, other.name));
+  });
+  for_each("enable_collisions", [&](const auto& e) { disabled.erase(pair_of(e)); });
+  for_each("disable_collisions", [&](const auto& e) { disabled.insert(pair_of(e)); });
+  robot.has_srdf = true;
+  robot.disabled_pairs.assign(disabled.begin(), disabled.end());
+}
+
+}  // namespace swivel::io

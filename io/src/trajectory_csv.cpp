@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bad_input.hpp"
+#include "csv.hpp"
+#include "files.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+std::vector<std::string> header_of(const std::array<std::string, kDof>& joint_names) {
+  std::vector<std::string> header{"s", "phi", "branch"};
+  header.insert(header.end(), joint_names.begin(), joint_names.end());
+  return header;
+}
+
+}  // namespace
+
+void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {
+  std::string text;
+  for (const std::string& name : header_of(result.joint_names)) text += (text.empty() ? "" : ",") + name;
+  text += '\n';
+  for (const TrajectoryRow& row : result.trajectory) {
+    text += format_double(row.s) + ',' + format_double(row.phi) + ',' + std::to_string(row.branch);
+    for (const double angle : row.q) text += ',' + format_double(angle);
+    text += '\n';
+  }
+  write_file(csv, text);
+}
+
+std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {
+  const CsvTable table = read_csv(csv, header_of(joint_names));
+  std::vector<TrajectoryRow> rows;
+  rows.reserve(table.rows.size());
+  for (const CsvTable::Row& line : table.rows) {
+    const double branch = line.values[2];
+    if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
+      bad_input(line.where + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
+    TrajectoryRow row;
+    row.s = line.values[0];
+    row.phi = line.values[1];
+    row.branch = static_cast<int>(branch);
+    row.q = Config::Map(line.values.data() + 3);
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace swivel::io

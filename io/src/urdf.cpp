@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "urdf.hpp"
+
+#include <console_bridge/console.h>
+#include <urdf_model/model.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <mutex>
+#include <set>
+#include <string_view>
+
+#include "bad_input.hpp"
+#include "srdf.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/io/io.hpp"
+#include "xml.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// Collects what urdfdom would print to stderr.
+class MessageCollector : public console_bridge::OutputHandler {
+ public:
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
+    text_ += (text_.empty() ? "" : "; ") + text;
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+urdf::ModelInterfaceSharedPtr parse_quietly(const std::string& xml, const std::string& file) {
+  static std::mutex one_at_a_time;  // console_bridge has one output handler for the whole process
+  const std::lock_guard lock(one_at_a_time);
+  MessageCollector messages;
+  console_bridge::useOutputHandler(&messages);
+  urdf::ModelInterfaceSharedPtr model;
+  std::string thrown;
+  try {
+    model = urdf::parseURDF(xml);
+  } catch (const std::exception& error) {
+    thrown = error.what();
+  }
+  console_bridge::restorePreviousOutputHandler();
+  // A complaint counts even where urdfdom goes on: it drops collision geometry that it cannot read.
+  if (!model || !messages.text().empty())
+    bad_input(file, "not a valid robot (" + (thrown.empty() ? messages.text() : thrown) + ")", "a URDF 1.0 robot, xacro expanded");
+  return model;
+}
+
+/// Removes children that are not in `kept`.
+void keep_children(tinyxml2::XMLElement& element, std::initializer_list<std::string_view> kept) {
+  for (tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr;) {
+    tinyxml2::XMLNode* const next = child->NextSibling();
+    const tinyxml2::XMLElement* const child_element = child->ToElement();
+    if (child_element == nullptr || std::find(kept.begin(), kept.end(), child_element->Name()) == kept.end())
+      element.DeleteChild(child);
+    child = next;
+  }
+}
+
+/// Calls `visit` for every child element of that name.
+template <class Visit>
+void for_each_child(tinyxml2::XMLElement& element, const char* name, const Visit& visit) {
+  for (auto* child = element.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
+}
+
+/// Leaves only what a planner reads: urdfdom rejects whole files for materials used twice or an odd inertia.
+void strip(tinyxml2::XMLElement& robot) {
+  keep_children(robot, {"link", "joint"});
+  for_each_child(robot, "link", [](tinyxml2::XMLElement& link) {
+    keep_children(link, {"collision"});
+    for_each_child(link, "collision", [](tinyxml2::XMLElement& collision) { keep_children(collision, {"origin", "geometry"}); });
+  });
+  for_each_child(robot, "joint", [](tinyxml2::XMLElement& joint) {
+    keep_children(joint, {"parent", "child", "origin", "axis", "limit", "mimic"});
+    for_each_child(joint, "limit", [](tinyxml2::XMLElement& limit) {
+      for (const char* name : {"effort", "velocity"})  // urdfdom insists on both; a planner can do without
+        if (limit.Attribute(name) == nullptr) limit.SetAttribute(name, "0");
+    });
+  });
+}
+
+Vector3d to_eigen(const urdf::Vector3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Pose to_eigen(const urdf::Pose& pose) {
+  Pose result = Pose::Identity();
+  result.translation() = to_eigen(pose.position);
+  const urdf::Rotation& r = pose.rotation;
+  result.linear() = Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
+  return result;
+}
+
+/// Turns urdfdom's model into ours, in the order of the file, and checks what urdfdom leaves unchecked.
+class ModelBuilder {
+ public:
+  ModelBuilder(const std::filesystem::path& urdf, const Packages& packages) : urdf_(urdf), packages_(packages) {}
+
+  std::shared_ptr<RobotModel> build() {
+    tinyxml2::XMLDocument document;
+    tinyxml2::XMLElement& robot = load_robot_xml(urdf_, "URDF", document);
+    strip(robot);
+    check_names(robot, "link");
+    check_names(robot, "joint");
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    document.Print(&printer);
+    parsed_ = parse_quietly(printer.CStr(), urdf_.string());
+    model_->name = parsed_->getName();
+    model_->source = urdf_.string();
+    for_each_child(robot, "link", [&](tinyxml2::XMLElement& element) { add_link(element); });
+    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_joint(element); });
+    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_mimic(element); });
+    model_->root_link = model_->find_link(parsed_->getRoot()->name);
+    check_tree();
+    return model_;
+  }
+
+ private:
+  [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const {
+    return at_line(urdf_.string(), element.GetLineNum()) + ": " + element.Name() + " '" + element.Attribute("name") + "'";
+  }
+
+  /// urdfdom drops a link without a name and goes on.
+  void check_names(tinyxml2::XMLElement& robot, const char* kind) const {
+    std::set<std::string> names;
+    for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
+      const char* const name = element.Attribute("name");
+      if (name == nullptr || *name == '\0')
+        bad_input(at_line(urdf_.string(), element.GetLineNum()), std::string(kind) + " without a name", "a name of its own");
+      if (!names.insert(name).second) bad_input(where(element), "name is taken", "a name of its own");
+    });
+  }
+
+  void add_link(const tinyxml2::XMLElement& element) {
+    Link link;
+    link.name = element.Attribute("name");
+    for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array)
+      link.collision.push_back({shape(*collision->geometry, where(element)), to_eigen(collision->origin)});
+    model_->links.push_back(std::move(link));
+  }
+
+  Shape shape(const urdf::Geometry& geometry, const std::string& at) {
+    const auto positive = [&](double length, const char* what) {
+      if (!(length > 0 && std::isfinite(length))) bad_input(at, std::string(what) + " is not positive", "a finite number > 0");
+      return length;
+    };
+    switch (geometry.type) {
+      case urdf::Geometry::SPHERE:
+        return Sphere{positive(static_cast<const urdf::Sphere&>(geometry).radius, "sphere radius")};
+      case urdf::Geometry::BOX: {
+        const Vector3d size = to_eigen(static_cast<const urdf::Box&>(geometry).dim);
+        for (const double length : size) positive(length, "box size");
+        return Box{size};
+      }
+      case urdf::Geometry::CYLINDER: {
+        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
+        return Cylinder{positive(cylinder.radius, "cylinder radius"), positive(cylinder.length, "cylinder length")};
+      }
+      case urdf::Geometry::MESH: {
+        const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
+        const std::filesystem::path file = resolve_mesh_name(mesh.filename, urdf_, packages_, at);
+        try {
+          return load_mesh(file, to_eigen(mesh.scale), meshes_);
+        } catch (const InputError& error) {
+          throw InputError(at + ": " + error.what());
+        }
+      }
+    }
+    bad_input(at, "unknown geometry", "box, sphere, cylinder or mesh");
+  }
+
+  void add_joint(const tinyxml2::XMLElement& element) {
+    const urdf::Joint& parsed = *parsed_->getJoint(element.Attribute("name"));
+    const std::string at = where(element);
+    Joint joint;
+    joint.name = parsed.name;
+    joint.type = type(parsed, at);
+    joint.parent_link = model_->find_link(parsed.parent_link_name);
+    joint.child_link = model_->find_link(parsed.child_link_name);
+    joint.origin = to_eigen(parsed.parent_to_joint_origin_transform);
+    if (joint.movable()) {
+      const double length = to_eigen(parsed.axis).norm();
+      if (!(length > 1e-9)) bad_input(at, "axis is zero", "an axis of positive length on a joint that moves");
+      joint.axis = to_eigen(parsed.axis) / length;
+      read_limits(parsed, at, joint);
+    }
+    Link& child = model_->links[static_cast<std::size_t>(joint.child_link)];
+    if (child.parent_joint >= 0)
+      bad_input(at,
+                "link '" + child.name + "' is already the child of joint '" +
+                    model_->joints[static_cast<std::size_t>(child.parent_joint)].name + "'",
+                "a tree: one parent joint a link");
+    child.parent_joint = static_cast<int>(model_->joints.size());
+    model_->joints.push_back(std::move(joint));
+  }
+
+  static Joint::Type type(const urdf::Joint& parsed, const std::string& at) {
+    switch (parsed.type) {
+      case urdf::Joint::FIXED:
+        return Joint::Type::kFixed;
+      case urdf::Joint::REVOLUTE:
+        return Joint::Type::kRevolute;
+      case urdf::Joint::CONTINUOUS:
+        return Joint::Type::kContinuous;
+      case urdf::Joint::PRISMATIC:
+        return Joint::Type::kPrismatic;
+      default:
+        bad_input(at,
+                  parsed.type == urdf::Joint::FLOATING ? "floating joint"
+                  : parsed.type == urdf::Joint::PLANAR ? "planar joint"
+                                                       : "unknown joint type",
+                  "fixed, revolute, continuous or prismatic");
+    }
+  }
+
+  static void read_limits(const urdf::Joint& parsed, const std::string& at, Joint& joint) {
+    if (!parsed.limits) {
+      if (joint.type != Joint::Type::kContinuous) bad_input(at, "no <limit>", "a <limit> with lower and upper");
+      return;
+    }
+    joint.velocity = parsed.limits->velocity;
+    if (!(joint.velocity >= 0)) bad_input(at, "limit velocity is negative", "a number >= 0");
+    if (joint.type == Joint::Type::kContinuous) return;
+    joint.lower = parsed.limits->lower;
+    joint.upper = parsed.limits->upper;
+    if (!(joint.lower <= joint.upper)) bad_input(at, "limit lower is above upper", "lower <= upper");
+  }
+
+  void add_mimic(const tinyxml2::XMLElement& element) {
+    const std::string name = element.Attribute("name");
+    const urdf::JointMimicSharedPtr& mimic = parsed_->getJoint(name)->mimic;
+    Joint& joint = model_->joints[static_cast<std::size_t>(model_->find_joint(name))];
+    if (!mimic || !joint.movable()) return;
+    const int leader = model_->find_joint(mimic->joint_name);
+    if (leader < 0) bad_input(where(element), "mimics unknown joint '" + mimic->joint_name + "'", "the name of another joint");
+    // Leaders come before or after in the file, so follow the chain as far as it is known.
+    for (int k = leader; k >= 0;) {
+      const Joint& next = model_->joints[static_cast<std::size_t>(k)];
+      if (&next == &joint) bad_input(where(element), "mimics itself", "the name of another joint");
+      k = next.mimic ? next.mimic->joint : -1;
+    }
+    joint.mimic = Joint::Mimic{leader, mimic->multiplier, mimic->offset};
+  }
+
+  /// urdfdom finds one root and no second parents here; what is left are loops that hang on nothing.
+  void check_tree() const {
+    for (const Link& link : model_->links) {
+      int at = model_->find_link(link.name);
+      for (std::size_t steps = 0; at != model_->root_link; ++steps) {
+        if (steps > model_->links.size())
+          bad_input(urdf_.string(), "link '" + link.name + "' lies on a loop of joints",
+                    "a tree: one root link that every link descends from");
+        at = model_->joints[static_cast<std::size_t>(model_->links[static_cast<std::size_t>(at)].parent_joint)].parent_link;
+      }
+    }
+  }
+
+  const std::filesystem::path& urdf_;
+  const Packages& packages_;
+  urdf::ModelInterfaceSharedPtr parsed_;
+  std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
+  MeshCache meshes_;
+};
+
+}  // namespace
+
+std::shared_ptr<RobotModel> load_urdf(const std::filesystem::path& urdf, const Packages& packages) {
+  return ModelBuilder(urdf, packages).build();
+}
+
+std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
+                                             const std::map<std::string, std::filesystem::path>& packages) {
+  const std::shared_ptr<RobotModel> robot = load_urdf(urdf, packages);
+  if (!srdf.empty()) load_srdf(srdf, *robot);
+  return robot;
+}
+
+}  // namespace swivel::io

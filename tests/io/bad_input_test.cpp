@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One row for every way to get a problem file wrong: InputError, one line, with file, key and what is allowed.
+#include "problem_support.hpp"
+
+namespace swivel::io::test {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* section;
+  std::string text;
+  std::vector<std::string> needles;
+};
+
+void PrintTo(const Case& c, std::ostream* stream) {
+  *stream << c.name;
+}
+
+class BadProblem : public testing::TestWithParam<Case> {};
+
+TEST_P(BadProblem, IsOneLineThatSaysWhatIsAllowed) {
+  const ProblemFolder folder;
+  const fs::path file = folder.write({{GetParam().section, GetParam().text}});
+  const std::string message = input_error([&] { (void)load_problem(file); });
+  expect_message(message, GetParam().needles);
+  expect_message(message, {file.string() + ":"});
+}
+
+std::string object(const std::string& text) {
+  return "[{name: a, " + text + "}]";
+}
+std::string waypoints(const std::string& second) {
+  return "{waypoints: [{xyz: [0, 0, 0]}, " + second + "]}";
+}
+
+const Case kCases[] = {
+    {"RobotMissing", "robot", "", {": robot", "missing"}},
+    {"RobotNotAMap", "robot", "arm.urdf", {"robot", "map"}},
+    {"RobotUnknownKey", "robot", robot_with("tip_lnk: x"), {"robot.tip_lnk", "'tip_link'"}},
+    {"UrdfMissing", "robot", "{base_link: base_link, tip_link: link_7}", {"robot.urdf", "missing"}},
+    {"UrdfAbsent", "robot", "{urdf: none.urdf, base_link: base_link, tip_link: link_7}", {"robot.urdf", "none.urdf"}},
+    {"BaseMissing", "robot", "{urdf: ../robots/arm.urdf, tip_link: link_7}", {"robot.base_link", "missing"}},
+    {"TipMissing", "robot", "{urdf: ../robots/arm.urdf, base_link: base_link}", {"robot.tip_link", "missing"}},
+    {"TipUnknown",
+     "robot",
+     "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: hand}",
+     {"robot.tip_link", "'hand'", "arm.urdf"}},
+    {"BaseUnknown", "robot", "{urdf: ../robots/arm.urdf, base_link: world, tip_link: link_7}", {"robot.base_link", "'world'"}},
+    {"SrdfAbsent", "robot", robot_with("srdf: none.srdf"), {"robot.srdf", "none.srdf"}},
+    {"PackageFolderAbsent", "robot", robot_with("packages: {p: nowhere}"), {"robot.packages.p", "nowhere"}},
+    {"PackagesNotAMap", "robot", robot_with("packages: [p]"), {"robot.packages", "map"}},
+    {"HoldUnknownJoint", "robot", robot_with("hold: {elbow: 0}"), {"robot.hold.elbow", "'elbow'"}},
+    {"HoldNotANumber", "robot", robot_with("hold: {finger_joint: open}"), {"robot.hold.finger_joint", "'open'", "finite"}},
+    {"ToolNaN", "robot", robot_with("tool: {xyz: [0, 0, .nan]}"), {"robot.tool.xyz[2]", "finite"}},
+    {"ToolTwoRotations", "robot", robot_with("tool: {rpy: [0, 0, 0], quat: [1, 0, 0, 0]}"), {"robot.tool.quat", "rpy"}},
+    {"AttachedLikeALink", "robot", robot_with("attached: [{name: link_3, sphere: 1}]"), {"robot.attached[0].name", "'link_3'"}},
+    {"AttachedTwice",
+     "robot",
+     robot_with("attached: [{name: t, sphere: 1}, {name: t, sphere: 1}]"),
+     {"robot.attached[1].name", "'t'"}},
+    {"AttachedUnknownLink",
+     "robot",
+     robot_with("attached: [{name: t, sphere: 1, link: hand}]"),
+     {"robot.attached[0].link", "'hand'"}},
+    {"AttachedNoName", "robot", robot_with("attached: [{sphere: 1}]"), {"robot.attached[0].name", "missing"}},
+    {"AttachedNotAList", "robot", robot_with("attached: {name: t}"), {"robot.attached", "list"}},
+    {"PathMissing", "path", "", {": path", "missing"}},
+    {"PathEmpty", "path", "{}", {"path", "exactly one of waypoints, file"}},
+    {"PathBoth", "path", "{file: weld.csv, waypoints: [{xyz: [0, 0, 0]}, {xyz: [1, 0, 0]}]}", {"path.file", "exactly one"}},
+    {"PathFrameUnknown", "path", "{frame: door, file: weld.csv}", {"path.frame", "'door'", "base_link"}},
+    {"PathFileAbsent", "path", "{file: none.csv}", {"path.file", "none.csv"}},
+    {"OneWaypoint", "path", "{waypoints: [{xyz: [0, 0, 0]}]}", {"path.waypoints", "two"}},
+    {"WaypointWithoutPosition", "path", waypoints("{rpy: [0, 0, 0]}"), {"path.waypoints[1].xyz", "missing"}},
+    {"WaypointShort", "path", waypoints("{xyz: [0, 0]}"), {"path.waypoints[1].xyz", "2 entries", "3 numbers"}},
+    {"WaypointZeroQuaternion", "path", waypoints("{xyz: [1, 0, 0], quat: [0, 0, 0, 0]}"), {"path.waypoints[1].quat"}},
+    {"WaypointLongQuaternion", "path", waypoints("{xyz: [1, 0, 0], quat: [1.1, 0, 0, 0]}"), {"path.waypoints[1].quat", "1e-3"}},
+    {"WaypointUnknownKey", "path", waypoints("{xyz: [1, 0, 0], pry: [0, 0, 0]}"), {"path.waypoints[1].pry", "'rpy'"}},
+    {"SceneNotAList", "scene", "{name: a}", {"scene", "list"}},
+    {"ObjectNoName", "scene", "[{sphere: 1}]", {"scene[0].name", "missing"}},
+    {"ObjectNoShape", "scene", "[{name: a}]", {"scene[0]", "exactly one of box, cylinder"}},
+    {"ObjectTwoShapes", "scene", object("sphere: 1, box: [1, 1, 1]"), {"scene[0].sphere", "second shape"}},
+    {"ObjectTwice", "scene", "[{name: a, sphere: 1}, {name: a, sphere: 1}]", {"scene[1].name", "'a'"}},
+    {"ObjectNamedLikeBase", "scene", "[{name: base_link, sphere: 1}]", {"scene[0].name", "base link"}},
+    {"ObjectUnknownKey", "scene", object("spere: 1"), {"scene[0].spere", "'sphere'"}},
+    {"BoxZero", "scene", object("box: [1, 0, 1]"), {"scene[0].box[1]", "> 0"}},
+    {"BoxNumber", "scene", object("box: 1"), {"scene[0].box", "list of 3"}},
+    {"SphereNegative", "scene", object("sphere: -1"), {"scene[0].sphere", "> 0"}},
+    {"SphereInfinite", "scene", object("sphere: {radius: .inf}"), {"scene[0].sphere.radius", "finite"}},
+    {"CylinderNoLength", "scene", object("cylinder: {radius: 1}"), {"scene[0].cylinder.length", "missing"}},
+    {"CapsuleNumber", "scene", object("capsule: 1"), {"scene[0].capsule", "map"}},
+    {"CapsuleUnknownKey", "scene", object("capsule: {radius: 1, lenght: 1}"), {"scene[0].capsule.lenght", "'length'"}},
+    {"MeshAbsent", "scene", object("mesh: none.stl"), {"scene[0].mesh", "none.stl"}},
+    {"MeshScaleZero", "scene", object("mesh: box.stl, scale: 0"), {"scene[0].scale", "zero"}},
+    {"ScaleWithoutMesh", "scene", object("sphere: 1, scale: 2"), {"scene[0].scale", "mesh"}},
+    {"ObjectQuaternionZero", "scene", object("sphere: 1, quat: [0, 0, 0, 0]"), {"scene[0].quat"}},
+    {"ObjectQuaternionShort", "scene", object("sphere: 1, quat: [1, 0, 0]"), {"scene[0].quat", "4 numbers"}},
+    {"AllowUnknown", "scene", object("sphere: 1, allow: [hand]"), {"scene[0].allow[0]", "'hand'"}},
+    {"AllowNotAList", "scene", object("sphere: 1, allow: link_7"), {"scene[0].allow", "list"}},
+    {"ResolutionZero", "resolution", "{ds: 0}", {"resolution.ds", "> 0"}},
+    {"ResolutionNegative", "resolution", "{dalpha: -0.1}", {"resolution.dalpha", "> 0"}},
+    {"ResolutionNull", "resolution", "{ds: null}", {"resolution.ds", "null", "> 0"}},
+    {"ResolutionOverATurn", "resolution", "{dphi: 6.3}", {"resolution.dphi", "2*pi"}},
+    {"ResolutionWord", "resolution", "{dphi: fine}", {"resolution.dphi", "'fine'"}},
+    {"LimitsUnknownKey", "limits", "{clearence: 0.1}", {"limits.clearence", "'clearance'"}},
+    {"LimitsNegative", "limits", "{clearance: -0.001}", {"limits.clearance", ">= 0"}},
+    {"LimitsNaN", "limits", "{manipulability: .nan}", {"limits.manipulability", "finite"}},
+    {"LimitsNull", "limits", "{joint_margin: null}", {"limits.joint_margin", ">= 0"}},
+    {"JointStepZero", "limits", "{joint_step: 0}", {"limits.joint_step", "> 0"}},
+    {"ArmSlopeZero", "limits", "{arm_slope: 0}", {"limits.arm_slope", "> 0"}},
+    {"EdgeToleranceZero", "limits", "{edge_tolerance: 0}", {"limits.edge_tolerance", "> 0"}},
+    {"EdgeClearanceNegative", "limits", "{edge_clearance: -1}", {"limits.edge_clearance", ">= 0"}},
+    {"StepErrorZero", "limits", "{step_error: 0}", {"limits.step_error", "> 0"}},
+    {"ToolPathErrorZero", "limits", "{tool_path_error: 0}", {"limits.tool_path_error", "> 0"}},
+    {"ToolSpeedNegative", "limits", "{tool_speed: -1}", {"limits.tool_speed", "> 0"}},
+    {"EdgesUnknown", "limits", "{edges: corners}", {"limits.edges", "'corners'", "continuous, nodes"}},
+    {"LimitTwice", "limits", "{joint_step: 1, joint_step: 2}", {"limits.joint_step", "twice"}},
+    {"StartShort", "start", "{joints: [1, 2, 3]}", {"start.joints", "3 entries", "7 numbers"}},
+    {"StartWord", "start", "{joints: [1, 2, 3, x, 5, 6, 7]}", {"start.joints[3]", "'x'"}},
+    {"StartEmpty", "start", "{}", {"start.joints", "missing"}},
+    {"MetricUnknown", "cost", "{metric: l1}", {"cost.metric", "'l1'", "l2, max, time"}},
+    {"WeightsShort", "cost", "{weights: [1]}", {"cost.weights", "7 numbers"}},
+    {"WeightNegative", "cost", "{weights: [1, 1, 1, 1, 1, 1, -1]}", {"cost.weights[6]", ">= 0"}},
+    {"WeightInfinite", "cost", "{weights: [1, 1, 1, 1, 1, 1, .inf]}", {"cost.weights[6]", "finite"}},
+    {"VaryUnknownObject", "vary", "[{object: door}]", {"vary[0].object", "'door'"}},
+    {"VaryNoObject", "vary", "[{xyz: [1, 1, 1]}]", {"vary[0].object", "missing"}},
+    {"TopLevelUnknownKey", "limit", "{}", {": limit", "'limits'"}},
+    {"NotYaml", "scene", "[{", {}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Io, BadProblem, testing::ValuesIn(kCases), [](const auto& test) { return std::string(test.param.name); });
+
+TEST(BadProblemFile, NegativeHalfWidth) {
+  const ProblemFolder folder;
+  const fs::path file = folder.write({{"scene", object("sphere: 1")}, {"vary", "[{object: a, rpy: [0, -1, 0]}]"}});
+  expect_message(input_error([&] { (void)load_problem(file); }), {"vary[0].rpy[1]", ">= 0"});
+}
+
+TEST(BadProblemFile, ObjectNamedLikeAnAttachedBody) {
+  const ProblemFolder folder;
+  const fs::path file = folder.write({{"robot", robot_with("attached: [{name: a, sphere: 1}]")}, {"scene", object("sphere: 1")}});
+  expect_message(input_error([&] { (void)load_problem(file); }), {"scene[0].name", "'a'", "attached"});
+}
+
+TEST(BadProblemFile, LineNumbers) {
+  const ProblemFolder folder;
+  const std::string head =
+      "robot:\n  urdf: ../robots/arm.urdf\n  base_link: base_link\n  tip_link: link_7\npath:\n  file: weld.csv\n";
+  const auto message = [&](const std::string& text) {
+    const fs::path file = folder.folder().write("problems/problem.yaml", head + text);
+    return input_error([&] { (void)load_problem(file); });
+  };
+  expect_message(message("limits:\n  clearance: 0\n  joint_stp: 1\n"), {"problem.yaml:9: limits.joint_stp"});
+  expect_message(message("scene:\n  - name: a\n    sphere: 1\n  - name: b\n    box:\n      - 1\n      - x\n      - 1\n"),
+                 {"problem.yaml:13: scene[1].box[1]"});
+  expect_message(message("cost: {metric: l2,\n  weights: 3}\n"), {"problem.yaml:8: cost.weights"});
+  expect_message(message("scene: [\n"), {"problem.yaml:8"});
+}
+
+TEST(BadProblemFile, RowOfThePathFile) {
+  const ProblemFolder folder;
+  folder.folder().write("problems/weld.csv", "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,2,0,0,0\n");
+  const fs::path file = folder.write({});
+  expect_message(input_error([&] { (void)load_problem(file); }), {"problem.yaml:1: path.file", "weld.csv:3: data row 2"});
+}
+
+TEST(BadProblemFile, NotOneDocument) {
+  const ProblemFolder folder;
+  for (const char* text : {"", "# nothing\n", "a: 1\n---\nb: 2\n", "[1, 2]\n", "word\n", "? [a, b]\n: c\n", "&a [*a]\n",
+                           "\x01\x02\n", "robot: !!binary x\n"}) {
+    SCOPED_TRACE(text);
+    const fs::path file = folder.folder().write("problems/problem.yaml", text);
+    expect_message(input_error([&] { (void)load_problem(file); }), {file.string()});
+  }
+  expect_message(input_error([&] { (void)load_problem(folder.folder().path() / "none.yaml"); }), {"none.yaml"});
+  expect_message(input_error([&] { (void)load_problem(folder.folder().path()); }), {folder.folder().path().string(), "folder"});
+}
+
+TEST(BadProblemFile, DeeplyNested) {
+  const ProblemFolder folder;
+  const fs::path file = folder.folder().write("problems/problem.yaml", "robot: " + std::string(100000, '['));
+  expect_message(input_error([&] { (void)load_problem(file); }), {file.string()});
+}
+
+}  // namespace
+}  // namespace swivel::io::test

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "problem_support.hpp"
+
+namespace swivel::io::test {
+namespace {
+
+TEST(ProblemFile, Defaults) {
+  const ProblemFolder folder;
+  const fs::path file = folder.write({});
+  const Problem problem = load_problem(file);
+  const Problem fresh;
+  EXPECT_EQ(problem.source, file.string());
+  EXPECT_EQ(problem.robot->links.size(), 9u);
+  EXPECT_EQ(problem.base_link, "base_link");
+  EXPECT_EQ(problem.tip_link, "link_7");
+  EXPECT_TRUE(problem.tool.isApprox(Pose::Identity()));
+  EXPECT_EQ(problem.path_frame, "base_link");
+  EXPECT_EQ(problem.waypoints.size(), 2u);
+  EXPECT_EQ(problem.resolution.ds, fresh.resolution.ds);
+  EXPECT_EQ(problem.limits.tool_path_error, 0.001);
+  EXPECT_EQ(problem.limits.edges, EdgeMode::kContinuous);
+  EXPECT_FALSE(problem.limits.edge_clearance);
+  EXPECT_FALSE(problem.start);
+  EXPECT_EQ(problem.cost.metric, CostMetric::kL2);
+  EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() && problem.attached.empty());
+}
+
+TEST(ProblemFile, EveryKey) {
+  const ProblemFolder folder;
+  const Problem problem = folder.load({
+      {"robot", R"(
+  urdf: ../robots/arm.urdf
+  srdf: ../robots/arm.srdf
+  packages: {some_package: ..}
+  base_link: base_link
+  tip_link: link_7
+  tool: {xyz: [0, 0, 0.1], rpy: [0.1, 0.2, 0.3]}
+  hold: {finger_joint: 0.01}
+  attached:
+    - {name: grinder, mesh: box.stl, scale: 0.001, xyz: [0, 0, 1], link: finger}
+    - {name: grip, sphere: 0.05})"},
+      {"scene", R"(
+  - {name: table, box: [1, 1, 0.05], xyz: [0.6, 0, 0.4], rpy: [0, 0, 0]}
+  - {name: post, cylinder: {radius: 0.05, length: 0.8}}
+  - {name: ball, sphere: {radius: 0.2}}
+  - {name: rod, capsule: {radius: 0.05, length: 0.8}}
+  - {name: door, mesh: box.stl, scale: [1, -1, 1], quat: [2, 0, 0, 0], allow: [grinder, link_7]})"},
+      {"path",
+       "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, 1], quat: [0.9995, 0, 0, 0]}]}"},
+      {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3}"},
+      {"limits",
+       "{clearance: 0.01, manipulability: 0.02, joint_margin: 0.03, joint_step: 0.4, arm_slope: 5, step_error: 0.6, "
+       "tool_path_error: null, "
+       "tool_angle_error: 0.8, tool_speed: 0.9, tool_turn_speed: 1, edges: nodes, edge_clearance: 0, edge_tolerance: 0.001}"},
+      {"start", "{joints: [1, 2, 3, 4, 5, 6, 7]}"},
+      {"cost", "{metric: time, weights: [1, 2, 3, 4, 5, 6, 0]}"},
+      {"vary", "[{object: door, xyz: [0.1, 0.2, 0.3]}, {object: ball, rpy: [0, 0, 1]}]"},
+  });
+  EXPECT_TRUE(problem.robot->has_srdf);
+  EXPECT_EQ(problem.tool.translation(), Vector3d(0, 0, 0.1));
+  const Matrix3d tool = (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitY()) *
+                         Eigen::AngleAxisd(0.1, Vector3d::UnitX()))
+                            .toRotationMatrix();
+  EXPECT_TRUE(problem.tool.linear().isApprox(tool, 1e-14));
+  EXPECT_EQ(problem.hold.at("finger_joint"), 0.01);
+  ASSERT_EQ(problem.attached.size(), 2u);
+  EXPECT_EQ(problem.attached[0].link, "finger");
+  EXPECT_NEAR(volume(*std::get<MeshPtr>(problem.attached[0].shape)), 6e-9, 1e-20);
+  EXPECT_EQ(problem.attached[1].link, "link_7");
+  EXPECT_EQ(std::get<Sphere>(problem.attached[1].shape).radius, 0.05);
+  ASSERT_EQ(problem.scene.size(), 5u);
+  EXPECT_EQ(std::get<Box>(problem.scene[0].shape).size, Vector3d(1, 1, 0.05));
+  EXPECT_EQ(problem.scene[0].pose.translation(), Vector3d(0.6, 0, 0.4));
+  EXPECT_EQ(std::get<Cylinder>(problem.scene[1].shape).length, 0.8);
+  EXPECT_EQ(std::get<Sphere>(problem.scene[2].shape).radius, 0.2);
+  EXPECT_EQ(std::get<Capsule>(problem.scene[3].shape).radius, 0.05);
+  EXPECT_DOUBLE_EQ(volume(*std::get<MeshPtr>(problem.scene[4].shape)), 6);
+  EXPECT_TRUE(problem.scene[4].pose.isApprox(Pose::Identity()));
+  EXPECT_EQ(problem.scene[4].allow, (std::vector<std::string>{"grinder", "link_7"}));
+  EXPECT_EQ(problem.path_frame, "door");
+  EXPECT_EQ(problem.waypoints[1].orientation.w(), 0.9995);
+  EXPECT_EQ(problem.resolution.dalpha, 0.3);
+  const Limits& limits = problem.limits;
+  EXPECT_EQ(limits.clearance, 0.01);
+  EXPECT_EQ(limits.joint_step, 0.4);
+  EXPECT_EQ(limits.arm_slope, 5);
+  EXPECT_EQ(limits.step_error, 0.6);
+  EXPECT_FALSE(limits.tool_path_error);
+  EXPECT_EQ(limits.tool_angle_error, 0.8);
+  EXPECT_EQ(limits.tool_turn_speed, 1);
+  EXPECT_EQ(limits.edges, EdgeMode::kNodes);
+  EXPECT_EQ(limits.edge_clearance, 0);
+  EXPECT_EQ(limits.edge_tolerance, 0.001);
+  ASSERT_TRUE(problem.start);
+  EXPECT_EQ((*problem.start)[6], 7);
+  EXPECT_EQ(problem.cost.metric, CostMetric::kTime);
+  EXPECT_EQ(problem.cost.weights[5], 6);
+  ASSERT_EQ(problem.vary.size(), 2u);
+  EXPECT_EQ(problem.vary[0].xyz, Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(problem.vary[1].rpy, Vector3d(0, 0, 1));
+}
+
+TEST(ProblemFile, SectionsWithEverythingCommentedOut) {
+  const ProblemFolder folder;
+  const Problem problem =
+      folder.load({{"limits", "# {}"}, {"scene", "null"}, {"resolution", "~"}, {"start", "null"}, {"vary", "[]"}, {"cost", "{}"}});
+  EXPECT_EQ(problem.limits.joint_step, 0.5);
+  EXPECT_FALSE(problem.start);
+}
+
+TEST(ProblemFile, NamesAreRelativeToTheFileWhereverItIsReadFrom) {
+  const ProblemFolder folder;
+  (void)folder.write({});
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.folder().path() / "problems");
+  EXPECT_NO_THROW((void)load_problem("problem.yaml"));
+  fs::current_path(before);
+}
+
+TEST(ProblemFile, OneMeshForManyObjects) {
+  const ProblemFolder folder;
+  const Problem problem = folder.load({{"scene", "[{name: a, mesh: box.stl}, {name: b, mesh: ./box.stl, scale: 1}]"}});
+  EXPECT_EQ(std::get<MeshPtr>(problem.scene[0].shape), std::get<MeshPtr>(problem.scene[1].shape));
+}
+
+}  // namespace
+}  // namespace swivel::io::test

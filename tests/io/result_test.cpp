@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "io_support.hpp"
+
+namespace swivel::io::test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> keys_of(const Json& json) {
+  std::vector<std::string> keys;
+  for (const auto& item : json.items()) keys.push_back(item.key());
+  return keys;
+}
+
+PlanResult solved() {
+  PlanResult result;
+  result.status = PlanStatus::kSolved;
+  result.cost = 1.0 / 3;
+  result.planner = "parallel";
+  result.threads = 4;
+  result.lattice = {101, 126, 8, 2, 2, 203616, 1};
+  result.counters = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  result.time_ms = {{"load", 1.5}, {"plan", 2.5}, {"search", 0.25}};
+  result.tool_path_error_mm = {0.1, 0.2};
+  result.min_clearance = 0.012;
+  result.min_manipulability = 0.05;
+  result.arm_angle = {0.1, -0.2};
+  TrajectoryRow row;
+  row.s = 0.1;
+  row.phi = kPi;
+  row.branch = 5;
+  row.q << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1e-17;
+  result.trajectory = {row, row};
+  result.warnings = {"open mesh"};
+  return result;
+}
+
+TEST(Result, KeysInOrder) {
+  const Json json = Json::parse(to_json(solved()));
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
+                                                     "tool_path_error_mm", "min_clearance", "min_manipulability", "arm_angle",
+                                                     "diagnosis", "trajectory", "warnings"}));
+  EXPECT_EQ(keys_of(json["lattice"]),
+            (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints"}));
+  EXPECT_EQ(keys_of(json["counters"]),
+            (std::vector<std::string>{"ik_nodes", "edges", "nodes_checked", "edges_checked", "fcl_calls", "certified_free",
+                                      "certified_colliding", "expansions", "iterations"}));
+  EXPECT_EQ(keys_of(json["time_ms"]), (std::vector<std::string>{"load", "prepare", "plan", "report", "stages"}));
+  EXPECT_EQ(keys_of(json["trajectory"][0]), (std::vector<std::string>{"s", "phi", "branch", "joints"}));
+}
+
+TEST(Result, SolvedRoundTrip) {
+  const PlanResult result = solved();
+  const Json json = Json::parse(to_json(result));
+  EXPECT_EQ(json["status"], "solved");
+  EXPECT_EQ(json["cost"].get<double>(), result.cost);
+  EXPECT_EQ(json["lattice"]["nodes"], 203616);
+  EXPECT_EQ(json["lattice"]["merged_waypoints"], 1);
+  EXPECT_EQ(json["counters"]["iterations"], 9);
+  EXPECT_EQ(json["time_ms"]["load"], 1.5);
+  EXPECT_EQ(json["time_ms"]["prepare"], 0.0);
+  EXPECT_EQ(json["time_ms"]["stages"], Json({{"search", 0.25}}));
+  EXPECT_EQ(json["tool_path_error_mm"]["max"], 0.2);
+  EXPECT_EQ(json["min_clearance"], 0.012);
+  EXPECT_TRUE(json["diagnosis"].is_null());
+  ASSERT_EQ(json["trajectory"].size(), 2u);
+  EXPECT_EQ(json["trajectory"][0]["phi"].get<double>(), kPi);
+  for (int k = 0; k < kDof; ++k) EXPECT_EQ(json["trajectory"][0]["joints"][k].get<double>(), result.trajectory[0].q[k]);
+  EXPECT_EQ(json["warnings"], Json({"open mesh"}));
+}
+
+TEST(Result, Infeasible) {
+  PlanResult result;
+  result.status = PlanStatus::kInfeasible;
+  result.diagnosis.reason = "joint j5";
+  result.diagnosis.reached_layer = 12;
+  result.diagnosis.reached_s = 0.34;
+  result.diagnosis.empty_layers = {{13, 4, 0.35, "no IK"}, {14, -1, 0.36, "link_3 - table"}};
+  result.diagnosis.removed = {{"no IK", 9}};
+  const Json json = Json::parse(to_json(result));
+  EXPECT_EQ(json["status"], "infeasible");
+  for (const char* key : {"cost", "min_clearance", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
+  EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
+  const Json& diagnosis = json["diagnosis"];
+  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "empty_layers", "removed"}));
+  EXPECT_EQ(diagnosis["reached_layer"], 12);
+  EXPECT_EQ(diagnosis["reached_s"], 0.34);
+  EXPECT_EQ(diagnosis["empty_layers"][0], Json({{"layer", 13}, {"waypoint", 4}, {"s", 0.35}, {"reason", "no IK"}}));
+  EXPECT_TRUE(diagnosis["empty_layers"][1]["waypoint"].is_null());
+  EXPECT_EQ(diagnosis["removed"]["no IK"], 9);
+  EXPECT_EQ(json["trajectory"], Json::array());
+}
+
+TEST(Result, EmptyFirstLayerAndTimeOut) {
+  PlanResult result;
+  EXPECT_TRUE(Json::parse(to_json(result))["diagnosis"]["reached_s"].is_null());
+  result.status = PlanStatus::kTimeout;
+  EXPECT_EQ(Json::parse(to_json(result))["status"], "timeout");
+  EXPECT_TRUE(Json::parse(to_json(result))["diagnosis"].is_null());
+}
+
+TEST(Result, NamesThatAreNotUtf8) {
+  PlanResult result = solved();
+  result.warnings = {"mesh \xff\xfe.stl \"quoted\"\n"};
+  EXPECT_TRUE(Json::accept(to_json(result)));
+}
+
+}  // namespace
+}  // namespace swivel::io::test

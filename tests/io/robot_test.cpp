@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io_support.hpp"
+
+namespace swivel::io::test {
+namespace {
+
+std::string robot(const std::string& body) {
+  return "<?xml version='1.0'?>\n<robot name='r'>\n" + body + "</robot>\n";
+}
+
+std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                  const std::string& more = "") {
+  return "<joint name='" + name + "' type='" + type + "'><parent link='" + parent + "'/><child link='" + child + "'/>" + more +
+         "</joint>\n";
+}
+
+std::string mesh_link(const std::string& name, const std::string& mesh) {
+  return "<link name='" + name + "'><collision><geometry><mesh filename='" + mesh + "'/></geometry></collision></link>\n";
+}
+
+const char* const kLimit = "<limit lower='-1' upper='2' velocity='3' effort='4'/>";
+
+TEST(Robot, LinksAndJointsInTheOrderOfTheFile) {
+  const TempFolder folder;
+  const fs::path file = folder.write(
+      "r.urdf",
+      robot("<link name='z'/><link name='b'/><link name='a'/><link name='c'/><link name='d'/>\n" +
+            joint("jd", "prismatic", "c", "d", std::string(kLimit) + "<mimic joint='jb' multiplier='-2' offset='0.5'/>") +
+            joint("jb", "revolute", "z", "b", std::string(kLimit) + "<axis xyz='0 0 -2'/><origin xyz='1 2 3' rpy='0 0 1.5'/>") +
+            joint("ja", "continuous", "b", "a") + joint("jc", "fixed", "a", "c", "<axis xyz='0 0 0'/>")));
+  const auto model = load_robot(file);
+  EXPECT_EQ(model->name, "r");
+  EXPECT_EQ(model->source, file.string());
+  ASSERT_EQ(model->links.size(), 5u);
+  ASSERT_EQ(model->joints.size(), 4u);
+  EXPECT_EQ(model->links[0].name, "z");
+  EXPECT_EQ(model->root_link, 0);
+  EXPECT_EQ(model->links[0].parent_joint, -1);
+  const Joint& d = model->joints[0];
+  EXPECT_EQ(d.type, Joint::Type::kPrismatic);
+  EXPECT_EQ(d.parent_link, model->find_link("c"));
+  EXPECT_EQ(model->links[static_cast<std::size_t>(d.child_link)].parent_joint, 0);
+  ASSERT_TRUE(d.mimic);
+  EXPECT_EQ(d.mimic->joint, 1);
+  EXPECT_EQ(d.mimic->multiplier, -2);
+  EXPECT_EQ(d.mimic->offset, 0.5);
+  EXPECT_EQ(d.axis, Vector3d::UnitX());
+  const Joint& b = model->joints[1];
+  EXPECT_EQ(b.axis, -Vector3d::UnitZ());
+  EXPECT_EQ(b.lower, -1);
+  EXPECT_EQ(b.upper, 2);
+  EXPECT_EQ(b.velocity, 3);
+  EXPECT_EQ(b.origin.translation(), Vector3d(1, 2, 3));
+  EXPECT_TRUE(b.origin.linear().isApprox(Eigen::AngleAxisd(1.5, Vector3d::UnitZ()).toRotationMatrix(), 1e-15));
+  EXPECT_EQ(model->joints[2].type, Joint::Type::kContinuous);
+  EXPECT_EQ(model->joints[2].axis, Vector3d::UnitX());
+  EXPECT_EQ(model->joints[2].velocity, 0);
+  EXPECT_EQ(model->joints[3].type, Joint::Type::kFixed);
+  EXPECT_FALSE(model->has_srdf);
+}
+
+TEST(Robot, RpyIsRzRyRx) {
+  const TempFolder folder;
+  const auto model = load_robot(folder.write(
+      "r.urdf", robot("<link name='a'/><link name='b'/>" + joint("j", "fixed", "a", "b", "<origin rpy='0.1 0.2 0.3'/>"))));
+  const Matrix3d expected = (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(0.1, Vector3d::UnitX()))
+                                .toRotationMatrix();
+  EXPECT_TRUE(model->joints[0].origin.linear().isApprox(expected, 1e-14));
+}
+
+TEST(Robot, SeveralCollisionsAndEveryPrimitive) {
+  const TempFolder folder;
+  folder.write("box.stl", box_stl());
+  const auto model = load_robot(
+      folder.write("r.urdf", robot("<link name='a'><visual><geometry><mesh filename='absent.dae'/></geometry></visual>"
+                                   "<collision><origin xyz='1 0 0'/><geometry><box size='1 2 3'/></geometry></collision>"
+                                   "<collision><geometry><sphere radius='0.5'/></geometry></collision>"
+                                   "<collision><geometry><cylinder radius='0.5' length='2'/></geometry></collision>"
+                                   "<collision><geometry><mesh filename='box.stl' scale='1 -1 1'/></geometry></collision></link>"
+                                   "<link name='b'><visual><geometry><sphere radius='1'/></geometry></visual></link>" +
+                                   joint("j", "fixed", "a", "b"))));
+  const auto& shapes = model->links[0].collision;
+  ASSERT_EQ(shapes.size(), 4u);
+  EXPECT_EQ(std::get<Box>(shapes[0].shape).size, Vector3d(1, 2, 3));
+  EXPECT_EQ(shapes[0].pose.translation(), Vector3d(1, 0, 0));
+  EXPECT_EQ(std::get<Sphere>(shapes[1].shape).radius, 0.5);
+  EXPECT_EQ(std::get<Cylinder>(shapes[2].shape).length, 2);
+  EXPECT_DOUBLE_EQ(volume(*std::get<MeshPtr>(shapes[3].shape)), 6);
+  EXPECT_TRUE(model->links[1].collision.empty());
+}
+
+TEST(Robot, WhatAPlannerDoesNotReadIsIgnored) {
+  const TempFolder folder;
+  const auto model = load_robot(folder.write(
+      "r.urdf",
+      "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'>\n"
+      "<!-- twice the same material, no colour, an inertia without mass, a left-over macro -->\n"
+      "<material name='green'><color rgba='0 1 0 1'/></material><material name='green'><color rgba='0 2 0 1'/></material>"
+      "<material name='none'/><xacro:arm/><gazebo reference='a'/><transmission name='t'><type>x</type></transmission>"
+      "<link name='a'><inertial/><collision><origin ryp='0 0 0'/><geometry><sphere radius='1'/></geometry>"
+      "<material name='red'/></collision></link><link name='b'/>"
+      "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><dynamics damping='x'/><safety_controller/>"
+      "<calibration rising='x'/><limit lower='0' upper='1'/></joint></robot>"));
+  EXPECT_EQ(model->links[0].collision.size(), 1u);
+  EXPECT_EQ(model->joints[0].velocity, 0);
+  EXPECT_EQ(model->joints[0].upper, 1);
+}
+
+TEST(Robot, NothingIsPrinted) {
+  const TempFolder folder;
+  const fs::path file = folder.write("r.urdf", robot("<link name='a'/><link name='b'/>"));
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  expect_message(input_error([&] { (void)load_robot(file); }), {"r.urdf"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+}
+
+TEST(Robot, PackagesAreFoundByWalkingUp) {
+  const TempFolder folder;
+  folder.write("ws/pkg/meshes/box.stl", box_stl());
+  folder.write("ws/other_pkg/box.stl", box_stl());
+  const std::string text = robot(mesh_link("a", "package://pkg/meshes/box.stl"));
+  EXPECT_EQ(load_robot(folder.write("ws/pkg/urdf/deep/r.urdf", text))->links.size(), 1u);  // the package holds the URDF
+  EXPECT_EQ(load_robot(folder.write("ws/third/urdf/r.urdf", text))->links.size(), 1u);     // it lies beside
+  EXPECT_EQ(load_robot(folder.write("ws/r.urdf", text))->links.size(), 1u);                // or below
+  EXPECT_EQ(load_robot(folder.write("ws/pkg/r2.urdf", robot(mesh_link("a", "package://other_pkg/box.stl"))))->links.size(), 1u);
+}
+
+TEST(Robot, PackagesFromTheMapGoFirst) {
+  const TempFolder folder;
+  folder.write("pkg/box.stl", box_stl());
+  folder.write("elsewhere/v2/box.stl", box_stl(7, 7, 7));
+  folder.write("shelf/pkg/box.stl", box_stl(9, 9, 9));
+  const fs::path urdf = folder.write("r.urdf", robot(mesh_link("a", "package://pkg/box.stl")));
+  const auto size = [&](const std::map<std::string, fs::path>& packages) {
+    return std::cbrt(volume(*std::get<MeshPtr>(load_robot(urdf, {}, packages)->links[0].collision[0].shape)));
+  };
+  EXPECT_NEAR(size({{"pkg", folder.path() / "elsewhere/v2"}}), 7, 1e-6);  // the folder is the package
+  EXPECT_NEAR(size({{"pkg", folder.path() / "shelf"}}), 9, 1e-6);         // the folder holds the package
+  EXPECT_NEAR(size({{"unused", folder.path() / "shelf"}}), std::cbrt(6), 1e-6);
+  expect_message(input_error([&] {
+                   (void)size({{"pkg", folder.path() / "nowhere"}});
+                 }),
+                 {"r.urdf:3", "link 'a'", "package://pkg/box.stl"});
+}
+
+TEST(Robot, RelativeUrdfNameWalksUpToo) {
+  const TempFolder folder;
+  folder.write("pkg/box.stl", box_stl());
+  folder.write("pkg/urdf/r.urdf", robot(mesh_link("a", "package://pkg/box.stl")));
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path() / "pkg/urdf");
+  std::shared_ptr<const RobotModel> model;
+  EXPECT_NO_THROW(model = load_robot("r.urdf"));
+  fs::current_path(before);
+}
+
+TEST(Robot, FileNames) {
+  const TempFolder folder;
+  const fs::path box = folder.write("meshes/box.stl", box_stl());
+  for (const std::string& name :
+       {"file://" + box.string(), box.string(), std::string("../meshes/box.stl"), std::string("file://../meshes/box.stl")})
+    EXPECT_EQ(load_robot(folder.write("urdf/r.urdf", robot(mesh_link("a", name))))->links[0].collision.size(), 1u) << name;
+}
+
+TEST(Robot, OneMeshServesManyLinks) {
+  const TempFolder folder;
+  folder.write("box.stl", box_stl());
+  const auto model = load_robot(
+      folder.write("r.urdf", robot(mesh_link("a", "box.stl") + mesh_link("b", "box.stl") + joint("j", "fixed", "a", "b"))));
+  EXPECT_EQ(std::get<MeshPtr>(model->links[0].collision[0].shape), std::get<MeshPtr>(model->links[1].collision[0].shape));
+}
+
+TEST(Robot, Srdf) {
+  const TempFolder folder;
+  const fs::path urdf = folder.write("r.urdf", arm_urdf());
+  const auto model =
+      load_robot(urdf, folder.write("r.srdf", robot("<group name='g'><joint name='x'/></group>\n"
+                                                    "<disable_collisions link1='link_2' link2='link_1' reason='Adjacent'/>"
+                                                    "<disable_collisions link1='link_1' link2='link_2'/>"
+                                                    "<disable_collisions link1='absent' link2='link_1'/>")));
+  EXPECT_TRUE(model->has_srdf);
+  const std::vector<std::pair<std::string, std::string>> expected{{"absent", "link_1"}, {"link_1", "link_2"}};
+  EXPECT_EQ(model->disabled_pairs, expected);
+}
+
+TEST(Robot, SrdfDefaults) {
+  const TempFolder folder;
+  const fs::path urdf = folder.write("r.urdf", robot("<link name='a'/><link name='b'/><link name='c'/>" +
+                                                     joint("j", "fixed", "a", "b") + joint("k", "fixed", "a", "c")));
+  const auto model = load_robot(
+      urdf, folder.write("r.srdf", robot("<disable_default_collisions link='a'/><enable_collisions link1='c' link2='a'/>")));
+  const std::vector<std::pair<std::string, std::string>> expected{{"a", "b"}};
+  EXPECT_EQ(model->disabled_pairs, expected);
+}
+
+TEST(Robot, BadUrdf) {
+  const TempFolder folder;
+  folder.write("box.stl", box_stl());
+  const std::string ab = "<link name='a'/>\n<link name='b'/>\n", abc = ab + "<link name='c'/>\n";
+  const auto shape = [](const std::string& geometry) {
+    return robot("<link name='a'><collision><geometry>" + geometry + "</geometry></collision></link>");
+  };
+  const struct {
+    const char* name;
+    std::string text;
+    std::vector<std::string> needles;
+  } cases[] = {
+      {"empty", "", {"not XML"}},
+      {"not XML", "<robot>\n<link></robot>", {"r.urdf:2", "not XML"}},
+      {"not a robot", "<sdf/>", {"r.urdf:1", "robot"}},
+      {"no links", robot(""), {}},
+      {"two roots", robot(ab), {"root"}},
+      {"no root", robot(ab + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a")), {"root"}},
+      {"link twice", robot("<link name='a'/>\n<link name='a'/>"), {"r.urdf:4", "'a'"}},
+      {"joint twice", robot(abc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")), {"'j'"}},
+      {"unnamed link", robot("<link/>"), {"r.urdf:3", "link without a name"}},
+      {"unnamed joint", robot(ab + "<joint type='fixed'><parent link='a'/><child link='b'/></joint>"), {}},
+      {"unknown parent", robot(ab + joint("j", "fixed", "x", "b")), {"x"}},
+      {"two parents",
+       robot(abc + joint("j", "fixed", "a", "b") + joint("k", "fixed", "a", "c") + joint("l", "fixed", "b", "c")),
+       {"r.urdf:8", "'l'", "'c'"}},
+      {"loop beside the root", robot(abc + joint("j", "fixed", "b", "c") + joint("k", "fixed", "c", "b")), {"loop"}},
+      {"no limit", robot(ab + joint("j", "revolute", "a", "b")), {"j"}},
+      {"no prismatic limit", robot(ab + joint("j", "prismatic", "a", "b")), {"j"}},
+      {"limits crossed",
+       robot(ab + joint("j", "revolute", "a", "b", "<limit lower='1' upper='-1'/>")),
+       {"r.urdf:5", "'j'", "lower"}},
+      {"limit not a number", robot(ab + joint("j", "revolute", "a", "b", "<limit lower='1x' upper='2'/>")), {"j"}},
+      {"limit NaN", robot(ab + joint("j", "revolute", "a", "b", "<limit lower='nan' upper='2'/>")), {"j"}},
+      {"velocity negative",
+       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='-1'/>")),
+       {"r.urdf:5", "'j'", "velocity"}},
+      {"zero axis",
+       robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 0 0'/>")),
+       {"r.urdf:5", "'j'", "axis"}},
+      {"short axis", robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 1'/>")), {"j"}},
+      {"floating", robot(ab + joint("j", "floating", "a", "b")), {"r.urdf:5", "'j'", "floating"}},
+      {"planar", robot(ab + joint("j", "planar", "a", "b")), {"r.urdf:5", "'j'", "planar"}},
+      {"unknown type", robot(ab + joint("j", "hinge", "a", "b")), {"j", "hinge"}},
+      {"mimic of nothing", robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='x'/>")), {"r.urdf:5", "'j'", "'x'"}},
+      {"mimic of itself", robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='j'/>")), {"r.urdf:5", "'j'", "itself"}},
+      {"mimic in a circle",
+       robot(abc + joint("j", "continuous", "a", "b", "<mimic joint='k'/>") +
+             joint("k", "continuous", "b", "c", "<mimic joint='j'/>")),
+       {"'k'", "itself"}},
+      {"no geometry", shape(""), {"a"}},
+      {"unknown geometry", shape("<torus/>"), {"a", "torus"}},
+      {"sphere without radius", shape("<sphere/>"), {"a"}},
+      {"negative radius", shape("<sphere radius='-1'/>"), {"r.urdf:3", "'a'", "radius"}},
+      {"zero box", shape("<box size='1 0 1'/>"), {"r.urdf:3", "'a'", "box size"}},
+      {"zero cylinder", shape("<cylinder radius='1' length='0'/>"), {"r.urdf:3", "'a'", "length"}},
+      {"origin not a number",
+       robot("<link name='a'><collision><origin xyz='0 0 x'/><geometry><sphere radius='1'/></geometry></collision></link>"),
+       {"a"}},
+      {"xacro not expanded", shape("<sphere radius='${r}'/>"), {"a", "xacro"}},
+      {"mesh absent", shape("<mesh filename='absent.stl'/>"), {"r.urdf:3", "'a'", "absent.stl"}},
+      {"mesh without name", shape("<mesh/>"), {"a"}},
+      {"package absent", shape("<mesh filename='package://nowhere/box.stl'/>"), {"r.urdf:3", "'a'", "nowhere"}},
+      {"package without file", shape("<mesh filename='package://nowhere'/>"), {"r.urdf:3", "'a'", "package://nowhere"}},
+      {"scheme", shape("<mesh filename='https://x/box.stl'/>"), {"r.urdf:3", "'a'", "https"}},
+      {"mesh scale zero", shape("<mesh filename='box.stl' scale='1 0 1'/>"), {"r.urdf:3", "'a'", "scale"}},
+  };
+  for (const auto& [name, text, needles] : cases) {
+    SCOPED_TRACE(name);
+    const fs::path file = folder.write("r.urdf", text);
+    const std::string message = input_error([&] { (void)load_robot(file); });
+    expect_message(message, needles);
+    expect_message(message, {file.string()});
+  }
+  expect_message(input_error([&] { (void)load_robot(folder.path() / "absent.urdf"); }), {"absent.urdf"});
+  expect_message(input_error([&] { (void)load_robot(folder.path()); }), {folder.path().string()});
+}
+
+TEST(Robot, BadSrdf) {
+  const TempFolder folder;
+  const fs::path urdf = folder.write("r.urdf", arm_urdf());
+  const struct {
+    const char* text;
+    std::vector<std::string> needles;
+  } cases[] = {
+      {"<robot>\n<disable_collisions link1='a'/></robot>", {"r.srdf:2", "link2"}},
+      {"<robot>\n<disable_collisions link1='' link2='b'/></robot>", {"r.srdf:2", "link1"}},
+      {"<semantic/>", {"r.srdf:1", "robot"}},
+      {"<robot", {"r.srdf", "not XML"}},
+  };
+  for (const auto& [text, needles] : cases) {
+    const fs::path srdf = folder.write("r.srdf", text);
+    expect_message(input_error([&] { (void)load_robot(urdf, srdf); }), needles);
+  }
+  expect_message(input_error([&] { (void)load_robot(urdf, folder.path() / "absent.srdf"); }), {"absent.srdf"});
+}
+
+}  // namespace
+}  // namespace swivel::io::test
