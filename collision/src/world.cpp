@@ -118,6 +118,9 @@ const std::vector<std::string>& World::warnings() const {
   return impl_->warnings;
 }
 
+/// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
+static constexpr double kBoundSafety = 1e-6;
+
 struct World::Query::Impl {
   const World::Impl* world;
   PairTest test;
@@ -144,15 +147,13 @@ struct World::Query::Impl {
     placed_at = q;
   }
 
+  bool below(const BodyPair& p, double d) {
+    return !surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety) && test.below(placed(p.a), placed(p.b), d);
+  }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[static_cast<std::size_t>(i)]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
   [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[static_cast<std::size_t>(i)]; }
 };
-
-namespace {
-/// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
-constexpr double kBoundSafety = 1e-6;
-}  // namespace
 
 World::Query::Query(const World& world) : impl_(std::make_unique<Impl>(*world.impl_)) {}
 World::Query::~Query() = default;
@@ -161,12 +162,15 @@ World::Query& World::Query::operator=(Query&&) noexcept = default;
 
 std::optional<BodyPair> World::Query::first_below(const Config& q, double d) {
   impl_->move_to(q);
-  for (const BodyPair& p : impl_->world->pairs) {
-    if (surely_apart(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b), d + kBoundSafety))
-      continue;
-    if (impl_->test.below(impl_->placed(p.a), impl_->placed(p.b), d)) return p;
-  }
+  for (const BodyPair& p : impl_->world->pairs)
+    if (impl_->below(p, d)) return p;
   return std::nullopt;
+}
+
+bool World::Query::pair_below(const Config& q, const BodyPair& pair, double d) {
+  if (d < 0) return false;
+  impl_->move_to(q);
+  return impl_->below(pair, d);
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {

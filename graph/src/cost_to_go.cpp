@@ -4,14 +4,16 @@
 #include <algorithm>
 
 #include "kernels/relax.hpp"
+#include "swivel/graph/validity.hpp"
 
 namespace swivel {
 
 CostToGo::CostToGo(const Lattice& lattice)
     : lattice_(&lattice),
       g_(static_cast<std::size_t>(lattice.nodes()), kUnreachable),
-      verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown),
-      cache_(static_cast<std::size_t>(lattice.layers())) {
+      verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown) {
+  constexpr std::int64_t kMostKept = 1'000'000;  // nodes; about 25 bytes each
+  if (!lattice.arm().exact || lattice.nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice.layers()));
   // A branch flips only through the zero of a middle angle, so those three joints tell branches apart; joints with several images tell
   // windings apart. Continuous joints have no plain interval.
   const auto& limit = lattice.chain().limit;
@@ -24,47 +26,58 @@ CostToGo::CostToGo(const Lattice& lattice)
 CostToGo::~CostToGo() = default;
 
 CostToGo::Nodes CostToGo::nodes(int layer, int first, int count, LayerNodes& scratch) {
-  if (lattice_->arm().exact) {
+  if (cache_.empty()) {
     ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels();
     lattice_->solve(layer, first, count, scratch);
     return {&scratch, 0};
   }
-  const int window = lattice_->window(), n = lattice_->angles(), padded = (n - window % n) % n;
   auto& cached = cache_[static_cast<std::size_t>(layer)];
   if (!cached) {
-    cached = std::make_unique<LayerNodes>();
-    ik_nodes_ += static_cast<std::int64_t>(n + 2 * window) * lattice_->labels();
-    lattice_->solve(layer, padded, n + 2 * window, *cached);
+    cached = std::make_unique<Joints>();
+    solve(layer, *cached);
   }
-  const int shift = (first - padded + n) % n;
-  return {cached.get(), shift + count <= n + 2 * window ? shift : shift - n};
+  return {&cached->nodes, (first + lattice_->window()) % lattice_->angles()};
 }
 
-void CostToGo::load(int layer, Block& block) {
+void CostToGo::solve(int layer, Joints& joints) {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
-  block.layer = layer;
-  block.nodes = nodes(layer, (n - window % n) % n, length, block.own).nodes;
   const int padded_chunks = (length + kChunk - 1) / kChunk;
-  const std::size_t joints = separating_.size();
-  block.low.resize(static_cast<std::size_t>(labels * padded_chunks) * joints);
-  block.high.resize(block.low.size());
+  joints.layer = layer;
+  ik_nodes_ += static_cast<std::int64_t>(length) * labels;
+  lattice_->solve(layer, (n - window % n) % n, length, joints.nodes);
+  joints.low.resize(static_cast<std::size_t>(labels * padded_chunks) * separating_.size());
+  joints.high.resize(joints.low.size());
+  double* low = joints.low.data();
+  double* high = joints.high.data();
   for (int label = 0; label < labels; ++label)
-    for (std::size_t s = 0; s < joints; ++s) {
-      const double* q = block.nodes->q(label, separating_[s]);
-      double* low = &block.low[(static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks)];
-      double* high = &block.high[(static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks)];
-      for (int c = 0; c < padded_chunks; ++c) {
+    for (const int joint : separating_) {
+      const double* q = joints.nodes.q(label, joint);
+      for (int first = 0; first < length; first += kChunk) {
         double least = kUnreachable, most = -kUnreachable;
-        // An unreachable layer has one placeholder run; its nodes are all invalid, so any interval will do.
-        for (int k = c * kChunk; k < std::min(length, (c + 1) * kChunk); ++k) {
+        for (int k = first; k < std::min(length, first + kChunk); ++k) {
           least = q[k] < least ? q[k] : least;
           most = q[k] > most ? q[k] : most;
         }
-        low[c] = least;
-        high[c] = most;
+        *low++ = least;
+        *high++ = most;
       }
     }
-  if (static_cast<int>(g_.size()) > 0) load_values(&g_[index(layer, 0)], block);
+}
+
+void CostToGo::load(int layer, Block& block) {
+  block.layer = layer;
+  if (cache_.empty()) {
+    if (block.own.layer != layer) solve(layer, block.own);
+    block.joints = &block.own;
+  } else {
+    auto& cached = cache_[static_cast<std::size_t>(layer)];
+    if (!cached) {
+      cached = std::make_unique<Joints>();
+      solve(layer, *cached);
+    }
+    block.joints = cached.get();
+  }
+  load_values(&g_[index(layer, 0)], block);
 }
 
 void CostToGo::load_values(const double* row, Block& block) const {
@@ -91,12 +104,12 @@ bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, c
     const std::size_t row_to = (static_cast<std::size_t>(other) * joints + s) * static_cast<std::size_t>(padded_chunks);
     double low_from = kUnreachable, high_from = -kUnreachable, low_to = kUnreachable, high_to = -kUnreachable;
     for (int c = from_first; c <= from_last; ++c) {
-      low_from = std::min(low_from, from.low[row_from + static_cast<std::size_t>(c)]);
-      high_from = std::max(high_from, from.high[row_from + static_cast<std::size_t>(c)]);
+      low_from = std::min(low_from, from.joints->low[row_from + static_cast<std::size_t>(c)]);
+      high_from = std::max(high_from, from.joints->high[row_from + static_cast<std::size_t>(c)]);
     }
     for (int c = to_first; c <= to_last; ++c) {
-      low_to = std::min(low_to, to.low[row_to + static_cast<std::size_t>(c)]);
-      high_to = std::max(high_to, to.high[row_to + static_cast<std::size_t>(c)]);
+      low_to = std::min(low_to, to.joints->low[row_to + static_cast<std::size_t>(c)]);
+      high_to = std::max(high_to, to.joints->high[row_to + static_cast<std::size_t>(c)]);
     }
     if (std::max(low_from - high_to, low_to - high_from) > bound[separating_[s]]) return false;
   }
@@ -117,8 +130,8 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
     task.turn[j] = turns ? kTwoPi : 0;
     task.scale[j] = lattice_->cost_scale()[static_cast<std::size_t>(j)];
     task.bound[j] = bound[j];
-    task.from[j] = from.nodes->q(label, j) + window + first;
-    to_q[j] = to.nodes->q(other, j) + first;
+    task.from[j] = from.nodes().q(label, j) + window + first;
+    to_q[j] = to.nodes().q(other, j) + first;
   }
   task.best = best;
   const double* value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
@@ -157,7 +170,7 @@ void CostToGo::drop_invalid(const Block& block, double* row) const {
   const int n = lattice_->angles(), window = lattice_->window();
   const Verdict* verdict = &verdict_[index(block.layer, 0)];
   for (int label = 0; label < lattice_->labels(); ++label) {
-    const std::uint8_t* valid = block.nodes->valid(label) + window;
+    const std::uint8_t* valid = block.nodes().valid(label) + window;
     for (int j = 0; j < n; ++j) {
       const int slot = label * n + j;
       if (!valid[j] || verdict[slot] == Verdict::kRemoved) row[slot] = kUnreachable;
@@ -219,6 +232,18 @@ double CostToGo::best() const { return *std::min_element(g_.begin(), g_.begin() 
 void CostToGo::remove_node(int layer, int slot) {
   verdict_[index(layer, slot)] = Verdict::kRemoved;
   pending_[layer].nodes.push_back(slot);
+}
+
+void CostToGo::remove_alike(int layer, int slot, std::uint8_t depends) {
+  if (depends == kOnNodeAlone) return remove_node(layer, slot);
+  const int n = lattice_->angles(), branch = lattice_->branch_of(slot), angle = lattice_->angle_of(slot);
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    const int other = label / lattice_->windings();
+    if ((other ^ branch) & depends & (kShoulderBit | kWristBit | kElbowBit)) continue;
+    const int first = depends & kOnArmAngle ? angle : 0, last = depends & kOnArmAngle ? angle : n - 1;
+    for (int j = first; j <= last; ++j)
+      if (node_verdict(layer, label * n + j) != Verdict::kRemoved) remove_node(layer, label * n + j);
+  }
 }
 
 Verdict CostToGo::edge_verdict(int layer, int a, int b) const {

@@ -2,7 +2,7 @@
 #include "swivel/graph/path_first.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <deque>
 
 namespace swivel {
 
@@ -20,9 +20,9 @@ class FailFirst {
   void next_round() {
     for (double& score : score_) score *= 0.8;
   }
-  template <class T>
-  void order(std::vector<T>& questions) const {
-    std::stable_sort(questions.begin(), questions.end(), [&](const T& a, const T& b) {
+  template <class Question>
+  void order(std::vector<Question>& questions) const {
+    std::stable_sort(questions.begin(), questions.end(), [&](const Question& a, const Question& b) {
       return score_[static_cast<std::size_t>(a.layer)] > score_[static_cast<std::size_t>(b.layer)];
     });
   }
@@ -31,86 +31,130 @@ class FailFirst {
   std::vector<double> score_;
 };
 
-/// Asks batch by batch until one holds a failure; true when all are valid.
-template <class Question, class Ask, class Keep, class Remove>
-bool validate(std::vector<Question>& questions, int batch, const Validity& validity, const Ask& ask, const Keep& keep, const Remove& remove) {
-  std::vector<std::uint8_t> answers;
-  for (std::size_t first = 0; first < questions.size() && !validity.stopped(); first += static_cast<std::size_t>(batch)) {
-    const std::size_t count = std::min(static_cast<std::size_t>(batch), questions.size() - first);
-    answers.assign(count, 0);
-    ask(std::span<const Question>(questions.data() + first, count), std::span<std::uint8_t>(answers));
-    bool all = true;
-    for (std::size_t k = 0; k < count; ++k) {
-      const Question& question = questions[first + k];
-      if (answers[k])
-        keep(question);
-      else
-        remove(question);
-      all = all && answers[k];
+class Search {
+ public:
+  Search(CostToGo& togo, Validity& validity, const PathFirstOptions& options)
+      : togo_(togo), lattice_(togo.lattice()), validity_(validity), options_(options), fail_first_(lattice_.layers()) {}
+
+  SearchOutcome run(SearchCounters& counters) {
+    for (;;) {
+      if (validity_.stopped()) return {.stopped = true, .path = {}, .cost = 0};
+      const SlotPath path = best_path(togo_, counters.expansions);
+      if (path.empty()) return {};
+      ++counters.iterations;
+      fail_first_.next_round();
+      if (valid(path)) return {.stopped = false, .path = path, .cost = togo_.best()};
+      togo_.repair();
     }
-    if (!all) return false;
   }
-  return !validity.stopped();
-}
+
+ private:
+  /// Asks what is not known of the path, failures first, and removes what fails.
+  bool valid(const SlotPath& path) {
+    std::vector<NodeQuestion> nodes;
+    for (int i = 0; i < static_cast<int>(path.size()); ++i)
+      if (togo_.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown) nodes.push_back(question(i, path[static_cast<std::size_t>(i)]));
+    fail_first_.order(nodes);
+    for (std::size_t first = 0; first < nodes.size(); first += batch()) {
+      const std::vector<std::pair<int, int>> failed = ask(std::span(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
+      if (validity_.stopped()) return false;
+      for (const auto& [layer, slot] : failed) fail_first_.failed(layer);
+      if (!failed.empty()) {
+        grow(failed);
+        return false;
+      }
+    }
+    if (!validity_.asks_edges()) return true;
+    std::vector<EdgeQuestion> edges;
+    for (int i = 0; i + 1 < static_cast<int>(path.size()); ++i) {
+      const int a = path[static_cast<std::size_t>(i)], b = path[static_cast<std::size_t>(i) + 1];
+      if (togo_.edge_verdict(i, a, b) == Verdict::kUnknown) edges.push_back({i, a, b, question(i, a).q, question(i + 1, b).q});
+    }
+    fail_first_.order(edges);
+    std::vector<std::uint8_t> answers;
+    for (std::size_t first = 0; first < edges.size(); first += batch()) {
+      const auto asked = std::span<const EdgeQuestion>(edges).subspan(first, std::min(batch(), edges.size() - first));
+      answers.assign(asked.size(), 0);
+      validity_.edges(asked, answers);
+      if (validity_.stopped()) return false;
+      bool all = true;
+      for (std::size_t k = 0; k < asked.size(); ++k) {
+        const EdgeQuestion& x = asked[k];
+        if (answers[k]) {
+          togo_.keep_edge(x.layer, x.a, x.b);
+          continue;
+        }
+        togo_.remove_edge(x.layer, x.a, x.b);
+        fail_first_.failed(x.layer);
+        all = false;
+      }
+      if (!all) return false;
+    }
+    return true;
+  }
+
+  /// The region of failing nodes around those just found, breadth first along the path and the arm angle: an obstacle blocks many
+  /// neighbours, and each found now saves a round.
+  void grow(const std::vector<std::pair<int, int>>& failed) {
+    std::deque<std::pair<int, int>> suspects;
+    const auto suspect_neighbours = [&](int layer, int slot) {
+      const int n = lattice_.angles(), label = lattice_.label_of(slot), j = lattice_.angle_of(slot);
+      if (layer > 0) suspects.emplace_back(layer - 1, slot);
+      if (layer < togo_.goal_layer()) suspects.emplace_back(layer + 1, slot);
+      suspects.emplace_back(layer, label * n + (j + 1) % n);
+      suspects.emplace_back(layer, label * n + (j + n - 1) % n);
+    };
+    for (const auto& [layer, slot] : failed) suspect_neighbours(layer, slot);
+    std::vector<NodeQuestion> questions;
+    for (int left = options_.grow; left > 0 && !suspects.empty() && !validity_.stopped();) {
+      questions.clear();
+      while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+        const auto [layer, slot] = suspects.front();
+        suspects.pop_front();
+        const bool again = std::any_of(questions.begin(), questions.end(), [&](const NodeQuestion& x) { return x.layer == layer && x.slot == slot; });
+        if (!again && togo_.node_verdict(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable) questions.push_back(question(layer, slot));
+      }
+      left -= static_cast<int>(questions.size());
+      for (const auto& [layer, slot] : ask(questions)) suspect_neighbours(layer, slot);
+    }
+  }
+
+  /// Asks about nodes, keeps or removes them, returns those that failed.
+  std::vector<std::pair<int, int>> ask(std::span<const NodeQuestion> questions) {
+    std::vector<std::pair<int, int>> failed;
+    answers_.assign(questions.size(), {});
+    validity_.nodes(questions, answers_);
+    for (std::size_t k = 0; k < questions.size(); ++k) {
+      const NodeQuestion& x = questions[k];
+      if (answers_[k].valid) {
+        togo_.keep_node(x.layer, x.slot);
+      } else {
+        togo_.remove_alike(x.layer, x.slot, answers_[k].depends);
+        failed.emplace_back(x.layer, x.slot);
+      }
+    }
+    return failed;
+  }
+
+  NodeQuestion question(int layer, int slot) {
+    const CostToGo::Nodes nodes = togo_.nodes(layer, lattice_.angle_of(slot), 1, scratch_);
+    return {layer, slot, nodes.nodes->config(lattice_.label_of(slot), nodes.shift)};
+  }
+  [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
+
+  CostToGo& togo_;
+  const Lattice& lattice_;
+  Validity& validity_;
+  PathFirstOptions options_;
+  FailFirst fail_first_;
+  std::vector<NodeAnswer> answers_;
+  LayerNodes scratch_;
+};
 
 }  // namespace
 
-SearchOutcome path_first(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
-  const Lattice& lattice = togo.lattice();
-  FailFirst fail_first(lattice.layers());
-  SearchOutcome outcome;
-  LayerNodes scratch;
-  for (;;) {
-    if (validity.stopped()) {
-      outcome.stopped = true;
-      return outcome;
-    }
-    const SlotPath path = best_path(togo, counters.expansions);
-    if (path.empty()) return outcome;
-    ++counters.iterations;
-
-    std::vector<Config> q(path.size());
-    for (int i = 0; i < static_cast<int>(path.size()); ++i) {
-      const int slot = path[static_cast<std::size_t>(i)];
-      const CostToGo::Nodes nodes = togo.nodes(i, lattice.angle_of(slot), 1, scratch);
-      q[static_cast<std::size_t>(i)] = nodes.nodes->config(lattice.label_of(slot), nodes.shift);
-    }
-    std::vector<NodeQuestion> nodes;
-    for (int i = 0; i < static_cast<int>(path.size()); ++i)
-      if (togo.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown)
-        nodes.push_back({i, path[static_cast<std::size_t>(i)], q[static_cast<std::size_t>(i)]});
-    fail_first.next_round();
-    fail_first.order(nodes);
-    bool valid = validate(
-        nodes, options.batch, validity, [&](auto questions, auto answers) { validity.nodes(questions, answers); },
-        [&](const NodeQuestion& x) { togo.keep_node(x.layer, x.slot); },
-        [&](const NodeQuestion& x) {
-          togo.remove_node(x.layer, x.slot);
-          fail_first.failed(x.layer);
-        });
-    if (valid && validity.asks_edges()) {
-      std::vector<EdgeQuestion> edges;
-      for (int i = 0; i + 1 < static_cast<int>(path.size()); ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        if (togo.edge_verdict(i, path[k], path[k + 1]) == Verdict::kUnknown) edges.push_back({i, path[k], path[k + 1], q[k], q[k + 1]});
-      }
-      fail_first.order(edges);
-      valid = validate(
-          edges, options.batch, validity, [&](auto questions, auto answers) { validity.edges(questions, answers); },
-          [&](const EdgeQuestion& x) { togo.keep_edge(x.layer, x.a, x.b); },
-          [&](const EdgeQuestion& x) {
-            togo.remove_edge(x.layer, x.a, x.b);
-            fail_first.failed(x.layer);
-          });
-    }
-    if (validity.stopped()) continue;
-    if (valid) {
-      outcome.path = path;
-      outcome.cost = togo.best();
-      return outcome;
-    }
-    togo.repair();
-  }
+SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
+  return Search(cost_to_go, validity, options).run(counters);
 }
 
 std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {

@@ -8,7 +8,7 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
   LayerNodes nodes;
   std::vector<NodeQuestion> questions;
-  std::vector<std::uint8_t> answers;
+  std::vector<NodeAnswer> answers;
   for (int layer = 0; layer < lattice.layers() && !validity.stopped(); ++layer) {
     lattice.solve(layer, nodes);
     valid.ik_nodes += lattice.width();
@@ -16,10 +16,10 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
     for (int slot = 0; slot < lattice.width(); ++slot)
       if (nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)])
         questions.push_back({layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot))});
-    answers.assign(questions.size(), 0);
+    answers.assign(questions.size(), {});
     validity.nodes(questions, answers);
     for (std::size_t k = 0; k < questions.size(); ++k)
-      if (answers[k]) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
+      if (answers[k].valid) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
   }
   return valid;
 }

@@ -17,13 +17,33 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world);
 }
 
-void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<std::uint8_t> answers) {
+void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
   nodes_checked_ += static_cast<std::int64_t>(questions.size());
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const Config& q = questions[static_cast<std::size_t>(index)].q;
-    answers[static_cast<std::size_t>(index)] =
-        lattice_->manipulable(q) && !queries_[static_cast<std::size_t>(worker)].first_below(q, lattice_->limits().clearance);
+    World::Query& query = queries_[static_cast<std::size_t>(worker)];
+    NodeAnswer answer;
+    if (lattice_->manipulable(q)) {
+      const auto pair = query.first_below(q, lattice_->limits().clearance);
+      answer = {!pair, pair ? dependence(query, q, *pair) : std::uint8_t{kOnNodeAlone}};
+    }
+    answers[static_cast<std::size_t>(index)] = answer;
   });
+}
+
+/// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more than
+/// FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
+std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q, const BodyPair& pair) const {
+  constexpr double kBand = 0.05e-3;
+  if (!lattice_->arm().exact || !query.pair_below(q, pair, lattice_->limits().clearance - kBand)) return kOnNodeAlone;
+  std::uint8_t depends = 0;
+  for (const int body : {pair.a, pair.b}) {
+    constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
+    constexpr std::array<std::uint8_t, kDof + 1> kOfGroup{
+        0, kElbowPart | kOnShoulder, kElbowPart | kOnShoulder, kElbowPart, kElbowPart, kElbowPart | kOnWrist, kElbowPart | kOnWrist, 0};
+    if (body < static_cast<int>(world_->bodies().size())) depends |= kOfGroup[static_cast<std::size_t>(world_->bodies()[static_cast<std::size_t>(body)].group)];
+  }
+  return depends;
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

@@ -16,7 +16,7 @@ class CollisionValidity final : public Validity {
  public:
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop);
 
-  void nodes(std::span<const NodeQuestion> questions, std::span<std::uint8_t> answers) override;
+  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
   [[nodiscard]] bool stopped() const override;
@@ -26,6 +26,8 @@ class CollisionValidity final : public Validity {
   [[nodiscard]] std::int64_t fcl_calls() const;
 
  private:
+  [[nodiscard]] std::uint8_t dependence(World::Query& query, const Config& q, const BodyPair& pair) const;
+
   const Lattice* lattice_;
   const World* world_;
   EdgeRule rule_;

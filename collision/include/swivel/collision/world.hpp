@@ -66,6 +66,8 @@ class World {
 
     /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A function of (q, d) alone.
     [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d);
+    /// The same of one pair. False for d < 0.
+    [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, double d);
     /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.
     struct Clearance {
       double distance = 0;  ///< m; 0 when touching or one inside the other

@@ -18,7 +18,8 @@ enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
 /// The exact cost from every node to the goal layer over the lattice minus what has been removed from it: a backward layered dynamic
 /// program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the perfect
-/// heuristic of the lattice that remains. Memory: 9 bytes a node (polished arms: their joints too).
+/// heuristic of the lattice that remains. Memory: 9 bytes a node, and the joints of a layer where it is worth keeping them: lattices of
+/// up to a million nodes, and polished arms, whose joints are costly.
 class CostToGo {
  public:
   explicit CostToGo(const Lattice& lattice);
@@ -36,6 +37,8 @@ class CostToGo {
   [[nodiscard]] Verdict node_verdict(int layer, int slot) const { return verdict_[index(layer, slot)]; }
   void keep_node(int layer, int slot) { verdict_[index(layer, slot)] = Verdict::kValid; }
   void remove_node(int layer, int slot);
+  /// Removes every node of the layer that agrees with `slot` in what `depends` (see Dependence) names.
+  void remove_alike(int layer, int slot, std::uint8_t depends);
   [[nodiscard]] Verdict edge_verdict(int layer, int a, int b) const;
   void keep_edge(int layer, int a, int b);
   void remove_edge(int layer, int a, int b);
@@ -45,7 +48,7 @@ class CostToGo {
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
   [[nodiscard]] int deepest_reachable();
 
-  /// Joints of the nodes j = first ... first + count - 1 of a layer; entry k of the run is at nodes->q(label, joint)[shift + k].
+  /// Joints of the nodes j = first ... first + count - 1 of a layer, count <= 2 window + 1; entry k of the run is at nodes->q(label, joint)[shift + k].
   struct Nodes {
     const LayerNodes* nodes = nullptr;
     int shift = 0;
@@ -59,13 +62,19 @@ class CostToGo {
  private:
   static constexpr int kChunk = 16;  // angles; the unit of repair and of the label-pair test
 
-  /// One layer ready for relaxation: nodes and values run from -window to angles + window around the circle.
+  /// The joints of one layer, from -window to angles + window around the circle, and their ranges by chunk.
+  struct Joints {
+    int layer = -1;
+    LayerNodes nodes;
+    std::vector<double> low, high;  // [label][separating joint][padded chunk]
+  };
+  /// One layer ready for relaxation.
   struct Block {
     int layer = -1;
-    LayerNodes own;
-    const LayerNodes* nodes = nullptr;
-    std::vector<double> value;               // [label][padded angle]
-    std::vector<double> low, high;           // [label][separating joint][padded chunk]
+    Joints own;
+    const Joints* joints = nullptr;
+    std::vector<double> value;  // [label][padded angle]
+    [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
   };
   struct EdgeKey {
     std::int64_t node;
@@ -89,6 +98,7 @@ class CostToGo {
     return static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->width()) + static_cast<std::size_t>(slot);
   }
   [[nodiscard]] int chunks() const { return (lattice_->angles() + kChunk - 1) / kChunk; }
+  void solve(int layer, Joints& joints);
   void load(int layer, Block& block);
   void load_values(const double* row, Block& block) const;
   [[nodiscard]] bool may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const;
@@ -108,7 +118,7 @@ class CostToGo {
   std::map<int, std::vector<std::pair<int, int>>> removed_edges_;  // layer -> (a, b)
   std::map<int, Pending> pending_;
   std::vector<int> separating_;                                    // joints whose intervals tell labels apart
-  std::vector<std::unique_ptr<LayerNodes>> cache_;                 // polished arms only
+  std::vector<std::unique_ptr<Joints>> cache_;                     // by layer; empty where joints are not kept
   Block block_[2];
   std::int64_t ik_nodes_ = 0, edges_ = 0;
 };

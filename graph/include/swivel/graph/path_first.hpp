@@ -23,7 +23,8 @@ struct SearchOutcome {
 };
 
 struct PathFirstOptions {
-  int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
+  int batch = 1;   ///< questions asked at once; the answers, not their timing, decide what follows
+  int grow = 64;   ///< most questions about the neighbours of failed nodes before the next path is sought
 };
 
 struct SearchCounters {
@@ -31,7 +32,7 @@ struct SearchCounters {
 };
 
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures were
-/// found before, remove what fails, repair the cost-to-go, repeat. The first path found valid is the least-cost path, and the smallest
+/// found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid is the least-cost path, and the smallest
 /// in slot order among equals; when none is left, the removed cut proves that none exists.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters);
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "swivel/core/srs.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
@@ -17,13 +18,30 @@ struct EdgeQuestion {
   Config qa, qb;
 };
 
+/// What the pose of the bodies that fail depends on besides the layer. The last link and the tool depend on the layer alone; links 3 and
+/// 4 on arm angle and elbow sign; links 1 and 2 on the shoulder's sign too, 5 and 6 on the wrist's. So one failure removes every node
+/// of the layer that shares what it depends on. design.md 2.
+enum Dependence : std::uint8_t {
+  kOnShoulder = kShoulderBit,
+  kOnWrist = kWristBit,
+  kOnElbow = kElbowBit,
+  kOnArmAngle = 8,
+  kOnEverything = 15,  ///< this branch and arm angle, in all windings
+  kOnNodeAlone = 31,
+};
+struct NodeAnswer {
+  bool valid = false;
+  std::uint8_t depends = kOnNodeAlone;  ///< of a failure
+};
+
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once.
 /// Nodes: manipulability, clearance. Edges (both ends valid, joint steps allowed): tool-path error, clearance of the motion.
 class Validity {
  public:
   virtual ~Validity() = default;
-  /// answers[k] = 1 where questions[k] is valid. Spans of equal size.
-  virtual void nodes(std::span<const NodeQuestion> questions, std::span<std::uint8_t> answers) = 0;
+  /// Spans of equal size.
+  virtual void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) = 0;
+  /// answers[k] = 1 where questions[k] is valid.
   virtual void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) = 0;
   /// False when every edge is valid as it stands, so that none need be asked.
   [[nodiscard]] virtual bool asks_edges() const = 0;

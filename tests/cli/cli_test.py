@@ -1,0 +1,312 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line from outside: exit codes, files, messages, and trajectories verified by verify.py."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SWIVEL = os.environ["SWIVEL"]
+DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
+SHARED = pathlib.Path(os.environ["SWIVEL_SHARED"])
+VERIFY = pathlib.Path(__file__).with_name("verify.py")
+PROBLEMS = DATA / "problems"
+LINE = "x,y,z,qw,qx,qy,qz\n0.6,-0.1,0.9,0.7071067811865476,0,-0.7071067811865476,0\n0.6,0.4,0.9,0.7071067811865476,0,-0.7071067811865476,0\n"
+QUARTER_TURN = "-1.5707963267948966"
+
+
+def run(*arguments):
+    return subprocess.run([SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+class WithFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def plan(self, problem, *options):
+        out, result = self.folder / "t.csv", self.folder / "r.json"
+        done = run("plan", problem, "--out", out, "--json", result, *options)
+        return done, out, json.loads(result.read_text()) if result.exists() else None
+
+
+class Experiments(WithFolder):
+    def verified(self, problem, tip, path, *verify_options):
+        done, out, result = self.plan(PROBLEMS / problem)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(result["status"], "solved")
+        check = run("check", PROBLEMS / problem, out)
+        self.assertEqual(check.returncode, 0, check.stdout)
+        outside = subprocess.run([sys.executable, VERIFY, DATA / "robots/sda5f.urdf", "base_link", tip, path, out, "--cost", repr(result["cost"]), *verify_options],
+                                 capture_output=True, text=True)
+        self.assertEqual(outside.returncode, 0, outside.stdout + outside.stderr)
+        return result
+
+    def test_a_and_b(self):
+        line = self.folder / "line.csv"
+        line.write_text(LINE)
+        self.verified("experiment_a.yaml", "arm_left_link_7_t", line)
+        self.verified("experiment_b.yaml", "arm_left_link_7_t", line)
+
+    def test_c(self):
+        for problem in ("experiment_c.yaml", "experiment_c_20k.yaml"):
+            self.verified(problem, "arm_left_link_tool0", DATA / "paths/door_polish.csv", "--tool", "0", "0", "0.10", *self.door_frame(problem))
+
+    @staticmethod
+    def door_frame(problem):
+        text = next(line for line in (PROBLEMS / problem).read_text().splitlines() if "name: door" in line)
+        numbers = lambda key: text.split(key + ": [")[1].split("]")[0].replace(",", " ").split()
+        return ["--frame", *numbers("xyz"), *numbers("rpy")]
+
+    def test_a_from_the_jacobian_start_ends_part_way(self):
+        done, out, result = self.plan(PROBLEMS / "experiment_a_start.yaml")
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(result["status"], "infeasible")
+        self.assertIsNone(result["cost"])
+        self.assertFalse(out.exists())
+        self.assertAlmostEqual(result["diagnosis"]["reached_s"], 0.34, delta=0.011)
+        self.assertIn("no path at this resolution", done.stdout)
+
+    def test_four_planners_write_the_same_bytes(self):
+        for experiment in ("a", "b", "c"):
+            written = {}
+            for planner in ("eager", "eager_dp", "lazy", "parallel"):
+                done, out, result = self.plan(PROBLEMS / f"experiment_{experiment}.yaml", "--planner", planner, "--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
+                self.assertEqual(done.returncode, 0, done.stderr)
+                written[planner] = (out.read_bytes(), result["cost"])
+            self.assertEqual(len(set(written.values())), 1, experiment)
+
+
+class Files(WithFolder):
+    def test_an_old_trajectory_does_not_survive_a_failure(self):
+        out = self.folder / "t.csv"
+        out.write_text("old")
+        done, out, result = self.plan(PROBLEMS / "experiment_a_start.yaml", "--ds", "0.02", "--dphi", "0.2")
+        self.assertEqual(done.returncode, 1)
+        self.assertFalse(out.exists())
+        self.assertEqual(result["status"], "infeasible")
+
+    def test_time_out(self):
+        done, out, result = self.plan(PROBLEMS / "experiment_c.yaml", "--timeout", "1e-6")
+        self.assertEqual(done.returncode, 3)
+        self.assertEqual(result["status"], "timeout")
+        self.assertFalse(out.exists())
+
+    def test_json_on_standard_output_is_all_there_is(self):
+        done = run("plan", PROBLEMS / "experiment_a.yaml", "--json", "-", "--ds", "0.02", "--dphi", "0.2")
+        result = json.loads(done.stdout)
+        self.assertEqual(result["lattice"]["layers"], 26)
+        self.assertEqual(result["lattice"]["phi"], 32)
+        self.assertEqual(len(result["trajectory"]), 26)
+        self.assertEqual(len(result["arm_angle"]), 26)
+        for key in ("status", "cost", "planner", "threads", "lattice", "counters", "time_ms", "tool_path_error_mm", "min_clearance", "min_manipulability", "arm_angle", "diagnosis", "trajectory"):
+            self.assertIn(key, result)
+
+    def test_quiet(self):
+        done = run("plan", PROBLEMS / "experiment_a.yaml", "--quiet", "--ds", "0.02", "--dphi", "0.2")
+        self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
+
+    def test_check_sees_a_damaged_trajectory(self):
+        _, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", "--ds", "0.02", "--dphi", "0.2")
+        rows = list(csv.reader(out.open()))
+        for column, change, word in ((3, 1e-5, "from the path"), (3, 9.0, "outside its limits"), (0, 1e-3, "from the path")):
+            damaged = [list(row) for row in rows]
+            damaged[7][column] = repr(float(damaged[7][column]) + change)
+            with out.open("w", newline="") as file:
+                csv.writer(file).writerows(damaged)
+            check = run("check", PROBLEMS / "experiment_a.yaml", out)
+            self.assertEqual(check.returncode, 1)
+            self.assertIn(word, check.stdout)
+            self.assertIn("row 6", check.stdout)
+        with out.open("w", newline="") as file:  # the last row is missing
+            csv.writer(file).writerows(rows[:-1])
+        self.assertIn("before the path", run("check", PROBLEMS / "experiment_a.yaml", out).stdout)
+
+    def test_episodes_move_the_door_and_can_be_checked(self):
+        first = self.plan(PROBLEMS / "experiment_c.yaml", "--seed", "1", "--episode", "0", "--ds", "0.02", "--dphi", "0.2")[2]
+        again = self.plan(PROBLEMS / "experiment_c.yaml", "--seed", "1", "--episode", "0", "--ds", "0.02", "--dphi", "0.2")[2]
+        other = self.plan(PROBLEMS / "experiment_c.yaml", "--seed", "1", "--episode", "1", "--ds", "0.02", "--dphi", "0.2")[2]
+        self.assertEqual((first["status"], first["cost"]), (again["status"], again["cost"]))
+        self.assertNotEqual((first["status"], first["cost"]), (other["status"], other["cost"]))
+
+    def test_info(self):
+        done = run("info", DATA / "robots/sda5f.urdf", "--base", "base_link", "--tip", "arm_left_link_7_t")
+        self.assertEqual(done.returncode, 0)
+        for words in ("S-R-S, in-plane elbow offset", "exact", "0.195000 0.243000 0.900000", "59.99"[:4]):
+            self.assertIn(words, done.stdout)
+
+
+class BadInput(WithFolder):
+    BASE = """robot:
+  urdf: {data}/robots/sda5f.urdf
+  srdf: {data}/robots/sda5f.srdf
+  base_link: base_link
+  tip_link: arm_left_link_7_t
+path:
+  waypoints:
+    - {{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963267948966, 0]}}
+    - {{xyz: [0.6, 0.4, 0.9], rpy: [0, -1.5707963267948966, 0]}}
+scene:
+  - {{name: post, cylinder: {{radius: 0.05, length: 0.8}}, xyz: [1.5, 0, 0]}}
+resolution: {{ds: 0.02, dphi: 0.2}}
+limits: {{clearance: 0.005}}
+"""
+
+    # (old, new, words that the one line must have)
+    CASES = [
+        ("clearance: 0.005", "clearence: 0.005", ["clearence", "clearance"]),
+        ("sda5f.urdf", "nothing.urdf", ["nothing.urdf"]),
+        ("sda5f.srdf", "nothing.srdf", ["nothing.srdf"]),
+        ("resolution:", "resolution: [", ["problem.yaml"]),
+        ("xyz: [0.6, 0.4, 0.9]", "xyz: [0.6, .nan, 0.9]", ["xyz"]),
+        ("xyz: [0.6, 0.4, 0.9], rpy: [0, -1.5707963267948966, 0]", "xyz: [0.6, 0.4, 0.9], quat: [0, 0, 0, 0]", ["quat"]),
+        ("    - {{xyz: [0.6, 0.4, 0.9], rpy: [0, -1.5707963267948966, 0]}}\n", "", ["two"]),
+        ("ds: 0.02", "ds: 0", ["ds"]),
+        ("ds: 0.02", "ds: -1", ["ds"]),
+        ("ds: 0.02", "ds: 1e-9", ["ds"]),
+        ("ds: 0.02, dphi: 0.2", "ds: 1e-5, dphi: 1e-5", ["larger"]),
+        ("path:\n", "path:\n  frame: nowhere\n", ["nowhere", "frame"]),
+        ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_9", ["arm_left_link_9"]),
+        ("base_link: base_link", "base_link: bottom", ["bottom"]),
+        ("  base_link: base_link\n", "  base_link: base_link\n  hold: {{no_such_joint: 0}}\n", ["no_such_joint"]),
+        ("radius: 0.05", "radius: -0.05", ["radius"]),
+        ("cylinder: {{radius: 0.05, length: 0.8}}", "mesh: empty.stl", ["empty.stl"]),
+        ("limits:", "start: {{joints: [0, 0, 0]}}\nlimits:", ["joints", "7"]),
+        ("limits:", "start: {{joints: [9, 0, 0, 0, 0, 0, 0]}}\nlimits:", ["start.joints", "limits"]),
+        ("limits:", "start: {{joints: [0, 0, 0, 0, 0, 0, 0]}}\nlimits:", ["start.joints", "first pose"]),
+        ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_3_e", ["seven"]),
+        ("{{clearance: 0.005}}", "{{clearance: -1}}", ["clearance"]),
+        ("{{clearance: 0.005}}", "{{joint_margin: 3}}", ["joint_margin"]),
+        ("name: post", "name: base_link", ["base_link"]),
+        ("rpy: [0, -1.5707963267948966, 0]}}\n    - {{xyz: [0.6, 0.4, 0.9], rpy: [0, -1.5707963267948966, 0]}}", "quat: [1, 0, 0, 0]}}\n    - {{xyz: [0.6, 0.4, 0.9], quat: [0, 0, 0, 1]}}", ["180"]),
+    ]
+
+    def bad(self, text, words):
+        problem = self.folder / "problem.yaml"
+        problem.write_text(text)
+        (self.folder / "empty.stl").write_bytes(bytes(84))
+        out, result = self.folder / "t.csv", self.folder / "r.json"
+        done = run("plan", problem, "--out", out, "--json", result)
+        self.assertEqual(done.returncode, 2, f"{words}: {done.stdout}{done.stderr}")
+        self.assertEqual(done.stdout, "")
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+        self.assertIn("allowed", done.stderr.replace("at least", "allowed").replace("are needed", "allowed"))
+        self.assertFalse(out.exists() or result.exists())
+
+    def test_the_base_problem_is_fine(self):
+        problem = self.folder / "problem.yaml"
+        problem.write_text(self.BASE.format(data=DATA))
+        self.assertEqual(run("plan", problem).returncode, 0)
+
+    def test_bad_problems(self):
+        for old, new, words in self.CASES:
+            with self.subTest(new=new):
+                self.assertIn(old, self.BASE)
+                self.bad(self.BASE.replace(old, new).format(data=DATA), words)
+
+    def test_not_srs(self):
+        urdf = (DATA / "robots/iiwa14.urdf").read_text()
+        bent = self.folder / "bent.urdf"
+        old = next(line for line in urdf.splitlines() if "<origin" in line and "0.4" in line and "rpy" in line and "joint" not in line)
+        import re
+        match = re.search(r'(<joint name="joint_a7".*?<origin xyz=")([^"]*)(")', urdf, re.S)
+        self.assertIsNotNone(match, old)
+        x, y, z = match.group(2).split()
+        bent.write_text(urdf[: match.start(2)] + f"{float(x) + 0.088} {y} {z}" + urdf[match.end(2):])
+        self.bad(f"robot: {{urdf: bent.urdf, base_link: base_link, tip_link: tool0}}\npath: {{waypoints: [{{xyz: [0.5, 0, 0.5]}}, {{xyz: [0.5, 0.1, 0.5]}}]}}\n",
+                 ["axes 6 and 7", "88.0 mm"])
+
+    def test_command_line(self):
+        problem = PROBLEMS / "experiment_a.yaml"
+        for arguments, word in ((["--planner", "magic"], "eager_dp"), (["--ds", "0"], "--ds"), (["--edges", "none"], "continuous"), (["--threads", "-1"], "--threads"),
+                                (["--seed", "1"], "--episode"), (["--nonsense"], "nonsense"), (["--ds", "abc"], "ds"), (["--timeout", "-1"], "--timeout")):
+            done = run("plan", problem, *arguments)
+            self.assertEqual(done.returncode, 2, arguments)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn(word, done.stderr)
+        self.assertEqual(run().returncode, 2)
+        self.assertEqual(run("plan", "no_such_file.yaml").returncode, 2)
+        self.assertEqual(run("--help").returncode, 0)
+
+    def test_bad_trajectories(self):
+        out = self.folder / "t.csv"
+        names = "arm_left_joint_1_s,arm_left_joint_2_l,arm_left_joint_3_e,arm_left_joint_4_u,arm_left_joint_5_r,arm_left_joint_6_b,arm_left_joint_7_t"
+        for text in ("", "s,phi,branch,a,b,c,d,e,f,g\n", f"s,phi,branch,{names}\n0,0,0,1,2,3\n", f"s,phi,branch,{names}\n0,0,0,1,2,3,4,5,6,x\n"):
+            out.write_text(text)
+            done = run("check", PROBLEMS / "experiment_a.yaml", out)
+            self.assertEqual(done.returncode, 2, text)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1)
+            self.assertIn("t.csv", done.stderr)
+
+
+class RealRobots(WithFolder):
+    """Real URDFs with meshes; skipped where they are not at hand."""
+
+    def setUp(self):
+        super().setUp()
+        if not (SHARED / "data").exists():
+            self.skipTest("real robot files are not here")
+
+    def problem(self, text):
+        file = self.folder / "problem.yaml"
+        file.write_text(text.format(shared=SHARED / "data"))
+        return file
+
+    def test_info(self):
+        folder = SHARED / "data/motoman_sda5f/motoman_sda5f_support/urdf"
+        for name, deviation in (("sda5f_expanded.urdf", 0.3), ("sda5f_checked_in.urdf", 0.3)):
+            done = run("info", folder / name, "--base", "base_link", "--tip", "arm_left_link_7_t")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("S-R-S, in-plane elbow offset", done.stdout)
+            millimetres = float(done.stdout.split("axes within ")[1].split(" mm")[0])
+            self.assertLess(millimetres, deviation)
+            upper = float(done.stdout.split("shoulder-elbow ")[1].split(" m")[0])
+            self.assertAlmostEqual(upper, 0.28306, delta=2e-4)
+        puzzle = SHARED / "data/puzzle_cell/tesseract/support/urdf/puzzle_piece_workcell.urdf"
+        done = run("info", puzzle, "--base", "base_link", "--tip", "part")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("shoulder-elbow 0.420000 m, elbow-wrist 0.400000 m", done.stdout)
+        self.assertIn("0.436 mm", done.stdout)
+
+    def test_experiment_a_with_real_meshes(self):
+        problem = self.problem("""robot:
+  urdf: {shared}/motoman_sda5f/motoman_sda5f_support/urdf/sda5f_expanded.urdf
+  srdf: {shared}/motoman_sda5f/motoman_sda5f.srdf
+  base_link: base_link
+  tip_link: arm_left_link_7_t
+path: {{file: "{shared}/paths/paper_experiment_A_line.csv"}}
+resolution: {{ds: 0.02, dphi: 0.1}}
+""")
+        done, out, result = self.plan(problem)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        urdf = SHARED / "data/motoman_sda5f/motoman_sda5f_support/urdf/sda5f_expanded.urdf"
+        outside = subprocess.run([sys.executable, VERIFY, urdf, "base_link", "arm_left_link_7_t", SHARED / "data/paths/paper_experiment_A_line.csv", out, "--cost", repr(result["cost"])],
+                                 capture_output=True, text=True)
+        self.assertEqual(outside.returncode, 0, outside.stdout)
+
+    def test_puzzle(self):
+        problem = self.problem("""robot:
+  urdf: {shared}/puzzle_cell/tesseract/support/urdf/puzzle_piece_workcell.urdf
+  srdf: {shared}/puzzle_cell/tesseract/support/urdf/puzzle_piece_workcell.srdf
+  base_link: base_link
+  tip_link: part
+path: {{file: "{shared}/paths/puzzle_bent_iiwa14_base_to_part.csv"}}
+resolution: {{ds: 0.005, dphi: 0.05}}
+""")
+        done, out, result = self.plan(problem)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        empty = [layer for layer in result["diagnosis"]["empty_layers"] if layer["waypoint"] is not None and layer["waypoint"] >= 0]
+        # Waypoint 400 is 1.7e-7 rad inside the limit on the exact chain (docs/decisions.md 0009).
+        self.assertEqual([layer["waypoint"] for layer in empty], [*range(0, 10), *range(181, 185), *range(396, 400), *range(419, 423)])
+        self.assertEqual({layer["reason"] for layer in empty}, {"joint joint_a4"})
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
