@@ -6,6 +6,8 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "swivel/core/input_error.hpp"
@@ -14,12 +16,26 @@ namespace swivel {
 
 namespace {
 
-template <class Tree>
-void build(Tree& tree, const TriangleMesh& mesh) {
+/// Triangles less than a nanometre high are left out: their neighbours' edges cover them, and FCL returns an unset distance for a
+/// triangle without area.
+std::vector<fcl::Triangle> triangles_with_area(const TriangleMesh& mesh) {
+  constexpr double kLeastHeight = 1e-9;
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles)
-    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2]));
+  for (const auto& t : mesh.triangles) {
+    const std::array<std::size_t, 3> k{static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                                       static_cast<std::size_t>(t[2])};
+    const Vector3d ab = mesh.vertices[k[1]] - mesh.vertices[k[0]], ac = mesh.vertices[k[2]] - mesh.vertices[k[0]];
+    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
+    if (ab.cross(ac).norm() > kLeastHeight * longest) triangles.emplace_back(k[0], k[1], k[2]);
+  }
+  return triangles;
+}
+
+template <class Tree>
+void build(Tree& tree, const TriangleMesh& mesh) {
+  const std::vector<fcl::Triangle> triangles = triangles_with_area(mesh);
+  if (triangles.empty()) throw InputError(mesh.source + ": mesh: no triangle with an area: at least one is needed");
   tree.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   tree.addSubModel(mesh.vertices, triangles);
   tree.endModel();
@@ -37,7 +53,6 @@ struct PrimitiveVisitor {
 }  // namespace
 
 MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)) {
-  if (mesh_->triangles.empty()) throw InputError(mesh_->source + ": mesh: no triangles: at least one is needed");
   build(boolean_tree_, *mesh_);
   if (mesh_->closed) solid_.emplace(*mesh_);
   part_points_ = one_point_per_part(*mesh_);

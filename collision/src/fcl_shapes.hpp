@@ -21,7 +21,7 @@ namespace swivel {
 /// What collision needs of one mesh, computed once. Const calls are safe from many threads.
 class MeshModel {
  public:
-  /// Throws InputError for a mesh without triangles.
+  /// Throws InputError for a mesh without a triangle that has an area.
   explicit MeshModel(MeshPtr mesh);
   /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
   [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const { return boolean_tree_; }

@@ -25,7 +25,9 @@ class PairTest {
  private:
   bool inflated_meets(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first, double d);
   bool meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b);
-  double distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double bound);
+  double core_distance(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first);
+  double distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b,
+                  double bound);
 
   CollisionCounters counters_;
 };

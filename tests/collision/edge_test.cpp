@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bisection against every midpoint in turn. design.md 1 "Edge collision".
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support.hpp"
+#include "swivel/collision/world.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace swivel::testing;
+
+constexpr double kTau = 5e-5;
+
+std::vector<SceneObject> random_scene(Random& random) {
+  std::vector<SceneObject> scene;
+  for (int k = 0; k < 5; ++k) {
+    Pose pose = random.pose(0.8);
+    pose.translation().z() += 0.6;
+    Shape shape;
+    switch (random.index(5)) {
+      case 0:
+        shape = Sphere{random.uniform(0.02, 0.15)};
+        break;
+      case 1:
+        shape = Capsule{random.uniform(0.02, 0.1), random.uniform(0.1, 0.4)};
+        break;
+      case 2:
+        shape = Box{random.vector(0.05, 0.3)};
+        break;
+      case 3:
+        shape = Cylinder{random.uniform(0.02, 0.1), random.uniform(0.1, 0.4)};
+        break;
+      default:
+        shape = as_mesh(panel_mesh(0.5, 0.4, 0.03, 5), "panel");
+    }
+    scene.push_back({numbered("object", k), shape, pose, {}});
+  }
+  return scene;
+}
+
+TEST(EdgeRule, Midpoints) {
+  EdgeRule rule;
+  rule.radii.fill(1.0);
+  rule.h = 0.0005;
+  const Config q0 = Config::Zero();
+  Config q1 = Config::Zero();
+  EXPECT_EQ(rule.midpoints(q0, q1), 1);
+  q1[2] = 0.001;  // B / 2 = h
+  EXPECT_EQ(rule.midpoints(q0, q1), 1);
+  q1[2] = 0.00101;
+  EXPECT_EQ(rule.midpoints(q0, q1), 2);
+  q1[5] = -0.1;
+  EXPECT_DOUBLE_EQ(rule.motion(q0, q1), 0.10101);
+  EXPECT_EQ(rule.midpoints(q0, q1), 128);
+}
+
+TEST(EdgeBlocked, AgreesWithThePlainRule) {
+  Random random(41);
+  RobotModel robot = capsule_arm();
+  Pose tip = Pose::Identity();
+  tip.translation().z() = 0.17;
+  robot.links[7].collision.push_back({Box{Vector3d(0.05, 0.05, 0.06)}, tip});
+  const ArmModel arm = arm_of(robot);
+  Problem problem = problem_for(robot);
+  const World base(robot, arm, problem);
+  EdgeRule rule;
+  rule.radii = motion_radii(arm.chain, base.bodies());
+  rule.d_edge = 0.0025;
+  int blocked = 0, free = 0, in_band = 0;
+  std::int64_t leaves = 0;
+  for (int w = 0; w < 100; ++w) {
+    const World world(base, random_scene(random));
+    World::Query query(world);
+    for (int k = 0; k < 25; ++k) {
+      Config q0 = random.config(1.5);
+      for (int again = 0; again < 20 && query.first_below(q0, 0.001); ++again)
+        q0 = random.config(1.5);  // as a planner's: mostly free
+      const Config q1 = q0 + random.config(0.06);
+      leaves += rule.midpoints(q0, q1);
+      const bool fast = edge_blocked(query, rule, q0, q1).has_value(), plain = edge_blocked_plain(query, rule, q0, q1).has_value();
+      ++(plain ? blocked : free);
+      if (fast == plain) continue;
+      double least = 1;
+      const std::int64_t n = rule.midpoints(q0, q1);
+      for (std::int64_t m = 0; m < n; ++m)
+        least =
+            std::min(least, query.clearance(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0))->distance);
+      EXPECT_NEAR(least, rule.d_edge + rule.h, kTau);
+      ++in_band;
+    }
+  }
+  EXPECT_EQ(blocked + free, 2500);
+  EXPECT_GT(blocked, 100);
+  EXPECT_GT(free, 100);
+  EXPECT_LE(in_band, 5);
+  RecordProperty("in_band", in_band);
+  std::cout << "blocked " << blocked << ", free " << free << ", disagreements within tau " << in_band << ", midpoints " << leaves
+            << std::endl;
+}
+
+TEST(EdgeBlocked, ProvesTheWholeMotion) {
+  // A ball too thin to be met by a few samples: the arm sweeps over it between two free ends.
+  const RobotModel robot = capsule_arm();
+  const ArmModel arm = arm_of(robot);
+  Problem problem = problem_for(robot);
+  Config q0 = Config::Zero(), q1 = Config::Zero();
+  q0[1] = q1[1] = 1.2;
+  q0[0] = -0.25;
+  q1[0] = 0.25;
+  const World empty(robot, arm, problem);
+  Config middle = q0 + 0.37 * (q1 - q0);
+  Pose pose = Pose::Identity();
+  pose.translation() = arm.chain.tool(middle).translation();
+  const World world(empty, {{"speck", Sphere{0.001}, pose, {}}});
+  EdgeRule rule;
+  rule.radii = motion_radii(arm.chain, world.bodies());
+  rule.d_edge = 0.0025;
+  World::Query query(world);
+  EXPECT_FALSE(query.first_below(q0, 0.01));
+  EXPECT_FALSE(query.first_below(q1, 0.01));
+  const auto pair = edge_blocked(query, rule, q0, q1);
+  ASSERT_TRUE(pair);
+  EXPECT_EQ(world.body_names()[static_cast<std::size_t>(pair->b)], "speck");
+  EXPECT_TRUE(edge_blocked(query, rule, q1, q0));
+  World::Query other(empty);
+  EXPECT_FALSE(edge_blocked(other, rule, q0, q1));
+}
+
+TEST(EdgeBlocked, StandingStill) {
+  const RobotModel robot = capsule_arm();
+  const World world(robot, arm_of(robot), problem_for(robot));
+  World::Query query(world);
+  EdgeRule rule;
+  rule.radii.fill(1.0);
+  EXPECT_FALSE(edge_blocked(query, rule, Config::Zero(), Config::Zero()));
+}
+
+}  // namespace
+}  // namespace swivel

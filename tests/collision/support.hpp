@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <random>
+#include <string>
+
+#include "swivel/core/arm.hpp"
+#include "swivel/core/problem.hpp"
+
+namespace swivel::testing {
+
+/// SWIVEL_TEST_SEED, or 1; printed, so that a failure can be run again. Mixed with `stream`, so that tests differ.
+class Random {
+ public:
+  explicit Random(std::uint64_t stream);
+  double uniform(double low, double high);
+  int index(int count);
+  Vector3d vector(double low, double high);
+  Matrix3d rotation();
+  /// Turned at random, translation in [-range, range]^3.
+  Pose pose(double range);
+  Config config(double range);
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// "l", 3 -> "l3".
+std::string numbered(const std::string& name, int number);
+
+MeshPtr as_mesh(TriangleMesh mesh, const std::string& name);
+/// Full edge lengths; each side cut into n x n squares. Closed.
+TriangleMesh box_mesh(const Vector3d& size, int n);
+/// Latitude-longitude sphere. Closed.
+TriangleMesh sphere_mesh(double radius, int n);
+/// Closed, with a hole through it.
+TriangleMesh torus_mesh(double ring, double tube, int n);
+/// A pipe along z without ends. Open.
+TriangleMesh tube_mesh(double radius, double length, int n);
+/// A doubly curved plate, like a car door, about 2 * (2 n) * n * 2 triangles, normal along z. Closed.
+TriangleMesh panel_mesh(double width, double height, double thickness, int n);
+void move(TriangleMesh& mesh, const Pose& pose);
+TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
+
+/// An upright arm like the usual 7-axis ones: links l0 ... l7, joints j1 ... j7, one capsule each (l0: a box).
+RobotModel capsule_arm();
+/// base l0, tip l7, no scene; the caller fills in the rest. `robot` must outlive it.
+Problem problem_for(const RobotModel& robot);
+ArmModel arm_of(const RobotModel& robot);
+
+}  // namespace swivel::testing
