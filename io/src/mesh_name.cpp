@@ -2,6 +2,7 @@
 #include "mesh_name.hpp"
 
 #include <optional>
+#include <string_view>
 
 #include "bad_input.hpp"
 
@@ -25,12 +26,9 @@ std::optional<fs::path> find_in(const fs::path& folder, const std::string& packa
 
 fs::path resolve_package(const std::string& name, const std::string& path, const fs::path& urdf, const Packages& packages,
                          const std::string& where) {
-  const auto slash = path.find('/');
-  const std::string package = path.substr(0, slash);
-  const std::string rest =
-      slash == std::string::npos
-          ? ""
-          : path.substr(path.find_first_not_of('/', slash) == std::string::npos ? path.size() : path.find_first_not_of('/', slash));
+  const std::string package = path.substr(0, path.find('/'));
+  const auto rest_start = path.find_first_not_of('/', package.size());
+  const std::string rest = rest_start == std::string::npos ? "" : path.substr(rest_start);
   const std::string what = "mesh '" + name + "' not found";
   if (package.empty() || rest.empty()) bad_input(where, "mesh name '" + name + "' is incomplete", "package://<package>/<file>");
   if (const auto known = packages.find(package); known != packages.end()) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <map>
 #include <mutex>
 #include <set>
 #include <string_view>
@@ -110,6 +111,7 @@ class ModelBuilder {
     strip(robot);
     check_names(robot, "link");
     check_names(robot, "joint");
+    check_tree(robot);
     tinyxml2::XMLPrinter printer(nullptr, true);
     document.Print(&printer);
     parsed_ = parse_quietly(printer.CStr(), urdf_.string());
@@ -119,7 +121,6 @@ class ModelBuilder {
     for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_joint(element); });
     for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_mimic(element); });
     model_->root_link = model_->find_link(parsed_->getRoot()->name);
-    check_tree();
     return model_;
   }
 
@@ -136,6 +137,26 @@ class ModelBuilder {
       if (name == nullptr || *name == '\0')
         bad_input(at_line(urdf_.string(), element.GetLineNum()), std::string(kind) + " without a name", "a name of its own");
       if (!names.insert(name).second) bad_input(where(element), "name is taken", "a name of its own");
+    });
+  }
+
+  /// urdfdom takes a link with two parents, and loops that hang on nothing. What is left to it is that there is one root.
+  void check_tree(tinyxml2::XMLElement& robot) const {
+    std::map<std::string, std::string> parent_of;
+    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) {
+      const auto link = [&](const char* kind) -> std::string {
+        const auto* const end = element.FirstChildElement(kind);
+        const char* const name = end == nullptr ? nullptr : end->Attribute("link");
+        return name == nullptr ? "" : name;
+      };
+      const std::string child = link("child");
+      if (!parent_of.emplace(child, link("parent")).second)
+        bad_input(where(element), "link '" + child + "' has another parent joint already", "a tree: one parent joint a link");
+      std::string ancestor = child;
+      for (auto up = parent_of.find(child); up != parent_of.end(); up = parent_of.find(ancestor)) {
+        ancestor = up->second;
+        if (ancestor == child) bad_input(where(element), "closes a loop at link '" + child + "'", "a tree: no link above itself");
+      }
     });
   }
 
@@ -192,13 +213,7 @@ class ModelBuilder {
       joint.axis = to_eigen(parsed.axis) / length;
       read_limits(parsed, at, joint);
     }
-    Link& child = model_->links[static_cast<std::size_t>(joint.child_link)];
-    if (child.parent_joint >= 0)
-      bad_input(at,
-                "link '" + child.name + "' is already the child of joint '" +
-                    model_->joints[static_cast<std::size_t>(child.parent_joint)].name + "'",
-                "a tree: one parent joint a link");
-    child.parent_joint = static_cast<int>(model_->joints.size());
+    model_->links[static_cast<std::size_t>(joint.child_link)].parent_joint = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
   }
 
@@ -248,19 +263,6 @@ class ModelBuilder {
       k = next.mimic ? next.mimic->joint : -1;
     }
     joint.mimic = Joint::Mimic{leader, mimic->multiplier, mimic->offset};
-  }
-
-  /// urdfdom finds one root and no second parents here; what is left are loops that hang on nothing.
-  void check_tree() const {
-    for (const Link& link : model_->links) {
-      int at = model_->find_link(link.name);
-      for (std::size_t steps = 0; at != model_->root_link; ++steps) {
-        if (steps > model_->links.size())
-          bad_input(urdf_.string(), "link '" + link.name + "' lies on a loop of joints",
-                    "a tree: one root link that every link descends from");
-        at = model_->joints[static_cast<std::size_t>(model_->links[static_cast<std::size_t>(at)].parent_joint)].parent_link;
-      }
-    }
   }
 
   const std::filesystem::path& urdf_;

@@ -14,17 +14,19 @@
 
 namespace swivel::io {
 
-/// STL, OBJ, DAE (vertices as stored: no up-axis rotation, as ROS reads them) through assimp; scale per axis, negative mirrors.
+/// STL, OBJ, DAE, PLY through assimp: vertices as stored (no up-axis rotation, as ROS reads them), node transforms and units
+/// applied, all meshes of the file merged; scale per axis, negative mirrors.
 /// The same file and scale loaded twice shares one mesh within `cache`.
 using MeshCache = std::map<std::string, MeshPtr>;
 [[nodiscard]] MeshPtr load_mesh(const std::filesystem::path& file, const Vector3d& scale, MeshCache& cache);
 
 /// URDF (+ SRDF when not empty). Meshes through package:// (`packages`: name -> folder; else walk up from the URDF), file://,
-/// absolute or relative names.
-[[nodiscard]] std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf = {},
+/// absolute or relative names. Only what a planner needs is read: visuals, materials and inertias may be as wrong as they like.
+[[nodiscard]] std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,
+                                                           const std::filesystem::path& srdf = {},
                                                            const std::map<std::string, std::filesystem::path>& packages = {});
 
-/// Tool path: header x,y,z,qw,qx,qy,qz.
+/// Tool path: header x,y,z,qw,qx,qy,qz; at least two rows. Quaternions as written, of length 1 within 1e-3.
 [[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
 
 /// PROBLEM.yaml, design.md 4. Unknown keys are errors with the nearest known key named.
@@ -33,11 +35,12 @@ using MeshCache = std::map<std::string, MeshPtr>;
 /// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits; written beside and renamed.
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result);
 /// Joint names of the header must be those given.
-[[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names);
+[[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv,
+                                                         const std::array<std::string, kDof>& joint_names);
 
-/// RESULT.json as text, design.md 4.
+/// RESULT.json as text, design.md 4. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
-/// Writes text beside the target and renames it over.
+/// Writes text beside the target and renames it over; a device or pipe is written to.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace swivel::io
