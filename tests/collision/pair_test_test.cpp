@@ -56,23 +56,20 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
     for (int kb = 0; kb < 7; ++kb)
       for (int k = 0; k < 24; ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
-        const Pose X_a = random.pose(0.05), X_b = random.pose(k % 3 == 0 ? 0.1 : 0.3);
+        const Pose X_a = random.pose(0.05), X_b = random.pose(k % 4 == 0 ? 0.02 : 0.3);
         const double truth = reference_clearance(a, X_a, b, X_b);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
         const std::string what = kKinds[static_cast<std::size_t>(ka)] + " / " + kKinds[static_cast<std::size_t>(kb)] +
                                  ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
 
-        // GJK stops early on curved sides, the earlier the further apart: measured 0.3 mm at 300 mm, 0.012 mm below 30 mm.
-        const double tolerance = kTau + (ka == 3 || kb == 3 ? 2e-3 * truth : 0.0);
-
         const double found = test.clearance(pa, pb);
-        ASSERT_NEAR(found, truth, tolerance) << what;
+        ASSERT_NEAR(found, truth, kTau) << what;
         worst = std::max(worst, std::abs(found - truth));
         ASSERT_LE(distance_floor(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b)), truth + 1e-5) << what;
 
         std::vector<double> thresholds{0.0, 0.001, 0.005, 0.02, 0.1};
-        for (const double offset : {-2 * tolerance, -1.1 * tolerance, 1.1 * tolerance, 2 * tolerance})
+        for (const double offset : {-2 * kTau, -1.1 * kTau, 1.1 * kTau, 2 * kTau})
           if (truth + offset >= 0) thresholds.push_back(truth + offset);
         std::sort(thresholds.begin(), thresholds.end());
         bool was_below = false;
@@ -80,7 +77,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
           const bool below = test.below(pa, pb, d);
           ASSERT_TRUE(below || !was_below) << what << ": not monotone at " << d;
           was_below = below;
-          if (truth == 0 || std::abs(truth - d) > tolerance) {
+          if (truth == 0 || std::abs(truth - d) > kTau) {
             ASSERT_EQ(below, truth == 0 || truth < d) << what << ", d " << d;
           }
           const bool apart = surely_apart(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b), d + 1e-6);
@@ -92,7 +89,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   EXPECT_EQ(test.counters().fcl_failures, 0);
   EXPECT_GT(verdicts, 8000);
   int pairs_with_both = 0;
-  for (const auto& [kinds, t] : tally) pairs_with_both += t.apart > 2 && t.touching > 0;
+  for (const auto& [kinds, t] : tally) pairs_with_both += t.apart > 0 && t.touching > 0;
   EXPECT_EQ(pairs_with_both, 49);
   RecordProperty("worst_clearance_error_um", static_cast<int>(worst * 1e6));
 }

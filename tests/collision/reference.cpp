@@ -79,11 +79,19 @@ double point_cylinder(const Point& p, const Cylinder& c) {
   return std::hypot(std::max(0.0, std::hypot(p.x(), p.y()) - c.radius), std::max(0.0, std::abs(p.z()) - c.length / 2));
 }
 
+struct Circle {
+  Pose X;  ///< about its z axis
+  double radius = 0;
+  [[nodiscard]] Point at(double turns) const {
+    return X * Point(radius * std::cos(kTwoPi * turns), radius * std::sin(kTwoPi * turns), 0);
+  }
+};
+
 /// A convex primitive: its points' distance, the edges and circles that carry its corners, and the ball it is grown by.
 struct Convex {
   std::function<double(const Point&)> distance;  ///< base frame, before growing
   std::vector<Segment> edges;
-  std::vector<Point> rim;  ///< dense samples of curved edges
+  std::vector<Circle> rims;
   Segment axis;
   double growth = 0, tube = 0;  ///< tube: radius about the axis between its ends (cylinder)
 };
@@ -108,12 +116,8 @@ Convex convex_of(const Shape& shape, const Pose& X) {
         if (!(k & bit)) c.edges.push_back({corner(k), corner(k | bit)});
     c.distance = [X, size = *box](const Point& p) { return point_box(X.inverse() * p, size); };
   } else if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    constexpr int kSamples = 360;
-    for (int k = 0; k < kSamples; ++k)
-      for (const double side : {-0.5, 0.5}) {
-        const double u = kTwoPi * k / kSamples;
-        c.rim.push_back(X * Point(cylinder->radius * std::cos(u), cylinder->radius * std::sin(u), side * cylinder->length));
-      }
+    for (const double side : {-0.5, 0.5})
+      c.rims.push_back({X * Eigen::Translation3d(0, 0, side * cylinder->length), cylinder->radius});
     c.axis = {X * Point(0, 0, -cylinder->length / 2), X * Point(0, 0, cylinder->length / 2)};
     c.edges = {c.axis};  // inside, so it adds nothing but crossings
     c.tube = cylinder->radius;
@@ -127,7 +131,17 @@ template <class Distance>
 double edges_to(const Convex& a, const Distance& distance) {
   double least = kFar;
   for (const Segment& s : a.edges) least = std::min(least, least_on_unit([&](double x) { return distance(s.at(x)); }));
-  for (const Point& p : a.rim) least = std::min(least, distance(p));
+  for (const Circle& rim : a.rims) {
+    constexpr int kSamples = 120;
+    int best = 0;
+    double at_best = kFar;
+    for (int k = 0; k < kSamples; ++k)
+      if (const double d = distance(rim.at(static_cast<double>(k) / kSamples)); d < at_best) {
+        best = k;
+        at_best = d;
+      }
+    least = std::min({least, at_best, least_on_unit([&](double x) { return distance(rim.at((best - 1 + 2 * x) / kSamples)); })});
+  }
   return least;
 }
 
