@@ -60,7 +60,7 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
   EXPECT_EQ(compared, 3 * trials(20));
 }
 INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
-                         [](const auto& info) { return info.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
+                         [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
 
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
