@@ -64,7 +64,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   double worst = 0;
   for (int ka = 0; ka < 7; ++ka)
     for (int kb = 0; kb < 7; ++kb)
-      for (int k = 0; k < 24; ++k) {
+      for (int k = 0; k < 16; ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
         const Pose X_a = random.pose(0.05);
         Pose X_b = random.pose(k % 4 == 0 ? 0.1 : 0.3);
@@ -100,7 +100,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
         ++(truth > 0 ? tally[{ka, kb}].apart : tally[{ka, kb}].touching);
       }
   EXPECT_EQ(test.counters().fcl_failures, 0);
-  EXPECT_GT(verdicts, 8000);
+  EXPECT_GT(verdicts, 5500);
   for (const auto& [kinds, t] : tally) {
     const std::string what = kKinds[static_cast<std::size_t>(kinds.first)] + " / " + kKinds[static_cast<std::size_t>(kinds.second)];
     EXPECT_GT(t.apart, 0) << what;
