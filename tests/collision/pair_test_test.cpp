@@ -41,6 +41,16 @@ Shape random_shape(int kind, Random& random) {
   }
 }
 
+/// A point that the shape holds: its centre or, of a mesh, which may be hollow, the middle of a triangle or of an edge.
+Vector3d held_point(const Shape& shape, bool of_triangle) {
+  const auto* mesh = std::get_if<MeshPtr>(&shape);
+  if (!mesh) return Vector3d::Zero();
+  const auto& v = (*mesh)->vertices;
+  const auto& t = (*mesh)->triangles[(*mesh)->triangles.size() / 2];
+  const Vector3d edge = v[static_cast<std::size_t>(t[0])] + v[static_cast<std::size_t>(t[1])];
+  return of_triangle ? Vector3d((edge + v[static_cast<std::size_t>(t[2])]) / 3) : Vector3d(edge / 2);
+}
+
 struct Tally {
   int apart = 0, touching = 0;
 };
@@ -54,9 +64,12 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   double worst = 0;
   for (int ka = 0; ka < 7; ++ka)
     for (int kb = 0; kb < 7; ++kb)
-      for (int k = 0; k < 24; ++k) {
+      for (int k = 0; k < 16; ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
-        const Pose X_a = random.pose(0.05), X_b = random.pose(k % 4 == 0 ? 0.02 : 0.3);
+        const Pose X_a = random.pose(0.05);
+        Pose X_b = random.pose(k % 4 == 0 ? 0.1 : 0.3);
+        if (k % 8 == 0)
+          X_b.translation() = X_a * held_point(a, true) - X_b.linear() * held_point(b, false);  // an edge through a side
         const double truth = reference_clearance(a, X_a, b, X_b);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
@@ -87,10 +100,12 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
         ++(truth > 0 ? tally[{ka, kb}].apart : tally[{ka, kb}].touching);
       }
   EXPECT_EQ(test.counters().fcl_failures, 0);
-  EXPECT_GT(verdicts, 8000);
-  int pairs_with_both = 0;
-  for (const auto& [kinds, t] : tally) pairs_with_both += t.apart > 0 && t.touching > 0;
-  EXPECT_EQ(pairs_with_both, 49);
+  EXPECT_GT(verdicts, 5500);
+  for (const auto& [kinds, t] : tally) {
+    const std::string what = kKinds[static_cast<std::size_t>(kinds.first)] + " / " + kKinds[static_cast<std::size_t>(kinds.second)];
+    EXPECT_GT(t.apart, 0) << what;
+    EXPECT_GT(t.touching, 0) << what;
+  }
   RecordProperty("worst_clearance_error_um", static_cast<int>(worst * 1e6));
 }
 

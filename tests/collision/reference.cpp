@@ -224,7 +224,8 @@ double reference_clearance(const Shape& a, const Pose& X_a, const Shape& b, cons
     for (const Triangle& t : triangles_of(mesh_a ? **mesh_a : **mesh_b, mesh_a ? X_a : X_b))
       if (convex.distance(t[0]) - size_of(t) - convex.growth < least) least = std::min(least, convex_triangle(convex, t));
   }
-  return least;
+  constexpr double kCrossing = 1e-7;  // what the one-dimensional searches leave where an edge crosses a side
+  return least < kCrossing ? 0 : least;
 }
 
 }  // namespace swivel::testing

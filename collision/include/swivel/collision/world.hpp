@@ -31,8 +31,8 @@ struct CollisionCounters {
 
 /// The robot's bodies among the scene's, with FCL as the authority on every pair. Immutable after construction; const calls are
 /// safe from many threads, each with its own Query.
-/// Verdicts are those of design.md 1: fcl::distance (LIBCCD, 1e-6, fresh result, a before b) >= d; for a sphere or capsule the
-/// equivalent boolean on the inflated body; closed meshes are solids.
+/// Verdicts are those of design.md 1: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or
+/// capsule the equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:
   /// Which pairs count (design.md 1): not disabled by the SRDF, not rigid to each other, not parent and child, not allowed to
