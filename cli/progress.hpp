@@ -1,32 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace swivel::cli {
 
-/// One line on a terminal, shown only for work that takes more than half a second, redrawn at most ten times a second.
+/// One line on a terminal for work that takes more than half a second, redrawn five times a second from a thread of its own, so that
+/// stages which report nothing are seen to run too.
 class ProgressLine {
  public:
-  explicit ProgressLine(bool enabled) : enabled_(enabled) {}
+  explicit ProgressLine(bool enabled) {
+    if (enabled) painter_ = std::jthread([this](const std::stop_token& stop) { paint(stop); });
+  }
   void show(const std::string& phrase) {
-    const auto now = Clock::now();
-    if (!enabled_ || now - start_ < std::chrono::milliseconds(500) || now - last_ < std::chrono::milliseconds(100)) return;
-    last_ = now;
-    shown_ = true;
-    std::fprintf(stderr, "\r\033[K%.0f s: %s", std::chrono::duration<double>(now - start_).count(), phrase.c_str());
-    std::fflush(stderr);
+    const std::lock_guard lock(mutex_);
+    phrase_ = phrase;
   }
-  void clear() {
-    if (shown_) std::fprintf(stderr, "\r\033[K");
-    shown_ = false;
-  }
+  /// Ends the line; nothing is shown afterwards.
+  void clear() { painter_ = {}; }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  bool enabled_, shown_ = false;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
+  void paint(const std::stop_token& stop) {
+    const auto start = std::chrono::steady_clock::now();
+    bool shown = false;
+    std::unique_lock lock(mutex_);
+    for (auto wait = std::chrono::milliseconds(500); !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
+         wait = std::chrono::milliseconds(200)) {
+      std::fprintf(stderr, "\r\033[K%.1f s: %s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), phrase_.c_str());
+      shown = true;
+    }
+    if (shown) std::fprintf(stderr, "\r\033[K");
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::string phrase_ = "planning";
+  std::jthread painter_;
 };
 
 }  // namespace swivel::cli

@@ -188,6 +188,13 @@ void Lattice::solve_exact(const double* sine, const double* cosine, int layer, i
   double* const data = out.data_.data();
   for (int elbow = 0; elbow < 2; ++elbow) {
     const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
+    const double q4 = image_from(circle.q4, images_[kElbowJoint].base);
+    if (q4 > images_[kElbowJoint].upper) {  // one elbow angle serves the whole circle, so four branches are gone at once
+      const int first_label = (elbow ? kElbowBit : 0) * windings_, last_label = first_label + 4 * windings_;
+      std::fill(out.q_.begin() + first_label * kDof, out.q_.begin() + last_label * kDof, std::size_t{0});
+      std::fill(out.valid_.begin() + first_label * count, out.valid_.begin() + last_label * count, std::uint8_t{0});
+      continue;
+    }
     std::array<std::array<std::size_t, kDof>, 2> track;  // [sign of the triple][joint]
     std::array<std::size_t, 2> sines;                    // [shoulder, wrist]
     for (int triple = 0; triple < 2; ++triple) {
@@ -213,7 +220,7 @@ void Lattice::solve_exact(const double* sine, const double* cosine, int layer, i
       circle_kernels().solve_triple(task);
     }
     track[0][kElbowJoint] = track[1][kElbowJoint] = allot(images_[kElbowJoint].count);
-    std::fill_n(data + track[0][kElbowJoint], n, image_from(circle.q4, images_[kElbowJoint].base));
+    std::fill_n(data + track[0][kElbowJoint], n, q4);
     for (std::size_t sign = 0; sign < 2; ++sign)
       for (std::size_t j = 0; j < kDof; ++j)
         for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image)

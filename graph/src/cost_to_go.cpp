@@ -47,9 +47,18 @@ void CostToGo::solve(int layer, Joints& joints) {
   lattice_->solve(layer, (n - window % n) % n, length, joints.nodes);
   joints.low.resize(static_cast<std::size_t>(labels * padded_chunks) * separating_.size());
   joints.high.resize(joints.low.size());
+  joints.alive.resize(static_cast<std::size_t>(labels));
   double* low = joints.low.data();
   double* high = joints.high.data();
-  for (int label = 0; label < labels; ++label)
+  for (int label = 0; label < labels; ++label) {
+    const std::uint8_t* valid = joints.nodes.valid(label);
+    const bool alive = std::find(valid, valid + length, 1) != valid + length;
+    joints.alive[static_cast<std::size_t>(label)] = alive;
+    if (!alive) {
+      low += separating_.size() * static_cast<std::size_t>(padded_chunks);
+      high += separating_.size() * static_cast<std::size_t>(padded_chunks);
+      continue;
+    }
     for (const int joint : separating_) {
       const double* q = joints.nodes.q(label, joint);
       for (int first = 0; first < length; first += kChunk) {
@@ -62,6 +71,7 @@ void CostToGo::solve(int layer, Joints& joints) {
         *high++ = most;
       }
     }
+  }
 }
 
 void CostToGo::load(int layer, Block& block) {
@@ -93,6 +103,7 @@ void CostToGo::load_values(const double* row, Block& block) const {
 }
 
 bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+  if (!from.joints->alive[static_cast<std::size_t>(label)] || !to.joints->alive[static_cast<std::size_t>(other)]) return false;
   const int n = lattice_->angles(), window = lattice_->window(), padded_chunks = (n + 2 * window + kChunk - 1) / kChunk;
   const std::size_t joints = separating_.size();
   const Config& bound = lattice_->step_bound(layer);
@@ -147,7 +158,8 @@ void CostToGo::relax_chunk(int step_layer, const Block& from, int label, int chu
   const int n = lattice_->angles(), first = chunk * kChunk, count = std::min(kChunk, n - first);
   double* best = row + static_cast<std::ptrdiff_t>(label) * n + first;
   std::fill(best, best + count, kUnreachable);
-  relax_run(step_layer, from, label, first, count, to, label, best);
+  if (!from.joints->alive[static_cast<std::size_t>(label)]) return;
+  if (to.joints->alive[static_cast<std::size_t>(label)]) relax_run(step_layer, from, label, first, count, to, label, best);
   for (int other = 0; other < lattice_->labels(); ++other)
     if (other != label && may_connect(step_layer, from, label, chunk, to, other)) relax_run(step_layer, from, label, first, count, to, other, best);
 }
@@ -156,9 +168,11 @@ void CostToGo::relax_layer(int step_layer, const Block& from, const Block& to, d
   const int n = lattice_->angles(), labels = lattice_->labels();
   std::fill(row, row + lattice_->width(), kUnreachable);
   for (int label = 0; label < labels; ++label) {
-    relax_run(step_layer, from, label, 0, n, to, label, row + static_cast<std::ptrdiff_t>(label) * n);
+    if (!from.joints->alive[static_cast<std::size_t>(label)]) continue;
+    if (to.joints->alive[static_cast<std::size_t>(label)])
+      relax_run(step_layer, from, label, 0, n, to, label, row + static_cast<std::ptrdiff_t>(label) * n);
     for (int other = 0; other < labels; ++other)
-      for (int chunk = 0; other != label && chunk < chunks(); ++chunk)
+      for (int chunk = 0; other != label && to.joints->alive[static_cast<std::size_t>(other)] && chunk < chunks(); ++chunk)
         if (may_connect(step_layer, from, label, chunk, to, other))
           relax_run(step_layer, from, label, chunk * kChunk, std::min(kChunk, n - chunk * kChunk), to, other,
                     row + static_cast<std::ptrdiff_t>(label) * n + chunk * kChunk);
@@ -200,7 +214,7 @@ double CostToGo::relax_one(int layer, int slot) {
   return best;
 }
 
-void CostToGo::sweep(int goal_layer) {
+bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
   goal_ = goal_layer;
   pending_.clear();
   const bool start = lattice_->has_start();
@@ -212,6 +226,7 @@ void CostToGo::sweep(int goal_layer) {
   drop_invalid(*next, row(goal_layer));
   load_values(row(goal_layer), *next);
   for (int layer = goal_layer - 1; layer >= 0; --layer) {
+    if (stop && stop()) return false;
     if (layer == 0 && start) {
       std::fill(row(0), row(0) + lattice_->width(), kUnreachable);
       g_[index(0, lattice_->start_slot())] = relax_one(0, lattice_->start_slot());
@@ -225,6 +240,7 @@ void CostToGo::sweep(int goal_layer) {
     load_values(row(layer), *here);
     std::swap(here, next);
   }
+  return true;
 }
 
 double CostToGo::best() const { return *std::min_element(g_.begin(), g_.begin() + lattice_->width()); }

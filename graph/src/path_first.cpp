@@ -161,7 +161,7 @@ std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const
   for (;;) {
     const int optimistic = togo.deepest_reachable();
     if (optimistic < 0) return -1;
-    togo.sweep(optimistic);
+    if (!togo.sweep(optimistic, [&] { return validity.stopped(); })) return std::nullopt;
     const SearchOutcome outcome = path_first(togo, validity, options, counters);
     if (outcome.stopped) return std::nullopt;
     if (!outcome.path.empty()) return optimistic;

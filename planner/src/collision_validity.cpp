@@ -11,14 +11,20 @@ EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) 
   return rule;
 }
 
-CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop)
-    : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop) {
+CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop,
+                                     const Progress& progress)
+    : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop), progress_(progress) {
   queries_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world);
 }
 
+void CollisionValidity::report() const {
+  if (progress_) progress_(std::to_string(nodes_checked_) + " nodes and " + std::to_string(edges_checked_) + " edges checked");
+}
+
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
   nodes_checked_ += static_cast<std::int64_t>(questions.size());
+  report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const Config& q = questions[static_cast<std::size_t>(index)].q;
     World::Query& query = queries_[static_cast<std::size_t>(worker)];
@@ -48,6 +54,7 @@ std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q,
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
   edges_checked_ += static_cast<std::int64_t>(questions.size());
+  report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const EdgeQuestion& x = questions[static_cast<std::size_t>(index)];
     const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <atomic>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "swivel/collision/world.hpp"
@@ -14,7 +15,9 @@ namespace swivel {
 /// The costly predicates of design.md 1, asked of the collision world on the executor's threads.
 class CollisionValidity final : public Validity {
  public:
-  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop);
+  using Progress = std::function<void(const std::string&)>;
+  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop,
+                    const Progress& progress);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
@@ -26,6 +29,7 @@ class CollisionValidity final : public Validity {
   [[nodiscard]] std::int64_t fcl_calls() const;
 
  private:
+  void report() const;
   [[nodiscard]] std::uint8_t dependence(World::Query& query, const Config& q, const BodyPair& pair) const;
 
   const Lattice* lattice_;
@@ -33,6 +37,7 @@ class CollisionValidity final : public Validity {
   EdgeRule rule_;
   Executor* executor_;
   const Stop* stop_;
+  Progress progress_;
   std::vector<World::Query> queries_;  // one per worker
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };

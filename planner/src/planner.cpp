@@ -52,8 +52,9 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
   }
   Stopwatch watch;
   CostToGo togo(lattice);
-  togo.sweep(lattice.layers() - 1);
+  found.outcome.stopped = !togo.sweep(lattice.layers() - 1, [&] { return validity.stopped(); });
   result.time_ms["sweep"] = watch.lap();
+  if (found.outcome.stopped) return found;
   // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
   const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 16 : 1};
   SearchCounters searched;
@@ -165,7 +166,7 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   result.lattice = {lattice.layers(), lattice.angles(), kBranches, lattice.windings(), lattice.window(), lattice.nodes(), path.merged_waypoints()};
 
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
-  CollisionValidity validity(lattice, world, rule, executor, stop);
+  CollisionValidity validity(lattice, world, rule, executor, stop, options.progress);
   const Found found = search(lattice, validity, options, result);
   result.time_ms["find"] = watch.lap();
   result.counters.nodes_checked = validity.nodes_checked();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -27,8 +28,8 @@ class CostToGo {
 
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
 
-  /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept.
-  void sweep(int goal_layer);
+  /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept. False when `stop`, asked once a layer, said so.
+  bool sweep(int goal_layer, const std::function<bool()>& stop = {});
   [[nodiscard]] int goal_layer() const { return goal_; }
   [[nodiscard]] double at(int layer, int slot) const { return g_[index(layer, slot)]; }
   /// Least over layer 0; kUnreachable when no path is left.
@@ -66,7 +67,8 @@ class CostToGo {
   struct Joints {
     int layer = -1;
     LayerNodes nodes;
-    std::vector<double> low, high;  // [label][separating joint][padded chunk]
+    std::vector<double> low, high;    // [label][separating joint][padded chunk]
+    std::vector<std::uint8_t> alive;  // [label] has a node at all
   };
   /// One layer ready for relaxation.
   struct Block {
