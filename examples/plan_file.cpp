@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The example of README.md: plan a problem file, print the joints.
+#include <iostream>
+#include <swivel/io/io.hpp>
+#include <swivel/planner/planner.hpp>
+
+int main(int argc, char** argv) {
+  const swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");
+  const swivel::PlanResult result = swivel::plan(problem);
+  if (result.status != swivel::PlanStatus::kSolved) return std::cerr << result.diagnosis.reason << '\n', 1;
+  for (const swivel::TrajectoryRow& row : result.trajectory) std::cout << row.s << ": " << row.q.transpose() << '\n';
+}
