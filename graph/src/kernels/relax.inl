@@ -28,6 +28,7 @@ void relax_run(const RelaxTask& task) {
     const double whole = up > magnitude(turns) + 0.5 ? up - 1.0 : up;
     return d - turn * (turns < 0 ? -whole : whole);
   };
+#pragma GCC ivdep  // GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
   for (int k = 0; k < task.n; ++k) {
     const double d0 = move(a0[k], b0[k], t0), d1 = move(a1[k], b1[k], t1), d2 = move(a2[k], b2[k], t2), d3 = move(a3[k], b3[k], t3),
                  d4 = move(a4[k], b4[k], t4), d5 = move(a5[k], b5[k], t5), d6 = move(a6[k], b6[k], t6);
