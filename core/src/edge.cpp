@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "swivel/core/angle.hpp"
 #include "swivel/core/lattice.hpp"
 
 namespace swivel {
@@ -15,18 +16,12 @@ double rounded(double x) {
   return (x + kShift) - kShift;
 }
 
-/// To the nearest turn, half turns away from zero: as the vector sweep computes it.
-double wrap(double angle) {
-  const double turns = angle / kTwoPi;
-  return angle - kTwoPi * std::copysign(std::floor(std::abs(turns) + 0.5), turns);
-}
-
 }  // namespace
 
 Config Lattice::delta(const Config& q0, const Config& q1) const {
   Config d = q1 - q0;
   for (int k = 0; k < kDof; ++k)
-    if (continuous_[static_cast<std::size_t>(k)]) d[k] = wrap(d[k]);
+    if (continuous_[static_cast<std::size_t>(k)]) d[k] = wrap_angle(d[k]);
   return d;
 }
 
@@ -57,7 +52,7 @@ bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Conf
     }
   }
   if (limits_.step_error) {
-    const double phi_a = phi(layer, a), phi_b = phi(layer + 1, b), dphi = wrap(phi_b - phi_a);
+    const double phi_a = phi(layer, a), phi_b = phi(layer + 1, b), dphi = wrap_angle(phi_b - phi_a);
     if (!(step_error(*this, layer, 0, branch_of(a), phi_a, dphi) <= *limits_.step_error)) return false;
     if (!(step_error(*this, layer, 1, branch_of(b), phi_b, dphi) <= *limits_.step_error)) return false;
   }
@@ -102,7 +97,7 @@ double step_error(const Lattice& lattice, int layer, int end, int branch, double
   if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind) return std::numeric_limits<double>::infinity();
   const auto difference = [](const Config& a, const Config& b) {
     Config d = a - b;
-    for (int k = 0; k < kDof; ++k) d[k] = wrap(d[k]);
+    for (int k = 0; k < kDof; ++k) d[k] = wrap_angle(d[k]);
     return d;
   };
   Config second = (difference(*ahead, *center) - difference(*center, *behind)) / (kStep * kStep);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kernels/kernels.hpp"
+#include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel {
@@ -17,8 +18,6 @@ namespace {
 constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
 constexpr double kSingularSine = 1e-6;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
-
-double wrap(double angle) { return angle - kTwoPi * std::round(angle / kTwoPi); }
 
 int wrapped_index(long long j, int n) { return static_cast<int>(((j % n) + n) % n); }
 
@@ -323,7 +322,7 @@ Lattice::NodeFault Lattice::fault(int layer, int slot) const {
 }
 
 bool Lattice::in_window(int layer, int a, int b) const {
-  if (layer == 0 && start_) return std::abs(wrap(phi(1, b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
+  if (layer == 0 && start_) return std::abs(wrap_angle(phi(1, b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
   const int apart = std::abs(angle_of(a) - angle_of(b));
   return std::min(apart, angles_ - apart) <= window_;
 }

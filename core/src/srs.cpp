@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel {
@@ -107,13 +108,11 @@ TripleCircle triple_circle(const EulerTriple& triple, const Matrix3d& A, const M
 
 Matrix3d turn(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
 
-double wrap(double angle) { return angle - kTwoPi * std::round(angle / kTwoPi); }
-
 std::array<double, 3> solve_euler(const TripleCircle& circle, double shift, double s, double c, bool flip) {
   const auto at = [&](std::size_t k) { return circle[k][0] * s + circle[k][1] * c + circle[k][2]; };
   const double first = std::atan2(at(1), at(0)), middle = std::atan2(std::hypot(at(0), at(1)), at(2)), last = std::atan2(at(4), -at(3));
   if (!flip) return {first, middle - shift, last};
-  return {wrap(first + kPi), -middle - shift, wrap(last + kPi)};
+  return {wrap_angle(first + kPi), -middle - shift, wrap_angle(last + kPi)};
 }
 
 }  // namespace

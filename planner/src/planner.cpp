@@ -8,6 +8,7 @@
 
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
+#include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/graph/path_first.hpp"
 
@@ -73,12 +74,10 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
   return found;
 }
 
-double wrap(double angle) { return std::remainder(angle, kTwoPi); }
-
 /// Measured between the base's vertical and the elbow, in the plane normal to S->W: the convention of vendors and of Shimizu 2008.
 double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config& q) {
   const double axis_angle = first_plane(arm, tool).angle_of(arm.elbow_axis(q));
-  return wrap(axis_angle + (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
+  return wrap_angle(axis_angle + (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
 }
 
 void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& result) {
