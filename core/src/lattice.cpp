@@ -156,7 +156,7 @@ void Lattice::solve(int layer, int first, int count, LayerNodes& out) const {
   const int label = label_of(start_->slot);
   const bool valid = fault(0, start_->slot).status == NodeStatus::kValid;
   for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - first, angles_); k < count; k += angles_) {
-    for (int j = 0; j < kDof; ++j) out.data_[out.q_[static_cast<std::size_t>(label * kDof + j)] + static_cast<std::size_t>(k)] = start_->q[j];
+    for (int j = 0; j < kDof; ++j) out.data_[static_cast<Eigen::Index>(out.q_[static_cast<std::size_t>(label * kDof + j)]) + k] = start_->q[j];
     out.valid_[static_cast<std::size_t>(label * count + k)] = valid;
   }
 }
@@ -168,7 +168,7 @@ void Lattice::solve_exact(const double* sine, const double* cosine, int layer, i
   out.q_.resize(label_count * kDof);
   out.valid_.resize(label_count * n);
   if (reach_[static_cast<std::size_t>(layer)] != ReachStatus::kReachable) {
-    out.data_.resize(n);
+    out.data_.setZero(count);
     std::fill(out.q_.begin(), out.q_.end(), std::size_t{0});
     std::fill(out.valid_.begin(), out.valid_.end(), std::uint8_t{0});
     return;
@@ -177,7 +177,7 @@ void Lattice::solve_exact(const double* sine, const double* cosine, int layer, i
   // One array per (elbow sign, joint, sign of its triple, image): branches share what they have in common.
   std::size_t image_count = 0;
   for (const Images& images : images_) image_count += static_cast<std::size_t>(images.count);
-  out.data_.resize((image_count * 4 + 4) * n);
+  out.data_.resize(static_cast<Eigen::Index>((image_count * 4 + 4) * n));
   std::size_t used = 0;
   const auto allot = [&](int images) {
     const std::size_t offset = used;
@@ -257,7 +257,7 @@ void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) c
   out.count_ = count;
   out.q_.resize(label_count * kDof);
   out.valid_.assign(label_count * n, 0);
-  out.data_.assign(label_count * kDof * n, 0.0);
+  out.data_.setZero(static_cast<Eigen::Index>(label_count * kDof * n));
   for (std::size_t k = 0; k < out.q_.size(); ++k) out.q_[k] = k * n;
   if (reach_[static_cast<std::size_t>(layer)] != ReachStatus::kReachable) return;
   constexpr double kLargestMove = 0.05;  // of polish(): limits further off than this stay violated
@@ -282,7 +282,7 @@ void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) c
           const Images& images = images_[static_cast<std::size_t>(j)];
           const double q = image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j);
           inside = inside && q <= images.upper;
-          out.data_[(label * kDof + static_cast<std::size_t>(j)) * n + static_cast<std::size_t>(k)] = q;
+          out.data_[static_cast<Eigen::Index>((label * kDof + static_cast<std::size_t>(j)) * n) + k] = q;
         }
         out.valid_[label * n + static_cast<std::size_t>(k)] = inside;
       }

@@ -2,11 +2,25 @@
 #include "swivel/graph/cost_to_go.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "kernels/relax.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {
+
+namespace {
+
+std::pair<double, double> range(const double* q, int begin, int end) {
+  double least = kUnreachable, most = -kUnreachable;
+  for (int k = begin; k < end; ++k) {
+    least = q[k] < least ? q[k] : least;
+    most = q[k] > most ? q[k] : most;
+  }
+  return {least, most};
+}
+
+}  // namespace
 
 CostToGo::CostToGo(const Lattice& lattice)
     : lattice_(&lattice),
@@ -62,13 +76,7 @@ void CostToGo::solve(int layer, Joints& joints) {
     for (const int joint : separating_) {
       const double* q = joints.nodes.q(label, joint);
       for (int first = 0; first < length; first += kChunk) {
-        double least = kUnreachable, most = -kUnreachable;
-        for (int k = first; k < std::min(length, first + kChunk); ++k) {
-          least = q[k] < least ? q[k] : least;
-          most = q[k] > most ? q[k] : most;
-        }
-        *low++ = least;
-        *high++ = most;
+        std::tie(*low++, *high++) = range(q, first, std::min(length, first + kChunk));
       }
     }
   }
@@ -123,6 +131,14 @@ bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, c
       high_to = std::max(high_to, to.joints->high[row_to + static_cast<std::size_t>(c)]);
     }
     if (std::max(low_from - high_to, low_to - high_from) > bound[separating_[s]]) return false;
+  }
+  // Few pairs come this far: near a singular pose the outer joints of the triple must meet as well, which a look at them tells.
+  const int from_begin = window + chunk * kChunk, from_end = window + last + 1, to_begin = chunk * kChunk, to_end = last + 2 * window + 1;
+  for (const int joint : {0, 2, 4, 6}) {
+    if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
+    const auto [low_from, high_from] = range(from.nodes().q(label, joint), from_begin, from_end);
+    const auto [low_to, high_to] = range(to.nodes().q(other, joint), to_begin, to_end);
+    if (std::max(low_from - high_to, low_to - high_from) > bound[joint]) return false;
   }
   return true;
 }

@@ -32,7 +32,7 @@ class LayerNodes {
  private:
   friend class Lattice;
   int count_ = 0;
-  std::vector<double> data_;
+  Eigen::ArrayXd data_;              // not a vector: that would write zeros first
   std::vector<std::size_t> q_;       // [label][joint] -> offset into data_
   std::vector<std::uint8_t> valid_;  // [label][angle]
 };
