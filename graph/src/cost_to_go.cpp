@@ -2,25 +2,20 @@
 #include "swivel/graph/cost_to_go.hpp"
 
 #include <algorithm>
-#include <tuple>
 
 #include "kernels/relax.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {
 
-namespace {
-
-std::pair<double, double> range(const double* q, int begin, int end) {
-  double least = kUnreachable, most = -kUnreachable;
+CostToGo::Range CostToGo::range(const double* q, int begin, int end) {
+  Range result{kUnreachable, -kUnreachable};
   for (int k = begin; k < end; ++k) {
-    least = q[k] < least ? q[k] : least;
-    most = q[k] > most ? q[k] : most;
+    result.low = q[k] < result.low ? q[k] : result.low;
+    result.high = q[k] > result.high ? q[k] : result.high;
   }
-  return {least, most};
+  return result;
 }
-
-}  // namespace
 
 CostToGo::CostToGo(const Lattice& lattice)
     : lattice_(&lattice),
@@ -55,28 +50,27 @@ CostToGo::Nodes CostToGo::nodes(int layer, int first, int count, LayerNodes& scr
 
 void CostToGo::solve(int layer, Joints& joints) {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
-  const int padded_chunks = (length + kChunk - 1) / kChunk;
   joints.layer = layer;
   ik_nodes_ += static_cast<std::int64_t>(length) * labels;
   lattice_->solve(layer, (n - window % n) % n, length, joints.nodes);
-  joints.low.resize(static_cast<std::size_t>(labels * padded_chunks) * separating_.size());
-  joints.high.resize(joints.low.size());
+  joints.ranges.resize(range_row(labels, 0));
   joints.alive.resize(static_cast<std::size_t>(labels));
-  double* low = joints.low.data();
-  double* high = joints.high.data();
   for (int label = 0; label < labels; ++label) {
     const std::uint8_t* valid = joints.nodes.valid(label);
     const bool alive = std::find(valid, valid + length, 1) != valid + length;
     joints.alive[static_cast<std::size_t>(label)] = alive;
-    if (!alive) {
-      low += separating_.size() * static_cast<std::size_t>(padded_chunks);
-      high += separating_.size() * static_cast<std::size_t>(padded_chunks);
-      continue;
-    }
-    for (const int joint : separating_) {
-      const double* q = joints.nodes.q(label, joint);
-      for (int first = 0; first < length; first += kChunk) {
-        std::tie(*low++, *high++) = range(q, first, std::min(length, first + kChunk));
+    for (std::size_t s = 0; alive && s < separating_.size(); ++s) {
+      const double* q = joints.nodes.q(label, separating_[s]);
+      ChunkRange* ranges = &joints.ranges[range_row(label, s)];
+      int twin = label - 1;  // branches share what they have in common
+      while (twin >= 0 && !(joints.alive[static_cast<std::size_t>(twin)] && joints.nodes.q(twin, separating_[s]) == q)) --twin;
+      if (twin >= 0) {
+        std::copy_n(&joints.ranges[range_row(twin, s)], chunks(), ranges);
+        continue;
+      }
+      for (int chunk = 0; chunk < chunks(); ++chunk) {
+        const int first = chunk * kChunk, last = std::min(n, first + kChunk);
+        ranges[chunk] = {range(q, window + first, window + last), range(q, first, last + 2 * window)};
       }
     }
   }
@@ -112,33 +106,18 @@ void CostToGo::load_values(const double* row, Block& block) const {
 
 bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const {
   if (!from.joints->alive[static_cast<std::size_t>(label)] || !to.joints->alive[static_cast<std::size_t>(other)]) return false;
-  const int n = lattice_->angles(), window = lattice_->window(), padded_chunks = (n + 2 * window + kChunk - 1) / kChunk;
-  const std::size_t joints = separating_.size();
   const Config& bound = lattice_->step_bound(layer);
-  const int last = std::min(n, (chunk + 1) * kChunk) - 1;  // unpadded angle
-  const int from_first = (window + chunk * kChunk) / kChunk, from_last = (window + last) / kChunk;
-  const int to_first = chunk, to_last = (last + 2 * window) / kChunk;
-  for (std::size_t s = 0; s < joints; ++s) {
-    const std::size_t row_from = (static_cast<std::size_t>(label) * joints + s) * static_cast<std::size_t>(padded_chunks);
-    const std::size_t row_to = (static_cast<std::size_t>(other) * joints + s) * static_cast<std::size_t>(padded_chunks);
-    double low_from = kUnreachable, high_from = -kUnreachable, low_to = kUnreachable, high_to = -kUnreachable;
-    for (int c = from_first; c <= from_last; ++c) {
-      low_from = std::min(low_from, from.joints->low[row_from + static_cast<std::size_t>(c)]);
-      high_from = std::max(high_from, from.joints->high[row_from + static_cast<std::size_t>(c)]);
-    }
-    for (int c = to_first; c <= to_last; ++c) {
-      low_to = std::min(low_to, to.joints->low[row_to + static_cast<std::size_t>(c)]);
-      high_to = std::max(high_to, to.joints->high[row_to + static_cast<std::size_t>(c)]);
-    }
-    if (std::max(low_from - high_to, low_to - high_from) > bound[separating_[s]]) return false;
+  for (std::size_t s = 0; s < separating_.size(); ++s) {
+    const Range& own = from.joints->ranges[range_row(label, s) + static_cast<std::size_t>(chunk)].own;
+    const Range& near = to.joints->ranges[range_row(other, s) + static_cast<std::size_t>(chunk)].near;
+    if (own.gap(near) > bound[separating_[s]]) return false;
   }
   // Few pairs come this far: near a singular pose the outer joints of the triple must meet as well, which a look at them tells.
-  const int from_begin = window + chunk * kChunk, from_end = window + last + 1, to_begin = chunk * kChunk, to_end = last + 2 * window + 1;
+  const int window = lattice_->window(), first = chunk * kChunk, last = std::min(lattice_->angles(), first + kChunk);
   for (const int joint : {0, 2, 4, 6}) {
     if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
-    const auto [low_from, high_from] = range(from.nodes().q(label, joint), from_begin, from_end);
-    const auto [low_to, high_to] = range(to.nodes().q(other, joint), to_begin, to_end);
-    if (std::max(low_from - high_to, low_to - high_from) > bound[joint]) return false;
+    const Range own = range(from.nodes().q(label, joint), window + first, window + last);
+    if (own.gap(range(to.nodes().q(other, joint), first, last + 2 * window)) > bound[joint]) return false;
   }
   return true;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -63,11 +64,20 @@ class CostToGo {
  private:
   static constexpr int kChunk = 16;  // angles; the unit of repair and of the label-pair test
 
+  struct Range {
+    double low = 0, high = 0;
+    [[nodiscard]] double gap(const Range& other) const { return std::max(low - other.high, other.low - high); }
+  };
+  /// A joint over a chunk, and over the chunk widened by the window on both sides.
+  struct ChunkRange {
+    Range own, near;
+  };
+  [[nodiscard]] static Range range(const double* q, int begin, int end);
   /// The joints of one layer, from -window to angles + window around the circle, and their ranges by chunk.
   struct Joints {
     int layer = -1;
     LayerNodes nodes;
-    std::vector<double> low, high;    // [label][separating joint][padded chunk]
+    std::vector<ChunkRange> ranges;   // [label][separating joint][chunk]
     std::vector<std::uint8_t> alive;  // [label] has a node at all
   };
   /// One layer ready for relaxation.
@@ -98,6 +108,9 @@ class CostToGo {
 
   [[nodiscard]] std::size_t index(int layer, int slot) const {
     return static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->width()) + static_cast<std::size_t>(slot);
+  }
+  [[nodiscard]] std::size_t range_row(int label, std::size_t separating) const {
+    return (static_cast<std::size_t>(label) * separating_.size() + separating) * static_cast<std::size_t>(chunks());
   }
   [[nodiscard]] int chunks() const { return (lattice_->angles() + kChunk - 1) / kChunk; }
   void solve(int layer, Joints& joints);
