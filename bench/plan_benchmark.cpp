@@ -53,9 +53,11 @@ int main(int argc, char** argv) {
         for (const EdgeMode edges : {EdgeMode::kNodes, EdgeMode::kContinuous}) {
           const bool eager = planner == PlannerKind::kEager || planner == PlannerKind::kEagerDp;
           if (eager && edges == EdgeMode::kContinuous) continue;  // minutes each: every edge of the lattice swept through FCL
-          const std::string label = std::string(name) + "/" + to_string(planner) + "/" + setting.name + (edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
-          benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& state) { run(state, problem, planner, setting, edges); })
-              ->Unit(benchmark::kMillisecond);
+          const std::string label = std::string(name) + "/" + to_string(planner) + "/" + setting.name +
+                                    (edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
+          benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& state) {
+            run(state, problem, planner, setting, edges);
+          })->Unit(benchmark::kMillisecond);
         }
   }
   benchmark::AddCustomContext("vector_unit", to_string(active_isa()));

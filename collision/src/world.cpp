@@ -148,7 +148,8 @@ struct World::Query::Impl {
   }
 
   bool below(const BodyPair& p, double d) {
-    return !surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety) && test.below(placed(p.a), placed(p.b), d);
+    return !surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety) &&
+           test.below(placed(p.a), placed(p.b), d);
   }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[static_cast<std::size_t>(i)]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }

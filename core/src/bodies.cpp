@@ -17,7 +17,9 @@ std::vector<PlacedShape> join_capsules(const std::vector<PlacedShape>& shapes) {
   const auto sphere_at = [&](const Vector3d& center, double radius) {
     for (std::size_t i = 0; i < shapes.size(); ++i) {
       const auto* sphere = std::get_if<Sphere>(&shapes[i].shape);
-      if (sphere && !used[i] && std::abs(sphere->radius - radius) <= kSame && (shapes[i].pose.translation() - center).norm() <= kSame) return i;
+      if (sphere && !used[i] && std::abs(sphere->radius - radius) <= kSame &&
+          (shapes[i].pose.translation() - center).norm() <= kSame)
+        return i;
     }
     return shapes.size();
   };
@@ -54,13 +56,16 @@ std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm
   for (std::size_t l = 0; l < robot.links.size(); ++l) {
     const LinkPlacement& placement = arm.links[l];
     for (const PlacedShape& shape : join_capsules(robot.links[l].collision))
-      bodies.push_back({robot.links[l].name, static_cast<int>(l), false, placement.group, shape.shape, placement.pose * shape.pose});
+      bodies.push_back(
+          {robot.links[l].name, static_cast<int>(l), false, placement.group, shape.shape, placement.pose * shape.pose});
   }
   for (const AttachedBody& body : attached) {
-    if (robot.find_link(body.name) >= 0) throw InputError(robot.source + ": robot.attached: '" + body.name + "' is a link's name: choose another");
+    if (robot.find_link(body.name) >= 0)
+      throw InputError(robot.source + ": robot.attached: '" + body.name + "' is a link's name: choose another");
     const int link = robot.find_link(body.link);
     if (link < 0)
-      throw InputError(robot.source + ": robot.attached." + body.name + ".link: unknown link '" + body.link + "': allowed are the links of this file");
+      throw InputError(robot.source + ": robot.attached." + body.name + ".link: unknown link '" + body.link +
+                       "': allowed are the links of this file");
     const LinkPlacement& placement = arm.links[static_cast<std::size_t>(link)];
     bodies.push_back({body.name, link, true, placement.group, body.shape, placement.pose * body.pose});
   }

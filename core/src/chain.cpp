@@ -29,7 +29,9 @@ Pose joint_motion(const Joint& joint, double position) {
   }
 }
 
-[[noreturn]] void fail(const RobotModel& robot, const std::string& what) { throw InputError(robot.source + ": " + what); }
+[[noreturn]] void fail(const RobotModel& robot, const std::string& what) {
+  throw InputError(robot.source + ": " + what);
+}
 
 /// Joints from base to tip, in order.
 std::vector<int> joints_between(const RobotModel& robot, int base, int tip) {
@@ -53,30 +55,34 @@ int require_link(const RobotModel& robot, const std::string& key, const std::str
 }
 
 /// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
-std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold, const std::vector<int>& arm) {
+std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold,
+                                   const std::vector<int>& arm) {
   std::vector<double> position(robot.joints.size(), 0.0);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
     const bool bounded = joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kPrismatic;
-    if (bounded && std::find(arm.begin(), arm.end(), static_cast<int>(j)) == arm.end()) position[j] = std::clamp(0.0, joint.lower, joint.upper);
+    if (bounded && std::find(arm.begin(), arm.end(), static_cast<int>(j)) == arm.end())
+      position[j] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (const auto& [name, value] : hold) {
     const int j = robot.find_joint(name);
     if (j < 0) fail(robot, "robot.hold: unknown joint '" + name + "': allowed are the joints of this file");
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    if (std::find(arm.begin(), arm.end(), j) != arm.end()) fail(robot, "robot.hold: joint '" + name + "' is one of the arm's seven: allowed are the others");
+    if (std::find(arm.begin(), arm.end(), j) != arm.end())
+      fail(robot, "robot.hold: joint '" + name + "' is one of the arm's seven: allowed are the others");
     if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
     if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
     if (joint.type != Joint::Type::kContinuous && (value < joint.lower - 1e-9 || value > joint.upper + 1e-9))
-      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " is outside its limits: allowed is " + std::to_string(joint.lower) +
-                      " to " + std::to_string(joint.upper));
+      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " is outside its limits: allowed is " +
+                      std::to_string(joint.lower) + " to " + std::to_string(joint.upper));
     position[static_cast<std::size_t>(j)] = value;
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const auto& mimic = robot.joints[j].mimic;
     if (!mimic) continue;
     if (std::find(arm.begin(), arm.end(), mimic->joint) != arm.end())
-      fail(robot, "joint '" + robot.joints[j].name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
+      fail(robot,
+           "joint '" + robot.joints[j].name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
     position[j] = mimic->multiplier * position[static_cast<std::size_t>(mimic->joint)] + mimic->offset;
   }
   return position;
@@ -96,7 +102,9 @@ std::array<Pose, kDof + 1> Chain::displacements(const Config& q) const {
   return G;
 }
 
-Pose Chain::tool(const Config& q) const { return displacements(q)[kDof] * home; }
+Pose Chain::tool(const Config& q) const {
+  return displacements(q)[kDof] * home;
+}
 
 Eigen::Matrix<double, 6, kDof> Chain::jacobian(const Config& q) const {
   const auto G = displacements(q);
@@ -117,8 +125,8 @@ double Chain::manipulability(const Config& q) const {
   return std::sqrt(std::max(0.0, JJt.determinant()));
 }
 
-ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link, const std::map<std::string, double>& hold,
-                   const Pose& tool) {
+ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
+                   const std::map<std::string, double>& hold, const Pose& tool) {
   const int base = require_link(robot, "robot.base_link", base_link);
   const int tip = require_link(robot, "robot.tip_link", tip_link);
   std::vector<int> arm;
@@ -127,8 +135,8 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     if (joint.movable() && !joint.mimic) arm.push_back(j);
   }
   if (arm.size() < kDof)
-    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" + tip_link +
-                    "': at least seven are needed");
+    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
+                    tip_link + "': at least seven are needed");
   arm.erase(arm.begin(), arm.end() - kDof);
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)

@@ -37,7 +37,8 @@ double Lattice::edge_cost(const Config& delta) const {
   for (std::size_t k = 0; k < kDof; ++k) x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
   if (cost_.metric == CostMetric::kL2)
     // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
-    return rounded(std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
+    return rounded(
+        std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
   double most = 0;
   for (const double value : x) most = std::max(most, std::abs(value));
   return rounded(most);
@@ -93,8 +94,10 @@ double step_error(const Lattice& lattice, int layer, int end, int branch, double
   };
   const auto center = joints(0, phi);
   const auto ahead = joints(kStep, phi + kStep * dphi), behind = joints(-kStep, phi - kStep * dphi);
-  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi), phi_ahead = joints(0, phi + kStep), phi_behind = joints(0, phi - kStep);
-  if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind) return std::numeric_limits<double>::infinity();
+  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi), phi_ahead = joints(0, phi + kStep),
+             phi_behind = joints(0, phi - kStep);
+  if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind)
+    return std::numeric_limits<double>::infinity();
   const auto difference = [](const Config& a, const Config& b) {
     Config d = a - b;
     for (int k = 0; k < kDof; ++k) d[k] = wrap_angle(d[k]);

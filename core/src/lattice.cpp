@@ -19,12 +19,18 @@ constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within th
 constexpr double kSingularSine = 1e-6;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 
-int wrapped_index(long long j, int n) { return static_cast<int>(((j % n) + n) % n); }
+int wrapped_index(long long j, int n) {
+  return static_cast<int>(((j % n) + n) % n);
+}
 
 /// Least k with q + 2 pi k >= base; as the kernels compute it.
-double image_from(double q, double base) { return q + kTwoPi * std::ceil((base - q) / kTwoPi); }
+double image_from(double q, double base) {
+  return q + kTwoPi * std::ceil((base - q) / kTwoPi);
+}
 
-std::string gigabytes(double bytes) { return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB"; }
+std::string gigabytes(double bytes) {
+  return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
+}
 
 }  // namespace
 
@@ -44,8 +50,9 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
     }
     const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
     if (lower > upper)
-      throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[static_cast<std::size_t>(k)] +
-                       "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
+      throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" +
+                       chain.joint_names[static_cast<std::size_t>(k)] + "': allowed is at most " +
+                       std::to_string((limit.upper - limit.lower) / 2));
     images.base = lower - kLimitTolerance;
     images.upper = upper + kLimitTolerance;
     const double range = upper - lower;
@@ -57,10 +64,12 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (width > 1e8 || needed > 0.8 * memory)
-    throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " + std::to_string(static_cast<long long>(width)) +
-                     " nodes need " + gigabytes(needed) + ", this machine has " + gigabytes(memory) + ": allowed are larger ds or dphi");
+    throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " +
+                     std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) + ", this machine has " +
+                     gigabytes(memory) + ": allowed are larger ds or dphi");
   angles_ = static_cast<int>(wanted);
-  window_ = static_cast<int>(std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
+  window_ = static_cast<int>(
+      std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
   window_ = std::max(window_, angles_ > 1 ? 1 : 0);
 
   sine_.resize(static_cast<std::size_t>(3 * angles_));
@@ -86,7 +95,8 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (int k = 0; k < kDof; ++k)
     if ((timed || cost_.metric == CostMetric::kTime) && chain.limit[static_cast<std::size_t>(k)].velocity <= 0)
-      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" + chain.joint_names[static_cast<std::size_t>(k)] +
+      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
+                       chain.joint_names[static_cast<std::size_t>(k)] +
                        "' has no speed limit in the URDF: allowed are robots whose joints all have one");
   step_bounds_.resize(timed ? m - 1 : 1, Config::Constant(limits_.joint_step));
   if (timed)
@@ -114,12 +124,15 @@ void Lattice::place_start(const Config& q, const std::string& source) {
     const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
     const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
     if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
-      throw InputError(source + ": start.joints: joint '" + chain_->joint_names[static_cast<std::size_t>(k)] + "' at " + std::to_string(q[k]) +
-                       " is outside its limits: allowed is " + std::to_string(lower) + " to " + std::to_string(upper));
+      throw InputError(source + ": start.joints: joint '" + chain_->joint_names[static_cast<std::size_t>(k)] + "' at " +
+                       std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) + " to " +
+                       std::to_string(upper));
   }
   if (!(distance <= 1e-6 && angle <= 1e-6)) {
     char text[160];
-    std::snprintf(text, sizeof text, ": start.joints: the tool is %.3g m and %.3g rad from the path's first pose: allowed are 1e-6 m and 1e-6 rad", distance, angle);
+    std::snprintf(text, sizeof text,
+                  ": start.joints: the tool is %.3g m and %.3g rad from the path's first pose: allowed are 1e-6 m and 1e-6 rad",
+                  distance, angle);
     throw InputError(source + text);
   }
   Start start;
@@ -128,7 +141,8 @@ void Lattice::place_start(const Config& q, const std::string& source) {
   int winding = 0;
   for (int k = 0; k < kDof; ++k) {
     const Images& images = images_[static_cast<std::size_t>(k)];
-    const int image = images.count == 1 ? 0 : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)), 0, images.count - 1);
+    const int image =
+        images.count == 1 ? 0 : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)), 0, images.count - 1);
     winding = winding * images.count + image;
   }
   const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
@@ -156,7 +170,8 @@ void Lattice::solve(int layer, int first, int count, LayerNodes& out) const {
   const int label = label_of(start_->slot);
   const bool valid = fault(0, start_->slot).status == NodeStatus::kValid;
   for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - first, angles_); k < count; k += angles_) {
-    for (int j = 0; j < kDof; ++j) out.data_[static_cast<Eigen::Index>(out.q_[static_cast<std::size_t>(label * kDof + j)]) + k] = start_->q[j];
+    for (int j = 0; j < kDof; ++j)
+      out.data_[static_cast<Eigen::Index>(out.q_[static_cast<std::size_t>(label * kDof + j)]) + k] = start_->q[j];
     out.valid_[static_cast<std::size_t>(label * count + k)] = valid;
   }
 }
@@ -236,16 +251,18 @@ void Lattice::solve_exact(const double* sine, const double* cosine, int layer, i
         std::array<const double*, kDof> q;
         for (int j = 0; j < kDof; ++j) {
           const std::size_t bit = j < kWristJoints ? (sign & kShoulderBit ? 1 : 0) : (sign & kWristBit ? 1 : 0);
-          const std::size_t offset = track[bit][static_cast<std::size_t>(j)] + static_cast<std::size_t>(winding_images(winding, j)) * n;
+          const std::size_t offset =
+              track[bit][static_cast<std::size_t>(j)] + static_cast<std::size_t>(winding_images(winding, j)) * n;
           out.q_[label * kDof + static_cast<std::size_t>(j)] = offset;
           q[static_cast<std::size_t>(j)] = data + offset;
         }
         std::uint8_t* const valid = out.valid_.data() + label * n;
         const auto& u = images_;
         for (std::size_t k = 0; k < n; ++k)
-          valid[k] = static_cast<std::uint8_t>((shoulder_sine[k] >= kSingularSine) & (wrist_sine[k] >= kSingularSine) & (q[0][k] <= u[0].upper) &
-                                               (q[1][k] <= u[1].upper) & (q[2][k] <= u[2].upper) & (q[3][k] <= u[3].upper) & (q[4][k] <= u[4].upper) &
-                                               (q[5][k] <= u[5].upper) & (q[6][k] <= u[6].upper));
+          valid[k] = static_cast<std::uint8_t>((shoulder_sine[k] >= kSingularSine) & (wrist_sine[k] >= kSingularSine) &
+                                               (q[0][k] <= u[0].upper) & (q[1][k] <= u[1].upper) & (q[2][k] <= u[2].upper) &
+                                               (q[3][k] <= u[3].upper) & (q[4][k] <= u[4].upper) & (q[5][k] <= u[5].upper) &
+                                               (q[6][k] <= u[6].upper));
       }
     }
   }
@@ -266,7 +283,9 @@ void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) c
     const double phi_k = -kPi + kTwoPi * ((first + k) % angles_) / angles_;
     for (int branch = 0; branch < kBranches; ++branch) {
       const Config seed = srs_ik(*arm_, circles, phi_k, branch);
-      if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine) continue;
+      if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine ||
+          std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine)
+        continue;
       bool hopeless = false;
       for (int j = 0; j < kDof && !hopeless; ++j) {
         const Images& images = images_[static_cast<std::size_t>(j)];
@@ -297,7 +316,9 @@ std::optional<Config> Lattice::node(int layer, int slot) const {
   return nodes.config(label_of(slot), 0);
 }
 
-bool Lattice::manipulable(const Config& q) const { return !asks_manipulability() || chain_->manipulability(q) >= limits_.manipulability; }
+bool Lattice::manipulable(const Config& q) const {
+  return !asks_manipulability() || chain_->manipulability(q) >= limits_.manipulability;
+}
 
 Lattice::NodeFault Lattice::fault(int layer, int slot) const {
   NodeFault fault;
@@ -310,12 +331,14 @@ Lattice::NodeFault Lattice::fault(int layer, int slot) const {
   if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine)
     return {NodeStatus::kSingular, 0};
   if (given) return fault;
-  const auto polished = polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
+  const auto polished =
+      polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
   if (!polished) return {NodeStatus::kNoIk, 0};
   const int winding = label_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
-    if (image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j) > images.upper) fault.joints |= static_cast<std::uint8_t>(1 << j);
+    if (image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j) > images.upper)
+      fault.joints |= static_cast<std::uint8_t>(1 << j);
   }
   if (fault.joints) fault.status = NodeStatus::kLimit;
   return fault;

@@ -6,7 +6,8 @@
 
 namespace swivel {
 
-std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi, const Config& seed) {
+std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
+                             const Config& seed) {
   if (arm.exact) return seed;
   constexpr int kSteps = 5;
   constexpr double kResidual = 1e-10, kLargestMove = 0.05;

@@ -56,9 +56,11 @@ Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_
 std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   Pose frame = Pose::Identity();
   if (problem.path_frame != problem.base_link && !problem.path_frame.empty()) {
-    const auto object = std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == problem.path_frame; });
+    const auto object =
+        std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == problem.path_frame; });
     if (object == problem.scene.end())
-      throw InputError(problem.source + ": path.frame: unknown frame '" + problem.path_frame + "': allowed are the base link and the names of scene objects");
+      throw InputError(problem.source + ": path.frame: unknown frame '" + problem.path_frame +
+                       "': allowed are the base link and the names of scene objects");
     frame = object->pose;
   }
   std::vector<Waypoint> result;

@@ -12,7 +12,11 @@ int index_of(const std::vector<T>& items, const std::string& name) {
 }
 }  // namespace
 
-int RobotModel::find_link(const std::string& link_name) const { return index_of(links, link_name); }
-int RobotModel::find_joint(const std::string& joint_name) const { return index_of(joints, joint_name); }
+int RobotModel::find_link(const std::string& link_name) const {
+  return index_of(links, link_name);
+}
+int RobotModel::find_joint(const std::string& joint_name) const {
+  return index_of(joints, joint_name);
+}
 
 }  // namespace swivel

@@ -21,9 +21,9 @@ struct Line {
 };
 
 struct Crossing {
-  double miss = 0;      // distance between the lines
-  double along_b = 0;   // of the crossing, along the second line from its point
-  double right = 0;     // deviation from a right angle
+  double miss = 0;     // distance between the lines
+  double along_b = 0;  // of the crossing, along the second line from its point
+  double right = 0;    // deviation from a right angle
   Vector3d middle = Vector3d::Zero();
   bool parallel = false;
 };
@@ -53,8 +53,10 @@ std::string text(const char* format, double a, double b = 0) {
 }
 
 /// Axes i, i+1, i+2 (0-based) through one point, neighbours perpendicular; appends what is wrong.
-Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what, FitDeviation& deviation, std::string& problem) {
-  const std::string names[2] = {"axes " + std::to_string(i + 1) + " and " + std::to_string(i + 2), "axes " + std::to_string(i + 2) + " and " + std::to_string(i + 3)};
+Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what, FitDeviation& deviation,
+                    std::string& problem) {
+  const std::string names[2] = {"axes " + std::to_string(i + 1) + " and " + std::to_string(i + 2),
+                                "axes " + std::to_string(i + 2) + " and " + std::to_string(i + 3)};
   const Crossing crossing[2] = {cross(line[i], line[i + 1]), cross(line[i + 2], line[i + 1])};
   for (int k = 0; k < 2; ++k) {
     const std::string& pair = names[k];
@@ -77,13 +79,15 @@ Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const cha
   deviation.offset = std::max(deviation.offset, gap);
   if (gap > kMissTolerance) {
     problem += problem.empty() ? "" : "; ";
-    problem += "axes " + std::to_string(i + 1) + " and " + std::to_string(i + 3) + " meet axis " + std::to_string(i + 2) + text(" %.1f mm apart", 1e3 * gap) +
-               " (no spherical " + what + ")";
+    problem += "axes " + std::to_string(i + 1) + " and " + std::to_string(i + 3) + " meet axis " + std::to_string(i + 2) +
+               text(" %.1f mm apart", 1e3 * gap) + " (no spherical " + what + ")";
   }
   return 0.5 * (crossing[0].middle + crossing[1].middle);
 }
 
-Vector3d perpendicular_part(const Vector3d& v, const Vector3d& n) { return (v - v.dot(n) * n).normalized(); }
+Vector3d perpendicular_part(const Vector3d& v, const Vector3d& n) {
+  return (v - v.dot(n) * n).normalized();
+}
 
 EulerTriple fit_triple(const Vector3d& first, const Vector3d& second, const Vector3d& third) {
   EulerTriple triple;
@@ -95,7 +99,8 @@ EulerTriple fit_triple(const Vector3d& first, const Vector3d& second, const Vect
 
 /// Rows of B^T M B Ry(shift) needed for z-y-z, for one of the three matrices of R(phi) = A sin + B cos + C.
 std::array<double, 5> triple_entries(const EulerTriple& triple, const Matrix3d& M) {
-  const Matrix3d N = triple.basis.transpose() * M * triple.basis * Eigen::AngleAxisd(triple.shift, Vector3d::UnitY()).toRotationMatrix();
+  const Matrix3d N =
+      triple.basis.transpose() * M * triple.basis * Eigen::AngleAxisd(triple.shift, Vector3d::UnitY()).toRotationMatrix();
   return {N(0, 2), N(1, 2), N(2, 2), N(2, 0), N(2, 1)};
 }
 
@@ -106,11 +111,14 @@ TripleCircle triple_circle(const EulerTriple& triple, const Matrix3d& A, const M
   return circle;
 }
 
-Matrix3d turn(const Vector3d& axis, double angle) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); }
+Matrix3d turn(const Vector3d& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
 
 std::array<double, 3> solve_euler(const TripleCircle& circle, double shift, double s, double c, bool flip) {
   const auto at = [&](std::size_t k) { return circle[k][0] * s + circle[k][1] * c + circle[k][2]; };
-  const double first = std::atan2(at(1), at(0)), middle = std::atan2(std::hypot(at(0), at(1)), at(2)), last = std::atan2(at(4), -at(3));
+  const double first = std::atan2(at(1), at(0)), middle = std::atan2(std::hypot(at(0), at(1)), at(2)),
+               last = std::atan2(at(4), -at(3));
   if (!flip) return {first, middle - shift, last};
   return {wrap_angle(first + kPi), -middle - shift, wrap_angle(last + kPi)};
 }
@@ -129,9 +137,12 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   if (problem.empty()) {
     arm.deviation.offset = std::max(arm.deviation.offset, std::abs(out_of_plane));
     if (std::abs(out_of_plane) > kMissTolerance)
-      problem = text("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to", 1e3 * std::abs(out_of_plane));
+      problem = text("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to",
+                     1e3 * std::abs(out_of_plane));
   }
-  if (!problem.empty()) throw InputError(source + ": not an S-R-S arm: " + problem + ": allowed are a spherical shoulder and wrist within 1 mm and 0.57 deg");
+  if (!problem.empty())
+    throw InputError(source + ": not an S-R-S arm: " + problem +
+                     ": allowed are a spherical shoulder and wrist within 1 mm and 0.57 deg");
 
   arm.axis[1] = line[1].a;
   arm.axis[0] = perpendicular_part(line[0].a, line[1].a);
@@ -162,11 +173,17 @@ int SrsArm::branch(const Config& q) const {
          (std::sin(elbow_angle(q)) < 0 ? kElbowBit : 0);
 }
 
-Vector3d SrsArm::elbow_axis(const Config& q) const { return turn(axis[0], q[0]) * (turn(axis[1], q[1]) * (turn(axis[2], q[2]) * axis[3])); }
+Vector3d SrsArm::elbow_axis(const Config& q) const {
+  return turn(axis[0], q[0]) * (turn(axis[1], q[1]) * (turn(axis[2], q[2]) * axis[3]));
+}
 
-double ArmPlane::angle_of(const Vector3d& elbow_axis) const { return std::atan2(elbow_axis.dot(u.cross(r)), elbow_axis.dot(r)); }
+double ArmPlane::angle_of(const Vector3d& elbow_axis) const {
+  return std::atan2(elbow_axis.dot(u.cross(r)), elbow_axis.dot(r));
+}
 
-Vector3d wrist_centre(const SrsArm& arm, const Pose& tool) { return tool * arm.wrist_in_tool; }
+Vector3d wrist_centre(const SrsArm& arm, const Pose& tool) {
+  return tool * arm.wrist_in_tool;
+}
 
 ArmPlane first_plane(const SrsArm& arm, const Pose& tool) {
   ArmPlane plane;
@@ -208,7 +225,8 @@ ReachStatus reach_status(const SrsArm& arm, double reach) {
 std::array<ElbowCircle, 2> elbow_circles(const SrsArm& arm, const ArmPlane& plane, const Pose& tool) {
   const double d2 = plane.reach * plane.reach, sum = arm.upper + arm.fore, difference = arm.upper - arm.fore;
   // Half-angle form: acos loses half the digits near the straight arm.
-  const double bend = 2 * std::atan2(std::sqrt(std::max(0.0, sum * sum - d2)), std::sqrt(std::max(0.0, d2 - difference * difference)));
+  const double bend =
+      2 * std::atan2(std::sqrt(std::max(0.0, sum * sum - d2)), std::sqrt(std::max(0.0, d2 - difference * difference)));
   const Vector3d& a4 = arm.axis[3];
   const Vector3d ur = plane.u.cross(plane.r);
   const Matrix3d goal = tool.linear() * arm.home_rotation.transpose();

@@ -50,10 +50,12 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       continue;
     }
     if (angle > kPi - kSame)
-      throw InputError(source + ": path: waypoint " + std::to_string(k) + ": turns by 180 deg from the one before: which way is undefined: allowed is less");
+      throw InputError(source + ": path: waypoint " + std::to_string(k) +
+                       ": turns by 180 deg from the one before: which way is undefined: allowed is less");
     const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
     if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
-      throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) + " cuts the path into more than 2e6 layers: allowed are larger steps");
+      throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) +
+                       " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
     for (int step = 1; step <= steps; ++step) {
       PathLayer& previous = layers_.back();
@@ -64,7 +66,8 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       if (step == steps)
         layers_.push_back({s + length, pose(to.position, to.orientation), static_cast<int>(k), 0, 0, Vector3d::Zero()});
       else
-        layers_.push_back({s + t * length, pose(from.position + t * (to.position - from.position), turned(from.orientation, rotation, t)), -1, 0, 0,
+        layers_.push_back({s + t * length,
+                           pose(from.position + t * (to.position - from.position), turned(from.orientation, rotation, t)), -1, 0, 0,
                            Vector3d::Zero()});
     }
     s += length;
@@ -80,7 +83,8 @@ Pose ToolPath::at(int i, double t) const {
   X.translation() = from.tool.translation() + t * (to.tool.translation() - from.tool.translation());
   X.linear() = from.tool.linear();
   if (from.step_angle > 0)
-    X.linear() = from.tool.linear() * Eigen::AngleAxisd(t * from.step_angle, from.step_rotation / from.step_angle).toRotationMatrix();
+    X.linear() =
+        from.tool.linear() * Eigen::AngleAxisd(t * from.step_angle, from.step_rotation / from.step_angle).toRotationMatrix();
   return X;
 }
 

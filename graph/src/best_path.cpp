@@ -12,8 +12,8 @@ namespace {
 
 using Vertex = ImplicitLattice::Vertex;
 
-/// What orders the queue: cost, then depth (deepest first), then slot. With a perfect heuristic every queued vertex lies on an optimal
-/// path, so the first to reach the goal is the smallest in slot order.
+/// What orders the queue: cost, then depth (deepest first), then slot. With a perfect heuristic every queued vertex lies on an
+/// optimal path, so the first to reach the goal is the smallest in slot order.
 struct Rank {
   double cost = kUnreachable;
   std::int64_t tie = 0;
@@ -92,10 +92,11 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
   record(records, root).distance = 0;
   record(records, root).rank = {cost_to_go.best(), 0};
   try {
-    boost::astar_search_no_init(graph, root, heuristic, Visitor(cost_to_go.goal_layer(), &expansions), Field<Vertex, &Record::predecessor>{&records},
-                                Field<Rank, &Record::rank>{&records}, Field<double, &Record::distance>{&records}, ImplicitCostMap{},
-                                Field<boost::default_color_type, &Record::color>{&records}, Field<std::size_t, &Record::index>{&records}, Compare{},
-                                Combine{}, Rank{}, Rank{0, 0});
+    boost::astar_search_no_init(graph, root, heuristic, Visitor(cost_to_go.goal_layer(), &expansions),
+                                Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
+                                Field<double, &Record::distance>{&records}, ImplicitCostMap{},
+                                Field<boost::default_color_type, &Record::color>{&records},
+                                Field<std::size_t, &Record::index>{&records}, Compare{}, Combine{}, Rank{}, Rank{0, 0});
   } catch (const Found& found) {
     SlotPath path;
     for (Vertex v = found.goal; v != root; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));

@@ -23,8 +23,8 @@ CostToGo::CostToGo(const Lattice& lattice)
       verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown) {
   constexpr std::int64_t kMostKept = 1'000'000;  // nodes; about 25 bytes each
   if (!lattice.arm().exact || lattice.nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice.layers()));
-  // A branch flips only through the zero of a middle angle, so those three joints tell branches apart; joints with several images tell
-  // windings apart. Continuous joints have no plain interval.
+  // A branch flips only through the zero of a middle angle, so those three joints tell branches apart; joints with several images
+  // tell windings apart. Continuous joints have no plain interval.
   const auto& limit = lattice.chain().limit;
   for (int j = 0; j < kDof; ++j) {
     const JointLimit& l = limit[static_cast<std::size_t>(j)];
@@ -122,7 +122,8 @@ bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, c
   return true;
 }
 
-void CostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other, double* best) {
+void CostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other,
+                         double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
   RelaxTask task;
   task.n = count;
@@ -156,7 +157,8 @@ void CostToGo::relax_chunk(int step_layer, const Block& from, int label, int chu
   if (!from.joints->alive[static_cast<std::size_t>(label)]) return;
   if (to.joints->alive[static_cast<std::size_t>(label)]) relax_run(step_layer, from, label, first, count, to, label, best);
   for (int other = 0; other < lattice_->labels(); ++other)
-    if (other != label && may_connect(step_layer, from, label, chunk, to, other)) relax_run(step_layer, from, label, first, count, to, other, best);
+    if (other != label && may_connect(step_layer, from, label, chunk, to, other))
+      relax_run(step_layer, from, label, first, count, to, other, best);
 }
 
 void CostToGo::relax_layer(int step_layer, const Block& from, const Block& to, double* row) {
@@ -238,7 +240,9 @@ bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
   return true;
 }
 
-double CostToGo::best() const { return *std::min_element(g_.begin(), g_.begin() + lattice_->width()); }
+double CostToGo::best() const {
+  return *std::min_element(g_.begin(), g_.begin() + lattice_->width());
+}
 
 void CostToGo::remove_node(int layer, int slot) {
   verdict_[index(layer, slot)] = Verdict::kRemoved;
@@ -262,7 +266,9 @@ Verdict CostToGo::edge_verdict(int layer, int a, int b) const {
   return found == edge_verdict_.end() ? Verdict::kUnknown : found->second;
 }
 
-void CostToGo::keep_edge(int layer, int a, int b) { edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kValid; }
+void CostToGo::keep_edge(int layer, int a, int b) {
+  edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kValid;
+}
 
 void CostToGo::remove_edge(int layer, int a, int b) {
   edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kRemoved;
@@ -387,7 +393,9 @@ int CostToGo::deepest_reachable() {
   Block* here = &block_[1];
   load(0, *before);
   drop_invalid(*before, value.data());
-  const auto any = [](const std::vector<double>& v) { return std::any_of(v.begin(), v.end(), [](double x) { return x != kUnreachable; }); };
+  const auto any = [](const std::vector<double>& v) {
+    return std::any_of(v.begin(), v.end(), [](double x) { return x != kUnreachable; });
+  };
   if (!any(value)) return -1;
   load_values(value.data(), *before);
   int layer = 1;

@@ -15,8 +15,8 @@ namespace {
 struct EdgeCost {
   double cost = 0;
 };
-/// Edges point from the goal towards the start, so that a search from the goal yields every node's cost-to-go and ties can be settled
-/// from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer at no cost.
+/// Edges point from the goal towards the start, so that a search from the goal yields every node's cost-to-go and ties can be
+/// settled from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer at no cost.
 using Graph = boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
@@ -86,7 +86,8 @@ struct AStarVisitor : boost::default_astar_visitor {
   const std::vector<double>* distance;
   double* optimum;
   std::int64_t* expansions;
-  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e) : built(b), distance(d), optimum(o), expansions(e) {}
+  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e)
+      : built(b), distance(d), optimum(o), expansions(e) {}
   void examine_vertex(Vertex v, const Graph&) const {
     ++*expansions;
     if (v == 0) return;
@@ -104,7 +105,8 @@ std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOut
   const auto distance_map = boost::make_iterator_property_map(distance.begin(), index);
   const auto weight = get(&EdgeCost::cost, graph);
   if (search == EagerSearch::kDijkstra) {
-    boost::dijkstra_shortest_paths(graph, Vertex{0}, boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable));
+    boost::dijkstra_shortest_paths(graph, Vertex{0},
+                                   boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable));
     outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
     return distance;
   }

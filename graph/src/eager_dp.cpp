@@ -62,7 +62,8 @@ EagerOutcome eager_dp(const Lattice& lattice, Validity& validity) {
         const double rest = value[static_cast<std::size_t>(b)];
         if (rest != kUnreachable) candidates.push_back({lattice.edge_cost(delta) + rest, b});
       });
-      std::sort(candidates.begin(), candidates.end(), [](const Candidate& x, const Candidate& y) { return x.total != y.total ? x.total < y.total : x.b < y.b; });
+      std::sort(candidates.begin(), candidates.end(),
+                [](const Candidate& x, const Candidate& y) { return x.total != y.total ? x.total < y.total : x.b < y.b; });
       for (const Candidate& candidate : candidates)
         if (edge_valid(validity, layer, valid.layers[i][a], next[static_cast<std::size_t>(candidate.b)])) {
           here[a] = candidate.total;

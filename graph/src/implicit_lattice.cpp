@@ -32,7 +32,8 @@ const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) cons
       const Config delta = lattice.delta(q, next.nodes->config(label, next.shift + k));
       if (!lattice.step_allowed(layer, delta)) continue;
       const double cost = lattice.edge_cost(delta);
-      if (cost + rest <= bound && togo_->edge_verdict(layer, slot, b) != Verdict::kRemoved) edges_.push_back({v, vertex(layer + 1, b), cost});
+      if (cost + rest <= bound && togo_->edge_verdict(layer, slot, b) != Verdict::kRemoved)
+        edges_.push_back({v, vertex(layer + 1, b), cost});
     }
   return edges_;
 }

@@ -53,7 +53,8 @@ class Search {
   bool valid(const SlotPath& path) {
     std::vector<NodeQuestion> nodes;
     for (int i = 0; i < static_cast<int>(path.size()); ++i)
-      if (togo_.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown) nodes.push_back(question(i, path[static_cast<std::size_t>(i)]));
+      if (togo_.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown)
+        nodes.push_back(question(i, path[static_cast<std::size_t>(i)]));
     fail_first_.order(nodes);
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
       const std::vector<std::pair<int, int>> failed = ask(std::span(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
@@ -111,8 +112,10 @@ class Search {
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
         const auto [layer, slot] = suspects.front();
         suspects.pop_front();
-        const bool again = std::any_of(questions.begin(), questions.end(), [&](const NodeQuestion& x) { return x.layer == layer && x.slot == slot; });
-        if (!again && togo_.node_verdict(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable) questions.push_back(question(layer, slot));
+        const bool again = std::any_of(questions.begin(), questions.end(),
+                                       [&](const NodeQuestion& x) { return x.layer == layer && x.slot == slot; });
+        if (!again && togo_.node_verdict(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable)
+          questions.push_back(question(layer, slot));
       }
       left -= static_cast<int>(questions.size());
       for (const auto& [layer, slot] : ask(questions)) suspect_neighbours(layer, slot);
@@ -157,7 +160,8 @@ SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFir
   return Search(cost_to_go, validity, options).run(counters);
 }
 
-std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
+std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options,
+                                       SearchCounters& counters) {
   for (;;) {
     const int optimistic = togo.deepest_reachable();
     if (optimistic < 0) return -1;

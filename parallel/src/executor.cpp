@@ -29,7 +29,9 @@ Executor::~Executor() = default;
 Executor::Executor(Executor&&) noexcept = default;
 Executor& Executor::operator=(Executor&&) noexcept = default;
 
-int Executor::threads() const { return impl_->threads; }
+int Executor::threads() const {
+  return impl_->threads;
+}
 
 void Executor::for_each(int count, const std::function<void(int, int)>& body) {
   if (impl_->threads == 1 || count <= 1) {

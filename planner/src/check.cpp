@@ -29,8 +29,8 @@ struct Place {
   [[nodiscard]] double along() const { return segment + fraction; }
 };
 
-/// The place on the path at arc length s that the tool is at, not before `from`. Where the path only turns, s repeats and the tool's
-/// orientation tells the place.
+/// The place on the path at arc length s that the tool is at, not before `from`. Where the path only turns, s repeats and the
+/// tool's orientation tells the place.
 Place locate(const ToolPath& path, double s, const Pose& tool, double from) {
   Place best;
   for (int i = std::max(0, static_cast<int>(std::floor(from - 1e-9))); i + 1 < path.size(); ++i) {
@@ -117,15 +117,18 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
     result.worst_position = std::max(result.worst_position, place.position_error);
     result.worst_angle = std::max(result.worst_angle, place.angle_error);
     if (!(place.position_error <= kPose && place.angle_error <= kPose)) {
-      report.fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, place.position_error, place.angle_error, rows[k].s);
+      report.fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, place.position_error, place.angle_error,
+                  rows[k].s);
       if (place.position_error > 1e8) break;  // s lies outside the path or runs backwards
     }
     if (k == 0 && place.along() > 1e-6) report.fail("row 0: begins at s = %.9g, not with the path", rows[k].s);
-    if (k + 1 == rows.size() && place.along() < path.size() - 1 - 1e-6) report.fail("row %zu: ends at s = %.9g, before the path", k, rows[k].s);
+    if (k + 1 == rows.size() && place.along() < path.size() - 1 - 1e-6)
+      report.fail("row %zu: ends at s = %.9g, before the path", k, rows[k].s);
     for (std::size_t j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[j];
       const double value = q[static_cast<Eigen::Index>(j)];
-      if (!limit.continuous && !(value >= limit.lower + limits.joint_margin - kLimit && value <= limit.upper - limits.joint_margin + kLimit))
+      if (!limit.continuous &&
+          !(value >= limit.lower + limits.joint_margin - kLimit && value <= limit.upper - limits.joint_margin + kLimit))
         report.fail("row %zu: joint '%s' at %.9g is outside its limits", k, chain.joint_names[j].c_str(), value);
     }
     if (limits.manipulability > 0 && !(chain.manipulability(q) >= limits.manipulability - 1e-9))
@@ -144,7 +147,8 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
       double l2 = 0, most = 0;
       for (std::size_t j = 0; j < kDof; ++j) {
         const double move = delta[static_cast<Eigen::Index>(j)];
-        const double scaled = problem.cost.metric == CostMetric::kTime ? move / chain.limit[j].velocity : problem.cost.weights[j] * move;
+        const double scaled =
+            problem.cost.metric == CostMetric::kTime ? move / chain.limit[j].velocity : problem.cost.weights[j] * move;
         l2 += scaled * scaled;
         most = std::max(most, std::abs(scaled));
       }
@@ -158,7 +162,8 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
       if (limits.edges == EdgeMode::kContinuous) {
         const auto pair = edge_blocked(query, rule, from, q);
         if (pair)
-          report.fail("rows %zu-%zu: '%s' and '%s' come closer than %.3f mm", k - 1, k, world.body_names()[static_cast<std::size_t>(pair->a)].c_str(),
+          report.fail("rows %zu-%zu: '%s' and '%s' come closer than %.3f mm", k - 1, k,
+                      world.body_names()[static_cast<std::size_t>(pair->a)].c_str(),
                       world.body_names()[static_cast<std::size_t>(pair->b)].c_str(), 1e3 * limits.d_edge());
       }
     }

@@ -11,8 +11,8 @@ EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) 
   return rule;
 }
 
-CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop,
-                                     const Progress& progress)
+CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor,
+                                     const Stop& stop, const Progress& progress)
     : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop), progress_(progress) {
   queries_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world);
@@ -37,8 +37,8 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   });
 }
 
-/// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more than
-/// FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
+/// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
+/// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
 std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q, const BodyPair& pair) const {
   constexpr double kBand = 0.05e-3;
   if (!lattice_->arm().exact || !query.pair_below(q, pair, lattice_->limits().clearance - kBand)) return kOnNodeAlone;
@@ -46,8 +46,10 @@ std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q,
   for (const int body : {pair.a, pair.b}) {
     constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
     constexpr std::array<std::uint8_t, kDof + 1> kOfGroup{
-        0, kElbowPart | kOnShoulder, kElbowPart | kOnShoulder, kElbowPart, kElbowPart, kElbowPart | kOnWrist, kElbowPart | kOnWrist, 0};
-    if (body < static_cast<int>(world_->bodies().size())) depends |= kOfGroup[static_cast<std::size_t>(world_->bodies()[static_cast<std::size_t>(body)].group)];
+        0,          kElbowPart | kOnShoulder, kElbowPart | kOnShoulder, kElbowPart,
+        kElbowPart, kElbowPart | kOnWrist,    kElbowPart | kOnWrist,    0};
+    if (body < static_cast<int>(world_->bodies().size()))
+      depends |= kOfGroup[static_cast<std::size_t>(world_->bodies()[static_cast<std::size_t>(body)].group)];
   }
   return depends;
 }
@@ -58,9 +60,9 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const EdgeQuestion& x = questions[static_cast<std::size_t>(index)];
     const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
-    answers[static_cast<std::size_t>(index)] =
-        lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&
-        (lattice_->limits().edges == EdgeMode::kNodes || !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, x.qa, unwrapped));
+    answers[static_cast<std::size_t>(index)] = lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&
+                                               (lattice_->limits().edges == EdgeMode::kNodes ||
+                                                !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, x.qa, unwrapped));
   });
 }
 
@@ -68,7 +70,9 @@ bool CollisionValidity::asks_edges() const {
   return lattice_->asks_path_error() || (lattice_->limits().edges == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 
-bool CollisionValidity::stopped() const { return stop_->reason() != Stop::Reason::kNone; }
+bool CollisionValidity::stopped() const {
+  return stop_->reason() != Stop::Reason::kNone;
+}
 
 std::int64_t CollisionValidity::fcl_calls() const {
   std::int64_t calls = 0;

@@ -11,13 +11,15 @@ namespace {
 using Reasons = std::map<std::string, std::int64_t>;
 
 std::string most_frequent(const Reasons& reasons) {
-  const auto most = std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto most =
+      std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == reasons.end() ? "" : most->first;
 }
 
 class Inspector {
  public:
-  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule) : lattice_(lattice), world_(world), query_(world), rule_(rule) {}
+  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule)
+      : lattice_(lattice), world_(world), query_(world), rule_(rule) {}
 
   /// Empty string where the node is valid.
   std::string node_reason(const Config& q) {
@@ -37,7 +39,8 @@ class Inspector {
     return "";
   }
 
-  /// Reasons why no node of the layer is valid, by count; empty when one is. Starts at `hint`, a slot valid in a neighbouring layer.
+  /// Reasons why no node of the layer is valid, by count; empty when one is. Starts at `hint`, a slot valid in a neighbouring
+  /// layer.
   Reasons why_empty(int layer, int& hint) {
     lattice_.solve(layer, nodes_);
     Reasons reasons;
@@ -61,7 +64,8 @@ class Inspector {
     Reasons released, statuses;
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       const Lattice::NodeFault fault = lattice_.fault(layer, slot);
-      if (fault.status == NodeStatus::kLimit && std::popcount(fault.joints) == 1) ++released[joint_name(std::countr_zero(fault.joints))];
+      if (fault.status == NodeStatus::kLimit && std::popcount(fault.joints) == 1)
+        ++released[joint_name(std::countr_zero(fault.joints))];
       ++statuses[status_name(fault)];
     }
     if (!released.empty()) return most_frequent(released);
@@ -150,7 +154,8 @@ Diagnosis diagnose(const Lattice& lattice, const World& world, const EdgeRule& r
     diagnosis.reached_layer = deepest_layer;
     diagnosis.reached_s = lattice.path().layer(deepest_layer).s;
   }
-  const auto empty = std::find_if(diagnosis.empty_layers.begin(), diagnosis.empty_layers.end(), [&](const EmptyLayer& e) { return e.layer == deepest_layer + 1; });
+  const auto empty = std::find_if(diagnosis.empty_layers.begin(), diagnosis.empty_layers.end(),
+                                  [&](const EmptyLayer& e) { return e.layer == deepest_layer + 1; });
   if (deepest_layer >= 0 && deepest_layer + 1 < lattice.layers()) diagnosis.removed = inspector.removed_past(deepest_layer);
   if (empty != diagnosis.empty_layers.end()) {
     diagnosis.reason = empty->reason;

@@ -31,8 +31,10 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-constexpr std::pair<PlannerKind, const char*> kNames[] = {
-    {PlannerKind::kEager, "eager"}, {PlannerKind::kEagerDp, "eager_dp"}, {PlannerKind::kLazy, "lazy"}, {PlannerKind::kParallel, "parallel"}};
+constexpr std::pair<PlannerKind, const char*> kNames[] = {{PlannerKind::kEager, "eager"},
+                                                          {PlannerKind::kEagerDp, "eager_dp"},
+                                                          {PlannerKind::kLazy, "lazy"},
+                                                          {PlannerKind::kParallel, "parallel"}};
 
 struct Found {
   SearchOutcome outcome;
@@ -43,8 +45,8 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
   Found found;
   Counters& counters = result.counters;
   if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp) {
-    const EagerOutcome eager =
-        options.planner == PlannerKind::kEager ? eager_search(lattice, validity, options.eager_search) : eager_dp(lattice, validity);
+    const EagerOutcome eager = options.planner == PlannerKind::kEager ? eager_search(lattice, validity, options.eager_search)
+                                                                      : eager_dp(lattice, validity);
     found = {eager, eager.deepest};
     counters.ik_nodes = eager.ik_nodes;
     counters.edges = eager.edges;
@@ -77,7 +79,8 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
 /// Measured between the base's vertical and the elbow, in the plane normal to S->W: the convention of vendors and of Shimizu 2008.
 double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config& q) {
   const double axis_angle = first_plane(arm, tool).angle_of(arm.elbow_axis(q));
-  return wrap_angle(axis_angle + (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
+  return wrap_angle(axis_angle +
+                    (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
 }
 
 void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& result) {
@@ -107,7 +110,8 @@ void fill_report(const PreparedRobot& robot, const Lattice& lattice, const World
     const auto clearance = query.clearance(q);
     if (clearance) result.min_clearance = std::min(result.min_clearance.value_or(clearance->distance), clearance->distance);
     if (i + 1 == result.trajectory.size()) break;
-    const PathDeviation deviation = path_deviation(robot.arm().chain, lattice.path(), static_cast<int>(i), q, result.trajectory[i + 1].q - q);
+    const PathDeviation deviation =
+        path_deviation(robot.arm().chain, lattice.path(), static_cast<int>(i), q, result.trajectory[i + 1].q - q);
     for (const double error : deviation.position) {
       sum += error;
       ++samples;
@@ -151,7 +155,8 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   PlanResult result;
   result.planner = to_string(options.planner);
   result.joint_names = robot.arm().chain.joint_names;
-  const Stop stop(options.timeout_s ? std::optional(std::chrono::duration<double>(*options.timeout_s)) : std::nullopt, options.cancel);
+  const Stop stop(options.timeout_s ? std::optional(std::chrono::duration<double>(*options.timeout_s)) : std::nullopt,
+                  options.cancel);
   Executor executor(options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend);
   result.threads = executor.threads();
   result.time_ms["prepare"] = 0;
@@ -162,7 +167,8 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   const World world(robot.world(), problem.scene);
   result.time_ms["world"] = watch.lap();
   result.warnings = world.warnings();
-  result.lattice = {lattice.layers(), lattice.angles(), kBranches, lattice.windings(), lattice.window(), lattice.nodes(), path.merged_waypoints()};
+  result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
+                    lattice.nodes(),  path.merged_waypoints()};
 
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
   CollisionValidity validity(lattice, world, rule, executor, stop, options.progress);

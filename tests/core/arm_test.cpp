@@ -67,7 +67,8 @@ TEST(Arm, MotionRadiiBoundEveryPointThatMoves) {
       const auto G0 = arm.chain.displacements(q0), G1 = arm.chain.displacements(q1);
       for (const RobotBody& body : bodies)
         for (const Ball& ball : bounding_balls(body.shape)) {
-          // The farthest point of the ball from where it was: centre motion plus what its turn adds, bounded by sampling its surface.
+          // The farthest point of the ball from where it was: centre motion plus what its turn adds, bounded by sampling its
+          // surface.
           for (int k = 0; k < 6; ++k) {
             const Vector3d x = body.pose * (ball.center + ball.radius * (k % 2 ? 1 : -1) * Vector3d::Unit(k / 2));
             const auto g = static_cast<std::size_t>(body.group);
@@ -83,9 +84,15 @@ TEST(Arm, MotionRadiiBoundEveryPointThatMoves) {
 TEST(Arm, RefusesWhatIsNotSrsAndSaysWhichAxesMiss) {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
   // Axis 7 offset by 88 mm from the others: the Panda's class.
-  const TestRobot panda_like = synthetic_robot(
-      "panda_like", {{z * 0.333, z, -2.9, 2.9}, {o, y, -1.8, 1.8}, {z * 0.316, z, -2.9, 2.9}, {x * 0.0825, -y, -3, 0}, {z * 0.384 - x * 0.0825, z, -2.9, 2.9}, {o, -y, 0, 3.7}, {x * 0.088, -z, -2.9, 2.9}},
-      -z * 0.107, 0.05);
+  const TestRobot panda_like = synthetic_robot("panda_like",
+                                               {{z * 0.333, z, -2.9, 2.9},
+                                                {o, y, -1.8, 1.8},
+                                                {z * 0.316, z, -2.9, 2.9},
+                                                {x * 0.0825, -y, -3, 0},
+                                                {z * 0.384 - x * 0.0825, z, -2.9, 2.9},
+                                                {o, -y, 0, 3.7},
+                                                {x * 0.088, -z, -2.9, 2.9}},
+                                               -z * 0.107, 0.05);
   try {
     (void)fit_srs(arm_of(panda_like).chain, "panda_like");
     FAIL() << "accepted";
@@ -108,7 +115,10 @@ TEST(Arm, HeldJointsAndWrongNames) {
   const Chain straight = arm_of(robot).chain;
   const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());
   const Vector3d axis_of_torso(0.045, 0, 0);
-  EXPECT_LT((turned.tool(Config::Zero()).translation() - (turn * (straight.tool(Config::Zero()).translation() - axis_of_torso) + axis_of_torso)).norm(), 1e-9);
+  EXPECT_LT((turned.tool(Config::Zero()).translation() -
+             (turn * (straight.tool(Config::Zero()).translation() - axis_of_torso) + axis_of_torso))
+                .norm(),
+            1e-9);
 }
 
 TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {

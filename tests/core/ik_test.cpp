@@ -33,7 +33,8 @@ Tally round_trip(const Chain& chain, const SrsArm& srs, int trials, Random& rand
     ++tally.tried;
     Pose tool = chain.tool(q);
     const ArmPlane plane = first_plane(srs, tool);
-    const double least_sine = std::min({std::abs(std::sin(srs.shoulder_angle(q))), std::abs(std::sin(srs.wrist_angle(q))), std::abs(std::sin(srs.elbow_angle(q)))});
+    const double least_sine = std::min({std::abs(std::sin(srs.shoulder_angle(q))), std::abs(std::sin(srs.wrist_angle(q))),
+                                        std::abs(std::sin(srs.elbow_angle(q)))});
     if (reach_status(srs, plane.reach) != ReachStatus::kReachable || least_sine < 1e-6) {
       ++tally.excused;
       continue;
@@ -64,8 +65,8 @@ TEST(Ik, FindsEveryConfigurationAgain) {
     const SrsArm srs = fit_srs(chain, robot.name);
     EXPECT_TRUE(srs.exact) << robot.name << " offset " << srs.deviation.offset << " angle " << srs.deviation.angle;
     const Tally tally = round_trip(chain, srs, count, random);
-    std::printf("%-10s tried %d, found %d, excused %d, solutions %d, worst residual %.2e\n", robot.name.c_str(), tally.tried, tally.found, tally.excused,
-                tally.solutions, tally.worst);
+    std::printf("%-10s tried %d, found %d, excused %d, solutions %d, worst residual %.2e\n", robot.name.c_str(), tally.tried,
+                tally.found, tally.excused, tally.solutions, tally.worst);
     EXPECT_EQ(tally.tried, count);
     EXPECT_EQ(tally.found + tally.excused, tally.tried) << robot.name;
     EXPECT_LT(tally.excused, count / 1000);
@@ -76,7 +77,8 @@ TEST(Ik, FindsEveryConfigurationAgain) {
 class RealSda5f : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealSda5f, PolishReachesTheExactChain) {
-  const std::filesystem::path file = std::filesystem::path(SWIVEL_SHARED_DIR) / "data/motoman_sda5f/motoman_sda5f_support/urdf" / GetParam();
+  const std::filesystem::path file =
+      std::filesystem::path(SWIVEL_SHARED_DIR) / "data/motoman_sda5f/motoman_sda5f_support/urdf" / GetParam();
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "real robot files are not here";
   Random random(seed("RealSda5f.PolishReachesTheExactChain"));
   const auto model = io::load_robot(file);
@@ -85,11 +87,13 @@ TEST_P(RealSda5f, PolishReachesTheExactChain) {
   const int count = trials(100000);
   const Tally tally = round_trip(chain, srs, count, random);
   const double share = static_cast<double>(tally.unpolished) / (8.0 * (tally.tried - tally.excused));
-  std::printf("%s: fit %.3g m %.3g rad, tried %d, found %d, excused %d, solutions %d, not converged %.4f %%, worst residual %.2e\n", GetParam(),
-              srs.deviation.offset, srs.deviation.angle, tally.tried, tally.found, tally.excused, tally.solutions, 100 * share, tally.worst);
+  std::printf("%s: fit %.3g m %.3g rad, tried %d, found %d, excused %d, solutions %d, not converged %.4f %%, worst residual %.2e\n",
+              GetParam(), srs.deviation.offset, srs.deviation.angle, tally.tried, tally.found, tally.excused, tally.solutions,
+              100 * share, tally.worst);
   EXPECT_LE(tally.worst, 1e-9);
   EXPECT_LT(share, 0.03);
-  // Near singular poses the polish would have to move a joint by more than it may: those configurations are lost, and counted above.
+  // Near singular poses the polish would have to move a joint by more than it may: those configurations are lost, and counted
+  // above.
   EXPECT_GE(tally.found + tally.excused, static_cast<int>(0.95 * count));
 }
 INSTANTIATE_TEST_SUITE_P(Files, RealSda5f, testing::Values("sda5f_expanded.urdf", "sda5f_checked_in.urdf"));

@@ -17,7 +17,8 @@ struct Angles {
   explicit Angles(std::size_t n) : out(7 * n) {}
 };
 
-Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base, const std::vector<double>& s, const std::vector<double>& c) {
+Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, const double* base, const std::vector<double>& s,
+           const std::vector<double>& c) {
   const std::size_t n = s.size();
   Angles result(n);
   TripleTask task;
@@ -40,7 +41,8 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
   std::vector<const CircleKernels*> units{&scalar_circle_kernels()};
 #ifdef SWIVEL_X86_KERNELS
   if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_circle_kernels());
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl")) units.push_back(&avx512_circle_kernels());
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    units.push_back(&avx512_circle_kernels());
 #endif
   const TestRobot robot = data_robot("sda5f");
   const Chain chain = arm_of(robot).chain;
@@ -66,7 +68,8 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
       ASSERT_EQ(0, std::memcmp(scalar.out.data(), other.out.data(), scalar.out.size() * sizeof(double))) << units[unit]->name;
     }
     for (int k = 0; k < n; ++k) {  // one at a time: the same bits however asked
-      const Angles alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base, {s[static_cast<std::size_t>(k)]}, {c[static_cast<std::size_t>(k)]});
+      const Angles alone = run(*units.back(), circles[0].shoulder, srs.shoulder.shift, base, {s[static_cast<std::size_t>(k)]},
+                               {c[static_cast<std::size_t>(k)]});
       for (int row = 0; row < 7; ++row)
         ASSERT_EQ(alone.out[static_cast<std::size_t>(row)], scalar.out[static_cast<std::size_t>(row * n + k)]);
       for (int sign = 0; sign < 2; ++sign) {

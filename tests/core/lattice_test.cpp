@@ -21,7 +21,8 @@ struct Small {
   SrsArm srs;
   std::unique_ptr<ToolPath> path;
   std::unique_ptr<Lattice> lattice;
-  Small(const TestRobot& robot, const Config& q0, const Config& q1, Resolution resolution) : problem(problem_for(robot)), arm(arm_of(robot)) {
+  Small(const TestRobot& robot, const Config& q0, const Config& q1, Resolution resolution)
+      : problem(problem_for(robot)), arm(arm_of(robot)) {
     srs = fit_srs(arm.chain, robot.name);
     problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
     problem.resolution = resolution;
@@ -63,9 +64,12 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
           const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
           ASSERT_EQ(*alone, q);  // the same bits however asked
           const Pose reached = chain.tool(q), wanted = lattice.path().layer(layer).tool;
-          worst = std::max({worst, (reached.translation() - wanted.translation()).norm(), (reached.linear() - wanted.linear()).norm()});
+          worst =
+              std::max({worst, (reached.translation() - wanted.translation()).norm(), (reached.linear() - wanted.linear()).norm()});
           ASSERT_EQ(small.srs.branch(q), lattice.branch_of(slot));
-          ASSERT_LT(std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(q)) - lattice.phi(layer, slot), kTwoPi)), 1e-7);
+          ASSERT_LT(
+              std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(q)) - lattice.phi(layer, slot), kTwoPi)),
+              1e-7);
           for (int j = 0; j < kDof; ++j) {
             const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
             ASSERT_TRUE(limit.continuous || (q[j] >= limit.lower - 2e-9 && q[j] <= limit.upper + 2e-9));
@@ -73,7 +77,8 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
         }
       }
     }
-  std::printf("%lld valid nodes, %lld faults, worst residual %.2e\n", static_cast<long long>(valid), static_cast<long long>(faults), worst);
+  std::printf("%lld valid nodes, %lld faults, worst residual %.2e\n", static_cast<long long>(valid), static_cast<long long>(faults),
+              worst);
   EXPECT_GT(valid, 20000);
   EXPECT_GT(faults, 20000);
   EXPECT_LT(worst, 1e-9);
@@ -100,7 +105,8 @@ TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {
         if (other[j] < limit.lower || other[j] > limit.upper) continue;
         bool found = false;
         for (int winding = 0; winding < lattice.windings(); ++winding) {
-          const auto candidate = lattice.node(0, (lattice.branch_of(slot) * lattice.windings() + winding) * lattice.angles() + lattice.angle_of(slot));
+          const auto candidate =
+              lattice.node(0, (lattice.branch_of(slot) * lattice.windings() + winding) * lattice.angles() + lattice.angle_of(slot));
           found = found || (candidate && (*candidate - other).norm() < 1e-9);
         }
         EXPECT_TRUE(found);
@@ -203,7 +209,9 @@ TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
       const double cost = small.lattice->edge_cost(delta);
       EXPECT_EQ(std::ldexp(cost, 40), std::round(std::ldexp(cost, 40)));
       EXPECT_EQ(cost, small.lattice->edge_cost(-delta));
-      const double plain = metric == CostMetric::kL2 ? delta.norm() : metric == CostMetric::kMax ? delta.lpNorm<Eigen::Infinity>() : -1;
+      const double plain = metric == CostMetric::kL2    ? delta.norm()
+                           : metric == CostMetric::kMax ? delta.lpNorm<Eigen::Infinity>()
+                                                        : -1;
       EXPECT_TRUE(plain < 0 || std::abs(cost - plain) < 1e-12);
     }
   }

@@ -9,7 +9,9 @@
 namespace swivel {
 namespace {
 
-Waypoint at(double x, double y, double z, double yaw = 0) { return {{x, y, z}, Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))}; }
+Waypoint at(double x, double y, double z, double yaw = 0) {
+  return {{x, y, z}, Quaterniond(Eigen::AngleAxisd(yaw, Vector3d::UnitZ()))};
+}
 
 TEST(ToolPath, EveryWaypointIsALayerAndStepsAreEqual) {
   const ToolPath path({at(0, 0, 0), at(0.1, 0, 0), at(0.1, 0.033, 0)}, {.ds = 0.01, .dphi = 0.1, .dalpha = 0.1}, "test");

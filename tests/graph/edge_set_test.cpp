@@ -21,7 +21,8 @@ struct Edge {
 };
 
 /// Successors of a by brute force over all pairs, by the definition: own window, own joint steps.
-std::vector<Edge> brute_force(const Lattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here, const std::vector<std::optional<Config>>& next) {
+std::vector<Edge> brute_force(const Lattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here,
+                              const std::vector<std::optional<Config>>& next) {
   std::vector<Edge> edges;
   const double reach = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
   for (int b = 0; b < lattice.width(); ++b) {
@@ -97,8 +98,9 @@ std::pair<Config, Config> ends(const TestRobot& robot, const Chain& chain, const
 
 TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
   Random random(seed("EdgeSet"));
-  const std::map<Place, const char*> places{{Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"}, {Place::kElbow, "elbow"},
-                                            {Place::kWrist, "wrist"},       {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
+  const std::map<Place, const char*> places{{Place::kAnywhere, "anywhere"}, {Place::kShoulder, "shoulder"},
+                                            {Place::kElbow, "elbow"},       {Place::kWrist, "wrist"},
+                                            {Place::kWindow, "window"},     {Place::kAxisOne, "axis 1"}};
   std::int64_t total = 0;
   std::map<Place, std::int64_t> changing;
   std::array<std::int64_t, 3> flips{};
@@ -146,8 +148,8 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
   }
   std::printf("%lld edges; label-changing:", static_cast<long long>(total));
   for (const auto& [place, count] : changing) std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
-  std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]), static_cast<long long>(flips[1]),
-              static_cast<long long>(flips[2]), static_cast<long long>(windings));
+  std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]),
+              static_cast<long long>(flips[1]), static_cast<long long>(flips[2]), static_cast<long long>(windings));
   EXPECT_GT(total, 10000);
   for (const Place place : {Place::kShoulder, Place::kElbow, Place::kWrist}) EXPECT_GT(changing[place], 0) << places.at(place);
   for (const std::int64_t count : flips) EXPECT_GT(count, 0);
@@ -156,7 +158,8 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
 
 /// Cost-to-go of the whole lattice by the definition: every pair, minus removed nodes and edges.
 std::vector<std::vector<double>> plain_cost_to_go(const Lattice& lattice, const CostToGo& togo) {
-  std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()), std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
+  std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()),
+                                     std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   std::vector<std::optional<Config>> next;
   for (int layer = togo.goal_layer(); layer >= 0; --layer) {
     std::vector<std::optional<Config>> here;
@@ -246,7 +249,8 @@ TEST(CostToGo, StaysExactUnderRemovals) {
       for (int s = 0; s < lattice.width(); ++s) ASSERT_EQ(togo.at(0, s), repaired[static_cast<std::size_t>(s)]);
     }
   }
-  std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds, removed_nodes, removed_edges, changed);
+  std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds, removed_nodes, removed_edges,
+              changed);
   EXPECT_GT(rounds, 60);
   EXPECT_GT(changed, 10);
   EXPECT_GT(removed_edges, 10);
@@ -271,7 +275,8 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
       const Lattice lattice(arm.chain, srs, path, problem);
       std::vector<std::vector<std::optional<Config>>> nodes(static_cast<std::size_t>(lattice.layers()));
       for (int layer = 0; layer < lattice.layers(); ++layer)
-        for (int slot = 0; slot < lattice.width(); ++slot) nodes[static_cast<std::size_t>(layer)].push_back(lattice.node(layer, slot));
+        for (int slot = 0; slot < lattice.width(); ++slot)
+          nodes[static_cast<std::size_t>(layer)].push_back(lattice.node(layer, slot));
       std::vector<char> reached;
       for (const auto& q : nodes[0]) reached.push_back(q.has_value());
       int deepest = std::find(reached.begin(), reached.end(), 1) == reached.end() ? -1 : 0;
@@ -279,7 +284,8 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
         std::vector<char> ahead(reached.size(), 0);
         for (int a = 0; a < lattice.width(); ++a)
           if (reached[static_cast<std::size_t>(a)])
-            for (const Edge& edge : brute_force(lattice, layer, a, nodes[static_cast<std::size_t>(layer)], nodes[static_cast<std::size_t>(layer) + 1]))
+            for (const Edge& edge :
+                 brute_force(lattice, layer, a, nodes[static_cast<std::size_t>(layer)], nodes[static_cast<std::size_t>(layer) + 1]))
               ahead[static_cast<std::size_t>(edge.b)] = 1;
         if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
         reached.swap(ahead);

@@ -22,7 +22,8 @@ struct Answer {
   int deepest = -1;
 };
 
-/// The definition: every pair of nodes of neighbouring layers, own window, own steps, plain edge rule; dynamic program; ties by slot.
+/// The definition: every pair of nodes of neighbouring layers, own window, own steps, plain edge rule; dynamic program; ties by
+/// slot.
 Answer brute_force(const Problem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -35,7 +36,9 @@ Answer brute_force(const Problem& problem) {
   for (std::size_t i = 0; i < layers; ++i)
     for (std::size_t slot = 0; slot < width; ++slot) {
       const auto q = lattice.node(static_cast<int>(i), static_cast<int>(slot));
-      if (q && robot.arm().chain.manipulability(*q) >= problem.limits.manipulability && !query.first_below(*q, problem.limits.clearance)) nodes[i][slot] = q;
+      if (q && robot.arm().chain.manipulability(*q) >= problem.limits.manipulability &&
+          !query.first_below(*q, problem.limits.clearance))
+        nodes[i][slot] = q;
     }
   const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
   const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
@@ -118,7 +121,8 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
     const Answer truth = brute_force(problem);
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -161,8 +165,10 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       ASSERT_FALSE(results[0].diagnosis.reason.empty()) << what;
     }
   }
-  std::printf("%d problems: %d solved (%d after failures, %d label changes), %d infeasible, %d continuous, %d with a start, %d with obstacles\n", count, solved,
-              detours, label_changes, infeasible, continuous, started, obstacles);
+  std::printf(
+      "%d problems: %d solved (%d after failures, %d label changes), %d infeasible, %d continuous, %d with a start, %d with "
+      "obstacles\n",
+      count, solved, detours, label_changes, infeasible, continuous, started, obstacles);
   EXPECT_GE(solved, count / 4);
   EXPECT_GE(infeasible, count / 20);
   EXPECT_GE(continuous, count / 5);
@@ -184,8 +190,9 @@ TEST_P(Experiments, FourPlannersAgreeAtTheCoarseResolution) {
     options.planner = planner;
     results.push_back(plan(robot, problem, options));
     expect_same(results[0], results.back(), results.back().planner);
-    std::printf("%s %s: %s, cost %.12g, %lld nodes checked, %lld FCL calls, plan %.1f ms\n", GetParam(), results.back().planner.c_str(),
-                to_string(results.back().status), results.back().cost, static_cast<long long>(results.back().counters.nodes_checked),
+    std::printf("%s %s: %s, cost %.12g, %lld nodes checked, %lld FCL calls, plan %.1f ms\n", GetParam(),
+                results.back().planner.c_str(), to_string(results.back().status), results.back().cost,
+                static_cast<long long>(results.back().counters.nodes_checked),
                 static_cast<long long>(results.back().counters.fcl_calls), results.back().time_ms["plan"]);
   }
   ASSERT_EQ(results[0].status, PlanStatus::kSolved);

@@ -26,7 +26,11 @@ TEST_P(Backends, ForEachVisitsEveryIndexOnceAndPassesExceptionsOn) {
       });
       for (const auto& visit : visits) EXPECT_EQ(visit, 1);
     }
-    EXPECT_THROW(executor.for_each(50, [](int index, int) { if (index == 17) throw std::runtime_error("x"); }), std::runtime_error);
+    EXPECT_THROW(executor.for_each(50,
+                                   [](int index, int) {
+                                     if (index == 17) throw std::runtime_error("x");
+                                   }),
+                 std::runtime_error);
   }
 }
 

@@ -13,7 +13,8 @@ inline MeshPtr box_mesh(const Vector3d& size) {
   mesh->source = "box mesh";
   for (int corner = 0; corner < 8; ++corner)
     mesh->vertices.push_back(Vector3d(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1).cwiseProduct(size / 2));
-  mesh->triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  mesh->triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   mesh->closed = is_closed(*mesh);
   return mesh;
 }
@@ -21,12 +22,14 @@ inline MeshPtr box_mesh(const Vector3d& size) {
 inline Pose random_pose(Random& random, const Vector3d& center, double spread) {
   Pose pose;
   pose.translation() = center + spread * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-  pose.linear() = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized().toRotationMatrix();
+  pose.linear() = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+                      .normalized()
+                      .toRotationMatrix();
   return pose;
 }
 
-/// A small random problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near the arm, random limits, both edge
-/// modes, with and without a start. Small enough for brute force over all pairs of nodes.
+/// A small random problem of the robot: a path of 2 to 4 waypoints near one posture, obstacles near the arm, random limits, both
+/// edge modes, with and without a start. Small enough for brute force over all pairs of nodes.
 inline Problem random_problem(const TestRobot& robot, Random& random) {
   Problem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
@@ -86,7 +89,8 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
     bool fits = true;
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      fits = fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin && q0[j] <= limit.upper - limits.joint_margin));
+      fits =
+          fits && (limit.continuous || (q0[j] >= limit.lower + limits.joint_margin && q0[j] <= limit.upper - limits.joint_margin));
     }
     if (fits) problem.start = q0;
   }

@@ -20,11 +20,14 @@ struct TestRobot {
   std::string base_link, tip_link;
 };
 
-inline std::filesystem::path data_dir() { return SWIVEL_DATA_DIR; }
+inline std::filesystem::path data_dir() {
+  return SWIVEL_DATA_DIR;
+}
 
 inline TestRobot data_robot(const std::string& name) {
   const auto file = [&](const char* end) { return data_dir() / "robots" / (name + end); };
-  TestRobot robot{name, io::load_robot(file(".urdf"), file(".srdf")), "base_link", name == "iiwa14" ? "tool0" : "arm_left_link_7_t"};
+  TestRobot robot{name, io::load_robot(file(".urdf"), file(".srdf")), "base_link",
+                  name == "iiwa14" ? "tool0" : "arm_left_link_7_t"};
   return robot;
 }
 
@@ -35,7 +38,8 @@ struct SyntheticJoint {
   double lower, upper;
   bool continuous = false;
 };
-inline TestRobot synthetic_robot(const std::string& name, const std::vector<SyntheticJoint>& joints, const Vector3d& tip, double radius) {
+inline TestRobot synthetic_robot(const std::string& name, const std::vector<SyntheticJoint>& joints, const Vector3d& tip,
+                                 double radius) {
   auto model = std::make_shared<RobotModel>();
   model->name = model->source = name;
   model->links.push_back({"base", {}, -1});
@@ -77,16 +81,26 @@ inline TestRobot continuous_robot() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
   (void)x;
   return synthetic_robot("continuous",
-                         {{z * 0.3, z, 0, 0, true}, {o, y, -2.1, 2.1}, {o, z, 0, 0, true}, {z * 0.42, y, -2.4, 2.4}, {z * 0.4, z, 0, 0, true},
-                          {o, y, -2.0, 2.0}, {o, z, 0, 0, true}},
+                         {{z * 0.3, z, 0, 0, true},
+                          {o, y, -2.1, 2.1},
+                          {o, z, 0, 0, true},
+                          {z * 0.42, y, -2.4, 2.4},
+                          {z * 0.4, z, 0, 0, true},
+                          {o, y, -2.0, 2.0},
+                          {o, z, 0, 0, true}},
                          z * 0.15, 0.05);
 }
 /// x-y-z triples, in-plane elbow offset, asymmetric windows, joints 1 and 7 of more than a turn.
 inline TestRobot windings_robot() {
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ(), o = Vector3d::Zero();
   return synthetic_robot("windings",
-                         {{z * 0.3, x, -4.4, 4.0}, {o, y, -2.6, 2.6}, {o, z, -3.0, 3.0}, {z * 0.35 + x * 0.06, y, -2.5, 2.2},
-                          {z * 0.32 - x * 0.06, z, -3.0, 3.0}, {o, y, -2.4, 2.4}, {o, x, -6.0, 6.0}},
+                         {{z * 0.3, x, -4.4, 4.0},
+                          {o, y, -2.6, 2.6},
+                          {o, z, -3.0, 3.0},
+                          {z * 0.35 + x * 0.06, y, -2.5, 2.2},
+                          {z * 0.32 - x * 0.06, z, -3.0, 3.0},
+                          {o, y, -2.4, 2.4},
+                          {o, x, -6.0, 6.0}},
                          z * 0.12, 0.05);
 }
 
@@ -94,7 +108,9 @@ inline std::vector<TestRobot> all_robots() {
   return {data_robot("sda5f"), data_robot("sda10f"), data_robot("iiwa14"), continuous_robot(), windings_robot()};
 }
 
-inline ArmModel arm_of(const TestRobot& robot) { return build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity()); }
+inline ArmModel arm_of(const TestRobot& robot) {
+  return build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity());
+}
 
 inline Config random_config(const Chain& chain, Random& random) {
   Config q;
@@ -114,6 +130,8 @@ inline Problem problem_for(const TestRobot& robot) {
   return problem;
 }
 
-inline Waypoint waypoint_of(const Pose& pose) { return {pose.translation(), Quaterniond(pose.linear()).normalized()}; }
+inline Waypoint waypoint_of(const Pose& pose) {
+  return {pose.translation(), Quaterniond(pose.linear()).normalized()};
+}
 
 }  // namespace swivel::test

@@ -27,7 +27,7 @@ struct Chain {
   std::array<Vector3d, kDof> axis;   ///< unit, base frame, q = 0
   std::array<Vector3d, kDof> point;  ///< on the axis, base frame, q = 0, m
   std::array<JointLimit, kDof> limit;
-  Pose home = Pose::Identity();      ///< tool in base at q = 0
+  Pose home = Pose::Identity();  ///< tool in base at q = 0
 
   /// G_0 ... G_7.
   [[nodiscard]] std::array<Pose, kDof + 1> displacements(const Config& q) const;
@@ -57,16 +57,17 @@ struct ArmModel {
 
 /// One collision body of the robot: a link's shape or an attached body.
 struct RobotBody {
-  std::string name;              ///< link name, or the attached body's name
-  int link = -1;                 ///< RobotModel link that carries it
+  std::string name;  ///< link name, or the attached body's name
+  int link = -1;     ///< RobotModel link that carries it
   bool attached = false;
-  int group = 0;                 ///< see LinkPlacement
+  int group = 0;  ///< see LinkPlacement
   Shape shape;
   Pose pose = Pose::Identity();  ///< of the shape in base at q = 0
 };
 /// Links in model order, shapes in file order, then attached bodies in problem order. A cylinder with two spheres of its radius at
 /// its ends reads as one capsule. Throws InputError when an attached body names an unknown link or takes a link's name.
-[[nodiscard]] std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm, const std::vector<AttachedBody>& attached);
+[[nodiscard]] std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm,
+                                                  const std::vector<AttachedBody>& attached);
 
 /// R_j: a bound on the distance from axis j of any point that joint j moves, over all configurations, metres. By spheres about the
 /// points where neighbouring axes come closest, so it is tight when the shoulder and the wrist are spherical. design.md 1.

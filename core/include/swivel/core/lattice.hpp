@@ -21,7 +21,9 @@ class LayerNodes {
   /// Joint k (0..6) of label, an array over the run.
   [[nodiscard]] const double* q(int label, int k) const { return data_.data() + q_[static_cast<std::size_t>(label * kDof + k)]; }
   /// 1 where the node exists (IK, singularity, limits), an array over the run.
-  [[nodiscard]] const std::uint8_t* valid(int label) const { return valid_.data() + static_cast<std::size_t>(label) * static_cast<std::size_t>(count_); }
+  [[nodiscard]] const std::uint8_t* valid(int label) const {
+    return valid_.data() + static_cast<std::size_t>(label) * static_cast<std::size_t>(count_);
+  }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] Config config(int label, int k) const {
     Config c;
@@ -37,9 +39,10 @@ class LayerNodes {
   std::vector<std::uint8_t> valid_;  // [label][angle]
 };
 
-/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of nodes at
-/// each angle. design.md 1. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles + j.
-/// Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however asked.
+/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
+/// nodes at each angle. design.md 1. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
+/// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
+/// asked.
 class Lattice {
  public:
   /// Throws InputError when the start does not fit or the lattice is too large for the memory of the machine.
@@ -101,7 +104,9 @@ class Lattice {
   /// Every |delta| within joint_step and the speed limits of the step from `layer`.
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
   /// Largest |delta_j| allowed on the step from `layer`.
-  [[nodiscard]] const Config& step_bound(int layer) const { return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)]; }
+  [[nodiscard]] const Config& step_bound(int layer) const {
+    return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
+  }
   /// Cost of a move, a multiple of 2^-40. Source: design.md 1 "Cost".
   [[nodiscard]] double edge_cost(const Config& delta) const;
   /// Tool-path, tool-angle and step-error bounds of the joint-linear move from q0 (slot a) to q1 (slot b).
@@ -149,11 +154,12 @@ class Lattice {
 struct PathDeviation {
   std::array<double, 3> position{}, angle{};
 };
-[[nodiscard]] PathDeviation path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta);
+[[nodiscard]] PathDeviation path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
+                                           const Config& delta);
 
-/// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq. (12)
-/// replaced by the part normal to the tangent plane: 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi).
-/// end 0: at layer; end 1: at layer + 1 by the same step's motion. Infinite where a neighbouring solution does not exist.
+/// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq.
+/// (12) replaced by the part normal to the tangent plane: 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi). end 0: at layer; end 1:
+/// at layer + 1 by the same step's motion. Infinite where a neighbouring solution does not exist.
 [[nodiscard]] double step_error(const Lattice& lattice, int layer, int end, int branch, double phi, double dphi);
 
 }  // namespace swivel

@@ -16,23 +16,23 @@ enum class PlanStatus { kSolved, kInfeasible, kTimeout, kCancelled };
 
 /// One layer of a solution. design.md 4, TRAJ.csv.
 struct TrajectoryRow {
-  double s = 0;       ///< m along the path
-  double phi = 0;     ///< carried arm angle, rad
-  int branch = 0;     ///< 0..7: bit 0 shoulder, bit 1 wrist, bit 2 elbow; set where the sine is negative
+  double s = 0;    ///< m along the path
+  double phi = 0;  ///< carried arm angle, rad
+  int branch = 0;  ///< 0..7: bit 0 shoulder, bit 1 wrist, bit 2 elbow; set where the sine is negative
   Config q = Config::Zero();
 };
 
 /// Work done, counted by the one that did it.
 struct Counters {
-  std::int64_t ik_nodes = 0;             ///< nodes whose IK was solved (repeats counted)
-  std::int64_t edges = 0;                ///< candidate edges whose joint steps were compared (repeats counted)
-  std::int64_t nodes_checked = 0;        ///< nodes whose clearance was asked
-  std::int64_t edges_checked = 0;        ///< edges whose tool-path error or clearance was asked
-  std::int64_t fcl_calls = 0;            ///< fcl::collide + fcl::distance
-  std::int64_t certified_free = 0;       ///< configurations proved free without FCL
+  std::int64_t ik_nodes = 0;        ///< nodes whose IK was solved (repeats counted)
+  std::int64_t edges = 0;           ///< candidate edges whose joint steps were compared (repeats counted)
+  std::int64_t nodes_checked = 0;   ///< nodes whose clearance was asked
+  std::int64_t edges_checked = 0;   ///< edges whose tool-path error or clearance was asked
+  std::int64_t fcl_calls = 0;       ///< fcl::collide + fcl::distance
+  std::int64_t certified_free = 0;  ///< configurations proved free without FCL
   std::int64_t certified_colliding = 0;
-  std::int64_t expansions = 0;           ///< vertices popped by the graph search
-  std::int64_t iterations = 0;           ///< candidate paths tried
+  std::int64_t expansions = 0;  ///< vertices popped by the graph search
+  std::int64_t iterations = 0;  ///< candidate paths tried
 };
 
 struct LatticeInfo {
@@ -44,14 +44,14 @@ struct LatticeInfo {
 /// Why a layer has no node left, or why the search stopped. design.md 1 "Answer".
 struct EmptyLayer {
   int layer = 0;
-  int waypoint = -1;   ///< 0-based row of the path file when the layer is a waypoint, else -1
+  int waypoint = -1;  ///< 0-based row of the path file when the layer is a waypoint, else -1
   double s = 0;
   std::string reason;  ///< "no IK", "joint <name>", "joint limits", "singular", "manipulability", "<body> - <body>"
 };
 struct Diagnosis {
-  std::optional<int> reached_layer;     ///< furthest layer that a valid path from layer 0 reaches; null where layer 0 is empty
+  std::optional<int> reached_layer;  ///< furthest layer that a valid path from layer 0 reaches; null where layer 0 is empty
   std::optional<double> reached_s;
-  std::string reason;                   ///< what stops every path there, one phrase
+  std::string reason;  ///< what stops every path there, one phrase
   std::vector<EmptyLayer> empty_layers;
   std::map<std::string, std::int64_t> removed;  ///< reason -> nodes or edges it removed just past the furthest layer
 };
@@ -67,13 +67,13 @@ struct PlanResult {
   struct {
     double mean = 0, max = 0;
   } tool_path_error_mm;
-  std::optional<double> min_clearance;    ///< m; null when nothing is near
+  std::optional<double> min_clearance;  ///< m; null when nothing is near
   double min_manipulability = 0;
   std::vector<double> arm_angle;          ///< conventional arm angle of each row, rad
   std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
   std::array<std::string, kDof> joint_names;
-  Diagnosis diagnosis;                    ///< filled when infeasible
-  std::vector<std::string> warnings;      ///< open meshes, merged waypoints, ...
+  Diagnosis diagnosis;                ///< filled when infeasible
+  std::vector<std::string> warnings;  ///< open meshes, merged waypoints, ...
 };
 
 }  // namespace swivel

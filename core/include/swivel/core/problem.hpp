@@ -23,15 +23,15 @@ struct Waypoint {
 struct SceneObject {
   std::string name;
   Shape shape;
-  Pose pose = Pose::Identity();        ///< in base_link
-  std::vector<std::string> allow;      ///< robot links, attached bodies that may touch it
+  Pose pose = Pose::Identity();    ///< in base_link
+  std::vector<std::string> allow;  ///< robot links, attached bodies that may touch it
 };
 
 /// A tool or held part, rigid in `link`.
 struct AttachedBody {
   std::string name;
   Shape shape;
-  Pose pose = Pose::Identity();        ///< in the frame of `link`
+  Pose pose = Pose::Identity();  ///< in the frame of `link`
   std::string link;
 };
 
@@ -40,19 +40,19 @@ enum class CostMetric { kL2, kMax, kTime };
 
 /// design.md 1 and 4. Unset optionals mean "no such limit".
 struct Limits {
-  double clearance = 0.005;         ///< d_safe, m
-  double manipulability = 0.0;      ///< least sqrt(det(J J^T))
-  double joint_margin = 0.0;        ///< rad, kept from both ends of every bounded joint
-  double joint_step = 0.5;          ///< rad, largest move of any joint between neighbouring layers
-  double arm_slope = 20.0;          ///< rad/m, arm-angle change allowed per metre of path
-  std::optional<double> step_error;         ///< rad, second-order estimate
-  std::optional<double> tool_path_error = 0.001;    ///< m
-  std::optional<double> tool_angle_error;   ///< rad
-  std::optional<double> tool_speed;         ///< m/s
-  std::optional<double> tool_turn_speed;    ///< rad/s
+  double clearance = 0.005;                       ///< d_safe, m
+  double manipulability = 0.0;                    ///< least sqrt(det(J J^T))
+  double joint_margin = 0.0;                      ///< rad, kept from both ends of every bounded joint
+  double joint_step = 0.5;                        ///< rad, largest move of any joint between neighbouring layers
+  double arm_slope = 20.0;                        ///< rad/m, arm-angle change allowed per metre of path
+  std::optional<double> step_error;               ///< rad, second-order estimate
+  std::optional<double> tool_path_error = 0.001;  ///< m
+  std::optional<double> tool_angle_error;         ///< rad
+  std::optional<double> tool_speed;               ///< m/s
+  std::optional<double> tool_turn_speed;          ///< rad/s
   EdgeMode edges = EdgeMode::kContinuous;
-  std::optional<double> edge_clearance;     ///< d_edge, m; default clearance / 2
-  double edge_tolerance = 0.0005;           ///< h, m
+  std::optional<double> edge_clearance;  ///< d_edge, m; default clearance / 2
+  double edge_tolerance = 0.0005;        ///< h, m
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
 };
 
@@ -76,14 +76,14 @@ struct Vary {
 
 /// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.
 struct Problem {
-  std::string source;  ///< problem file, for messages
+  std::string source;                       ///< problem file, for messages
   std::shared_ptr<const RobotModel> robot;  // shared: every episode and planner reads the same model
   std::string base_link, tip_link;
-  Pose tool = Pose::Identity();             ///< tool frame in tip_link
-  std::map<std::string, double> hold;       ///< joint name -> position
+  Pose tool = Pose::Identity();        ///< tool frame in tip_link
+  std::map<std::string, double> hold;  ///< joint name -> position
   std::vector<AttachedBody> attached;
-  std::string path_frame;                   ///< base_link or the name of a scene object
-  std::vector<Waypoint> waypoints;          ///< in path_frame
+  std::string path_frame;           ///< base_link or the name of a scene object
+  std::vector<Waypoint> waypoints;  ///< in path_frame
   std::vector<SceneObject> scene;
   Resolution resolution;
   Limits limits;

@@ -26,10 +26,10 @@ struct Joint {
   std::string name;
   Type type = Type::kFixed;
   int parent_link = -1, child_link = -1;
-  Pose origin = Pose::Identity();      ///< of the joint frame in the parent link, at position 0
-  Vector3d axis = Vector3d::UnitX();   ///< unit, in the joint frame
-  double lower = 0, upper = 0;         ///< rad or m; unused for continuous joints
-  double velocity = 0;                 ///< rad/s or m/s; 0 where the file gives none
+  Pose origin = Pose::Identity();     ///< of the joint frame in the parent link, at position 0
+  Vector3d axis = Vector3d::UnitX();  ///< unit, in the joint frame
+  double lower = 0, upper = 0;        ///< rad or m; unused for continuous joints
+  double velocity = 0;                ///< rad/s or m/s; 0 where the file gives none
   std::optional<Mimic> mimic;
   [[nodiscard]] bool movable() const { return type != Type::kFixed; }
 };

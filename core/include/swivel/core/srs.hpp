@@ -38,7 +38,7 @@ struct SrsArm {
   double elbow_shift = 0;           ///< angle of the elbow from the straight arm = q4 + elbow_shift
   EulerTriple shoulder, wrist;
   FitDeviation deviation;
-  bool exact = false;               ///< the fitted arm is the chain itself, to rounding
+  bool exact = false;  ///< the fitted arm is the chain itself, to rounding
 
   /// Angles measured from their singular poses: sin = 0 is singular.
   [[nodiscard]] double shoulder_angle(const Config& q) const { return q[1] + shoulder.shift; }
@@ -83,9 +83,9 @@ enum class ReachStatus { kReachable, kSingular, kOutOfReach };
 /// Closed form of the fitted arm at one arm angle and branch: principal joint angles, limits not applied.
 [[nodiscard]] Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi, int branch);
 
-/// Newton on seven equations (pose of the exact chain; arm angle of the fitted one), at most 5 steps to 1e-10, moving no joint by more
-/// than 0.05 rad in all; none when it does not get there. Returns the seed unchanged on exact arms.
-[[nodiscard]] std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
-                                           const Config& seed);
+/// Newton on seven equations (pose of the exact chain; arm angle of the fitted one), at most 5 steps to 1e-10, moving no joint by
+/// more than 0.05 rad in all; none when it does not get there. Returns the seed unchanged on exact arms.
+[[nodiscard]] std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
+                                           double phi, const Config& seed);
 
 }  // namespace swivel

@@ -18,10 +18,10 @@ inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 /// What is known of a node or edge beyond the closed form.
 enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
-/// The exact cost from every node to the goal layer over the lattice minus what has been removed from it: a backward layered dynamic
-/// program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the perfect
-/// heuristic of the lattice that remains. Memory: 9 bytes a node, and the joints of a layer where it is worth keeping them: lattices of
-/// up to a million nodes, and polished arms, whose joints are costly.
+/// The exact cost from every node to the goal layer over the lattice minus what has been removed from it: a backward layered
+/// dynamic program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the
+/// perfect heuristic of the lattice that remains. Memory: 9 bytes a node, and the joints of a layer where it is worth keeping them:
+/// lattices of up to a million nodes, and polished arms, whose joints are costly.
 class CostToGo {
  public:
   explicit CostToGo(const Lattice& lattice);
@@ -50,7 +50,8 @@ class CostToGo {
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
   [[nodiscard]] int deepest_reachable();
 
-  /// Joints of the nodes j = first ... first + count - 1 of a layer, count <= 2 window + 1; entry k of the run is at nodes->q(label, joint)[shift + k].
+  /// Joints of the nodes j = first ... first + count - 1 of a layer, count <= 2 window + 1; entry k of the run is at
+  /// nodes->q(label, joint)[shift + k].
   struct Nodes {
     const LayerNodes* nodes = nullptr;
     int shift = 0;
@@ -132,8 +133,8 @@ class CostToGo {
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_verdict_;
   std::map<int, std::vector<std::pair<int, int>>> removed_edges_;  // layer -> (a, b)
   std::map<int, Pending> pending_;
-  std::vector<int> separating_;                                    // joints whose intervals tell labels apart
-  std::vector<std::unique_ptr<Joints>> cache_;                     // by layer; empty where joints are not kept
+  std::vector<int> separating_;                 // joints whose intervals tell labels apart
+  std::vector<std::unique_ptr<Joints>> cache_;  // by layer; empty where joints are not kept
   Block block_[2];
   std::int64_t ik_nodes_ = 0, edges_ = 0;
 };

@@ -7,16 +7,16 @@ namespace swivel {
 /// The paper's method: every node and every edge validated first, edges stored, then a search by Boost.Graph. The baseline.
 enum class EagerSearch { kDijkstra, kAStar };
 struct EagerOutcome : SearchOutcome {
-  int deepest = -1;            ///< deepest layer that layer 0 reaches when there is no path; -1 when layer 0 is empty
-  std::int64_t edges = 0;      ///< candidate edges compared
+  int deepest = -1;        ///< deepest layer that layer 0 reaches when there is no path; -1 when layer 0 is empty
+  std::int64_t edges = 0;  ///< candidate edges compared
   std::int64_t ik_nodes = 0;
   std::int64_t expansions = 0;
 };
 /// Explicit graph. Throws std::bad_alloc beyond the machine's memory.
 [[nodiscard]] EagerOutcome eager_search(const Lattice& lattice, Validity& validity, EagerSearch search);
 
-/// Same validity, a layered dynamic program over the window, no stored edges: the strong baseline. An edge is asked about only when it
-/// would be its tail's best so far.
+/// Same validity, a layered dynamic program over the window, no stored edges: the strong baseline. An edge is asked about only when
+/// it would be its tail's best so far.
 [[nodiscard]] EagerOutcome eager_dp(const Lattice& lattice, Validity& validity);
 
 }  // namespace swivel

@@ -13,9 +13,9 @@
 
 namespace swivel {
 
-/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * width + slot, one more vertex (the
-/// root) before layer 0. Edges are made when asked for, over what CostToGo has not removed, and only those whose cost plus cost-to-go
-/// does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of optimal paths).
+/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * width + slot, one more vertex
+/// (the root) before layer 0. Edges are made when asked for, over what CostToGo has not removed, and only those whose cost plus
+/// cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of optimal paths).
 class ImplicitLattice {
  public:
   using Vertex = std::int64_t;
@@ -46,16 +46,25 @@ class ImplicitLattice {
 };
 
 // Boost.Graph interface, found by argument-dependent look-up.
-inline ImplicitLattice::Vertex source(const ImplicitLattice::Edge& e, const ImplicitLattice&) { return e.source; }
-inline ImplicitLattice::Vertex target(const ImplicitLattice::Edge& e, const ImplicitLattice&) { return e.target; }
+inline ImplicitLattice::Vertex source(const ImplicitLattice::Edge& e, const ImplicitLattice&) {
+  return e.source;
+}
+inline ImplicitLattice::Vertex target(const ImplicitLattice::Edge& e, const ImplicitLattice&) {
+  return e.target;
+}
 inline std::pair<std::vector<ImplicitLattice::Edge>::const_iterator, std::vector<ImplicitLattice::Edge>::const_iterator> out_edges(
     ImplicitLattice::Vertex v, const ImplicitLattice& g) {
   const auto& edges = g.expand(v);
   return {edges.begin(), edges.end()};
 }
-inline std::size_t out_degree(ImplicitLattice::Vertex v, const ImplicitLattice& g) { return g.expand(v).size(); }
-inline std::size_t num_vertices(const ImplicitLattice& g) { return static_cast<std::size_t>(g.root()) + 1; }
-inline std::pair<boost::counting_iterator<ImplicitLattice::Vertex>, boost::counting_iterator<ImplicitLattice::Vertex>> vertices(const ImplicitLattice& g) {
+inline std::size_t out_degree(ImplicitLattice::Vertex v, const ImplicitLattice& g) {
+  return g.expand(v).size();
+}
+inline std::size_t num_vertices(const ImplicitLattice& g) {
+  return static_cast<std::size_t>(g.root()) + 1;
+}
+inline std::pair<boost::counting_iterator<ImplicitLattice::Vertex>, boost::counting_iterator<ImplicitLattice::Vertex>> vertices(
+    const ImplicitLattice& g) {
   return {boost::counting_iterator<ImplicitLattice::Vertex>(0), boost::counting_iterator<ImplicitLattice::Vertex>(g.root() + 1)};
 }
 
@@ -66,7 +75,9 @@ struct ImplicitCostMap {
   using reference = double;
   using category = boost::readable_property_map_tag;
 };
-inline double get(const ImplicitCostMap&, const ImplicitLattice::Edge& e) { return e.cost; }
+inline double get(const ImplicitCostMap&, const ImplicitLattice::Edge& e) {
+  return e.cost;
+}
 
 }  // namespace swivel
 

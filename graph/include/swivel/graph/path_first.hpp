@@ -12,32 +12,33 @@ namespace swivel {
 /// One slot in each layer 0 ... goal.
 using SlotPath = std::vector<int>;
 
-/// Least-cost path from layer 0 to the goal layer over what CostToGo has not removed, smallest slots first among equals: Boost.Graph A*
-/// with the perfect heuristic, so it expands one vertex a layer. Empty when there is none.
+/// Least-cost path from layer 0 to the goal layer over what CostToGo has not removed, smallest slots first among equals:
+/// Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer. Empty when there is none.
 [[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions);
 
 struct SearchOutcome {
-  bool stopped = false;   ///< deadline or cancel; nothing below is known
-  SlotPath path;          ///< empty: no path exists
+  bool stopped = false;  ///< deadline or cancel; nothing below is known
+  SlotPath path;         ///< empty: no path exists
   double cost = 0;
 };
 
 struct PathFirstOptions {
-  int batch = 1;   ///< questions asked at once; the answers, not their timing, decide what follows
-  int grow = 64;   ///< most questions about the neighbours of failed nodes before the next path is sought
+  int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
+  int grow = 64;  ///< most questions about the neighbours of failed nodes before the next path is sought
 };
 
 struct SearchCounters {
   std::int64_t expansions = 0, iterations = 0;
 };
 
-/// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures were
-/// found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid is the least-cost path, and the smallest
-/// in slot order among equals; when none is left, the removed cut proves that none exists.
-[[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters);
+/// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
+/// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid
+/// is the least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
+[[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                                       SearchCounters& counters);
 
-/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node; none when
-/// stopped. Leaves the cost-to-go with that layer as its goal.
+/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node; none
+/// when stopped. Leaves the cost-to-go with that layer as its goal.
 [[nodiscard]] std::optional<int> deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                                      SearchCounters& counters);
 

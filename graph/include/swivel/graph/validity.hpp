@@ -18,9 +18,9 @@ struct EdgeQuestion {
   Config qa, qb;
 };
 
-/// What the pose of the bodies that fail depends on besides the layer. The last link and the tool depend on the layer alone; links 3 and
-/// 4 on arm angle and elbow sign; links 1 and 2 on the shoulder's sign too, 5 and 6 on the wrist's. So one failure removes every node
-/// of the layer that shares what it depends on. design.md 2.
+/// What the pose of the bodies that fail depends on besides the layer. The last link and the tool depend on the layer alone; links
+/// 3 and 4 on arm angle and elbow sign; links 1 and 2 on the shoulder's sign too, 5 and 6 on the wrist's. So one failure removes
+/// every node of the layer that shares what it depends on. design.md 2.
 enum Dependence : std::uint8_t {
   kOnShoulder = kShoulderBit,
   kOnWrist = kWristBit,

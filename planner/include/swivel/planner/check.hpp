@@ -18,8 +18,8 @@ struct CheckResult {
   double cost = 0;                    ///< of the rows as given, by the problem's metric
   std::optional<double> min_clearance;
 };
-/// Tolerances: pose 1e-6 m and rad, limits 1e-9, clearance - 0.05 mm; between rows the tool-path error and, in continuous mode, d_edge.
-/// Rows may have any spacing in s but must begin and end with the path.
+/// Tolerances: pose 1e-6 m and rad, limits 1e-9, clearance - 0.05 mm; between rows the tool-path error and, in continuous mode,
+/// d_edge. Rows may have any spacing in s but must begin and end with the path.
 [[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows);
 
 }  // namespace swivel

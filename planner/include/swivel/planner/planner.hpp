@@ -29,10 +29,10 @@ enum class PlannerKind {
 
 struct PlanOptions {
   PlannerKind planner = PlannerKind::kParallel;
-  int threads = 0;                             ///< 0: all cores; kLazy always uses one
+  int threads = 0;  ///< 0: all cores; kLazy always uses one
   std::optional<double> timeout_s;
-  const std::atomic<bool>* cancel = nullptr;   ///< set from elsewhere to stop
-  bool report = true;                          ///< fill what only a report needs: min_clearance, tool-path error, arm_angle, diagnosis
+  const std::atomic<bool>* cancel = nullptr;  ///< set from elsewhere to stop
+  bool report = true;  ///< fill what only a report needs: min_clearance, tool-path error, arm_angle, diagnosis
   EagerSearch eager_search = EagerSearch::kDijkstra;
   Executor::Backend backend = Executor::Backend::kTbb;
   /// Called now and then from the planning thread with one phrase on what is going on.
