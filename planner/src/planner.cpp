@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/planner.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -40,6 +42,16 @@ struct Found {
   SearchOutcome outcome;
   int deepest = -1;  // where there is no path
 };
+
+/// The explicit graph keeps about 64 bytes a node and 56 an edge; beyond the machine's memory it would be killed, not refused.
+void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
+  const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
+  const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed > 0.8 * memory)
+    throw InputError(source + ": --planner eager: its graph would need about " + std::to_string(static_cast<long long>(needed / 1e9)) +
+                     " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
+}
 
 Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, PlanResult& result) {
   Found found;
@@ -171,6 +183,7 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
                     lattice.nodes(),  path.merged_waypoints()};
 
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
   CollisionValidity validity(lattice, world, rule, executor, stop, options.progress);
   const Found found = search(lattice, validity, options, result);
   result.time_ms["find"] = watch.lap();

@@ -226,7 +226,7 @@ limits: {{clearance: 0.005}}
     def test_command_line(self):
         problem = PROBLEMS / "experiment_a.yaml"
         for arguments, word in ((["--planner", "magic"], "eager_dp"), (["--ds", "0"], "--ds"), (["--edges", "none"], "continuous"), (["--threads", "-1"], "--threads"),
-                                (["--seed", "1"], "--episode"), (["--nonsense"], "nonsense"), (["--ds", "abc"], "ds"), (["--timeout", "-1"], "--timeout")):
+                                (["--seed", "1"], "--episode"), (["--nonsense"], "nonsense"), (["--planner", "eager", "--ds", "1e-5", "--dphi", "0.005"], "eager_dp"), (["--ds", "abc"], "ds"), (["--timeout", "-1"], "--timeout")):
             done = run("plan", problem, *arguments)
             self.assertEqual(done.returncode, 2, arguments)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
