@@ -14,6 +14,7 @@ enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3 };
 
 /// Each adds a subcommand; its callback sets `exit_code`.
 void add_plan(CLI::App& app, int& exit_code);
+void add_campaign(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 

@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = kOk;
   add_plan(app, exit_code);
+  add_campaign(app, exit_code);
   add_check(app, exit_code);
   add_info(app, exit_code);
   try {

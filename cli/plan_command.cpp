@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "progress.hpp"
+#include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
@@ -20,13 +19,11 @@ namespace swivel::cli {
 
 namespace {
 
-std::atomic<bool> interrupted{false};
-
 struct PlanArguments {
-  std::string problem, planner = "parallel", edges, out, json;
-  int threads = 0;
-  double ds = 0, dphi = 0, timeout = 0;
+  std::string problem, out, json;
+  std::optional<double> timeout;
   bool quiet = false;
+  SearchOptions search;
   EpisodeChoice episode;
 };
 
@@ -71,33 +68,15 @@ void print_summary(const PlanResult& result) {
   for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
-double positive(double value, const char* option) {
-  if (!(value > 0) || !std::isfinite(value)) throw InputError(std::string(option) + ": not a positive number: allowed are values above 0");
-  return value;
-}
-
-int run(const CLI::App& command, const PlanArguments& arguments) {
+int run(const PlanArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  PlanOptions options;
-  options.planner = planner_from_string(arguments.planner);
-  if (arguments.threads < 0) throw InputError("--threads: " + std::to_string(arguments.threads) + ": allowed are 0 (all cores) and above");
-  options.threads = arguments.threads;
+  PlanOptions options = arguments.search.plan_options();
   Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
-  if (command.count("--ds")) problem.resolution.ds = positive(arguments.ds, "--ds");
-  if (command.count("--dphi")) {
-    problem.resolution.dphi = positive(arguments.dphi, "--dphi");
-    if (problem.resolution.dphi > kTwoPi) throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
-  }
-  if (!arguments.edges.empty()) {
-    if (arguments.edges != "continuous" && arguments.edges != "nodes")
-      throw InputError("--edges: unknown mode '" + arguments.edges + "': allowed are continuous, nodes");
-    problem.limits.edges = arguments.edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
-  }
-  if (command.count("--timeout")) options.timeout_s = positive(arguments.timeout, "--timeout");
+  arguments.search.apply(problem);
+  if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const double load = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 
-  std::signal(SIGINT, [](int) { interrupted = true; });
-  options.cancel = &interrupted;
+  catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
   options.progress = [&](const std::string& phrase) { progress.show(phrase); };
   PlanResult result = plan(problem, options);
@@ -141,17 +120,13 @@ void add_plan(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("plan", "Plan a joint trajectory");
   auto arguments = std::make_shared<PlanArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("--planner", arguments->planner, "eager | eager_dp | lazy | parallel")->capture_default_str();
-  command->add_option("--threads", arguments->threads, "0: all cores")->capture_default_str();
-  command->add_option("--ds", arguments->ds, "resolution along the path, m");
-  command->add_option("--dphi", arguments->dphi, "resolution of the arm angle, rad");
-  command->add_option("--edges", arguments->edges, "continuous | nodes");
+  arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_option("--timeout", arguments->timeout, "seconds");
   command->add_option("--out", arguments->out, "trajectory file (CSV)");
   command->add_option("--json", arguments->json, "result file, - for standard output");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
-  command->callback([command, arguments, &exit_code] { exit_code = run(*command, *arguments); });
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
 }  // namespace swivel::cli

@@ -66,7 +66,20 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   return rows;
 }
 
+Json spread_json(const Spread& spread) { return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}}; }
+
 }  // namespace
+
+std::string to_json(const CampaignSummary& summary) {
+  const Json json = {{"episodes", summary.episodes},
+                     {"answered", summary.answered()},
+                     {"solved", summary.solved},
+                     {"infeasible", summary.infeasible},
+                     {"plan_ms", spread_json(summary.plan_ms)},
+                     {"nodes_checked", spread_json(summary.nodes_checked)},
+                     {"fcl_calls", spread_json(summary.fcl_calls)}};
+  return json.dump(2) + '\n';
+}
 
 std::string to_json(const PlanResult& result) {
   const bool solved = result.status == PlanStatus::kSolved;

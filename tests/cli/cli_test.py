@@ -5,9 +5,11 @@ import csv
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 SWIVEL = os.environ["SWIVEL"]
@@ -244,6 +246,132 @@ limits: {{clearance: 0.005}}
             self.assertEqual(done.returncode, 2, text)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1)
             self.assertIn("t.csv", done.stderr)
+
+
+class Campaign(WithFolder):
+    PROBLEM = PROBLEMS / "experiment_c.yaml"
+    QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
+    HEADER = "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason"
+    EPISODES = 12
+
+    def campaign(self, name, *options, code=0, episodes=EPISODES):
+        out = self.folder / name
+        done = run("campaign", self.PROBLEM, "--episodes", episodes, *self.QUICK, "--out", out, *options)
+        self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+        return done, out
+
+    def rows(self, out):
+        self.assertEqual(out.read_text().splitlines()[0], self.HEADER)
+        self.assertFalse(out.with_name(out.name + ".part").exists())
+        with out.open(newline="") as file:
+            return list(csv.DictReader(file))
+
+    @staticmethod
+    def without_times(rows):
+        return [{key: value for key, value in row.items() if key != "plan_ms"} for row in rows]
+
+    def test_rows_do_not_depend_on_threads_and_shards(self):
+        one = self.rows(self.campaign("one.csv", "--threads", "1")[1])
+        self.assertEqual([row["episode"] for row in one], [str(k) for k in range(self.EPISODES)])
+        self.assertEqual({row["status"] for row in one}, {"solved", "infeasible"})
+        for row in one:
+            solved = row["status"] == "solved"
+            self.assertEqual([row[key] != "" for key in ("cost", "tool_path_error_mm_mean", "tool_path_error_mm_max")], [solved] * 3)
+            self.assertEqual(row["reason"] == "", solved)
+            self.assertTrue(not solved or row["failed_s"] == "")
+        two = self.rows(self.campaign("two.csv", "--threads", "2")[1])
+        self.assertEqual(self.without_times(one), self.without_times(two))
+        union = []
+        for k in range(3):
+            shard = self.rows(self.campaign("shard.csv", "--shard", f"{k}/3")[1])
+            self.assertEqual([int(row["episode"]) for row in shard], list(range(k, self.EPISODES, 3)))
+            union += shard
+        self.assertEqual(self.without_times(one), self.without_times(sorted(union, key=lambda row: int(row["episode"]))))
+
+    def test_a_row_is_what_plan_says(self):
+        folder = self.folder / "trajectories"
+        done, out = self.campaign("r.csv", "--seed", "5", "--trajectories", folder, "--json", "-")
+        rows = self.rows(out)
+        summary = json.loads(done.stdout)
+        self.assertEqual((summary["episodes"], summary["answered"]), (self.EPISODES, self.EPISODES))
+        self.assertEqual(summary["solved"], sum(row["status"] == "solved" for row in rows))
+        self.assertEqual({file.name for file in folder.iterdir()}, {f"episode_{row['episode']}.csv" for row in rows if row["status"] == "solved"})
+        for status in ("solved", "infeasible"):
+            row = next(row for row in rows if row["status"] == status)
+            _, trajectory, result = self.plan(self.PROBLEM, *self.QUICK, "--seed", "5", "--episode", row["episode"])
+            self.assertEqual(result["status"], status)
+            self.assertEqual([int(row[key]) for key in ("nodes_checked", "fcl_calls")], [result["counters"][key] for key in ("nodes_checked", "fcl_calls")])
+            number = lambda text: float(text) if text else None
+            self.assertEqual([number(row[key]) for key in ("cost", "tool_path_error_mm_mean", "tool_path_error_mm_max")],
+                             [result["cost"], result["tool_path_error_mm"]["mean"], result["tool_path_error_mm"]["max"]])
+            if status == "solved":
+                self.assertEqual((folder / f"episode_{row['episode']}.csv").read_bytes(), trajectory.read_bytes())
+            else:
+                self.assertEqual((number(row["failed_s"]), row["reason"]), (result["diagnosis"]["reached_s"], result["diagnosis"]["reason"]))
+
+    def test_resume(self):
+        out = self.campaign("r.csv")[1]
+        part = self.folder / "r.csv.part"
+        whole = self.rows(out)
+        lines = out.read_text().splitlines(keepends=True)
+        # Marked, so that a row that was planned again would show.
+        marked = [",".join([*line.split(",")[:3], "123456.000", *line.split(",")[4:]]) for line in lines[1:6]]
+        for name, text, kept in (("whole lines", lines[0] + "".join(marked), 5), ("torn line", lines[0] + "".join(marked) + lines[6][:-3], 5),
+                                 ("torn header", lines[0][:20], 0), ("empty", "", 0), ("complete", "".join(lines), None)):
+            with self.subTest(name):
+                part.write_text(text)
+                again = self.rows(self.campaign("r.csv", "--threads", "2")[1])
+                self.assertEqual(self.without_times(again), self.without_times(whole))
+                if kept is not None:
+                    self.assertEqual([row["plan_ms"] == "123456.000" for row in again], [k < kept for k in range(self.EPISODES)])
+        folder = self.folder / "trajectories"  # rows from a campaign without trajectories do not stand for them
+        part.write_text("".join(lines))
+        self.campaign("r.csv", "--trajectories", folder)
+        self.assertEqual(len(list(folder.iterdir())), sum(row["status"] == "solved" for row in whole))
+
+    def test_a_part_of_something_else_is_left_alone(self):
+        lines = self.campaign("r.csv")[1].read_text().splitlines(keepends=True)
+        part = self.folder / "r.csv.part"
+        for text, options, episodes in (("".join(lines[:3]), ("--shard", "1/2"), self.EPISODES), (lines[0] + lines[2], (), self.EPISODES),
+                                        ("x,y,z\n", (), self.EPISODES), (lines[0] + "0,solved\n", (), self.EPISODES), ("".join(lines), (), 3)):
+            part.write_text(text)
+            done, _ = self.campaign("r.csv", *options, code=2, episodes=episodes)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("r.csv.part:", done.stderr)
+            self.assertIn("allowed", done.stderr)
+            self.assertEqual(part.read_text(), text)
+
+    def test_interrupted(self):
+        out = self.folder / "r.csv"
+        part = self.folder / "r.csv.part"
+        many = ("campaign", self.PROBLEM, "--episodes", "2000", *self.QUICK, "--out", out)
+        with subprocess.Popen([SWIVEL, *map(str, many)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline and (not part.exists() or part.read_text().count("\n") < 3):
+                time.sleep(0.01)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=60)
+        self.assertEqual((process.returncode, errors), (3, ""))
+        self.assertFalse(out.exists())
+        text = part.read_text()
+        self.assertTrue(text.endswith("\n"))
+        self.assertEqual([line.split(",")[0] for line in text.splitlines()[1:]], [str(k) for k in range(text.count("\n") - 1)])
+        self.assertGreater(text.count("\n"), 2)
+
+    def test_bad_input(self):
+        cases = [(["--shard", shard], "--shard") for shard in ("3/3", "1", "a/b", "0/0", "-1/2", "1/2/3")]
+        cases += [(["--episodes", "0"], "--episodes"), (["--episodes", "-3"], "episodes"), (["--planner", "magic"], "eager_dp"), (["--dphi", "7"], "--dphi"),
+                  (["--out", self.folder / "nowhere" / "r.csv"], "nowhere"), (["--out", "/dev/null"], "/dev/null"), (["--ds", "1e-9"], "ds")]
+        still = PROBLEMS / "experiment_a.yaml"
+        for arguments, word in [*cases, ([], "vary")]:
+            with self.subTest(arguments=arguments):
+                out = [] if "--out" in arguments else ["--out", self.folder / "r.csv"]
+                done = run("campaign", self.PROBLEM if arguments else still, *out, *arguments)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+                self.assertIn(word, done.stderr)
+                self.assertEqual(list(self.folder.iterdir()), [])
+        self.assertEqual(run("campaign", still, "--episodes", "1", "--ds", "0.02", "--dphi", "0.2").returncode, 0)
 
 
 class RealRobots(WithFolder):

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
@@ -42,5 +43,38 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 [[nodiscard]] std::string to_json(const PlanResult& result);
 /// Writes text beside the target and renames it over; a device or pipe is written to.
 void write_file(const std::filesystem::path& file, const std::string& text);
+
+/// RESULTS.csv of a campaign, design.md 4. Rows are appended to RESULTS.csv.part as they come, so that a killed campaign goes on from
+/// there; finish() renames it. Settings are not in the file: whoever changes seed or resolution removes the .part file first.
+class CampaignFile {
+ public:
+  /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
+  /// Throws InputError where its rows are not the first ones of the shard.
+  CampaignFile(std::filesystem::path csv, const Shard& shard, std::uint64_t episodes);
+  /// Leaves the .part file, but not one without a row.
+  ~CampaignFile();
+  CampaignFile(const CampaignFile&) = delete;
+  CampaignFile& operator=(const CampaignFile&) = delete;
+
+  /// Found at opening or appended since.
+  [[nodiscard]] const std::vector<EpisodeRow>& rows() const { return rows_; }
+  /// Forgets all rows but the first `count`.
+  void keep(std::size_t count);
+  /// The row is with the operating system when this returns.
+  void append(const EpisodeRow& row);
+  void finish();
+
+ private:
+  void write(const std::string& text);
+  [[noreturn]] void fail(int error) const;
+
+  std::filesystem::path csv_, part_;
+  std::vector<EpisodeRow> rows_;
+  std::vector<std::size_t> ends_;  ///< where each row ends in the file, after the header's end
+  int descriptor_ = -1;
+};
+
+/// The answer to `campaign --json -`.
+[[nodiscard]] std::string to_json(const CampaignSummary& summary);
 
 }  // namespace swivel::io

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search_options.hpp"
+
+#include <cmath>
+#include <csignal>
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel::cli {
+
+void SearchOptions::add_to(CLI::App& command) {
+  command.add_option("--planner", planner, "eager | eager_dp | lazy | parallel")->capture_default_str();
+  command.add_option("--threads", threads, "0: all cores")->capture_default_str();
+  command.add_option("--ds", ds, "resolution along the path, m");
+  command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
+  command.add_option("--edges", edges, "continuous | nodes");
+}
+
+PlanOptions SearchOptions::plan_options() const {
+  PlanOptions options;
+  options.planner = planner_from_string(planner);
+  if (threads < 0) throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) and above");
+  options.threads = threads;
+  options.cancel = &interrupted;
+  return options;
+}
+
+void SearchOptions::apply(Problem& problem) const {
+  if (ds) problem.resolution.ds = positive(*ds, "--ds");
+  if (dphi) {
+    problem.resolution.dphi = positive(*dphi, "--dphi");
+    if (problem.resolution.dphi > kTwoPi) throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
+  }
+  if (!edges.empty()) {
+    if (edges != "continuous" && edges != "nodes")
+      throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
+    problem.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+  }
+}
+
+double positive(double value, const char* option) {
+  if (!(value > 0) || !std::isfinite(value))
+    throw InputError(std::string(option) + ": not a positive number: allowed are values above 0");
+  return value;
+}
+
+std::atomic<bool> interrupted{false};
+
+void catch_interrupts() {
+  std::signal(SIGINT, [](int) { interrupted = true; });
+}
+
+}  // namespace swivel::cli

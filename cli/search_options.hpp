@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "swivel/core/problem.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel::cli {
+
+/// How to search, the same words for `plan` and `campaign`.
+struct SearchOptions {
+  std::string planner = "parallel", edges;
+  int threads = 0;
+  std::optional<double> ds, dphi;
+  void add_to(CLI::App& command);
+  /// Planner and threads, and Ctrl-C as the cancel flag.
+  [[nodiscard]] PlanOptions plan_options() const;
+  /// What the command line says instead of the problem file.
+  void apply(Problem& problem) const;
+};
+
+/// Throws InputError in the name of the option.
+double positive(double value, const char* option);
+
+/// Set by Ctrl-C, once interrupts are caught.
+extern std::atomic<bool> interrupted;
+void catch_interrupts();
+
+}  // namespace swivel::cli

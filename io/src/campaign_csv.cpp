@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include "bad_input.hpp"
+#include "files.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::string_view kHeader =
+    "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n";
+constexpr std::size_t kColumns = 10;
+
+/// The shortest digits that read back as the same double.
+std::string number(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string number(const std::optional<double>& value) {
+  return value ? number(*value) : "";
+}
+
+std::string milliseconds(double value) {
+  std::array<char, 64> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, 3).ptr};
+}
+
+/// On one line whatever bodies are called, so that the rows of a file that was cut off can be told apart.
+std::string quoted(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+  return field + '"';
+}
+
+std::string line_of(const EpisodeRow& row) {
+  return std::to_string(row.episode) + ',' + to_string(row.status) + ',' + number(row.cost) + ',' + milliseconds(row.plan_ms) +
+         ',' + std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) + ',' + number(row.tool_path_error_mm_mean) +
+         ',' + number(row.tool_path_error_mm_max) + ',' + number(row.failed_s) + ',' + quoted(row.reason) + '\n';
+}
+
+/// Empty where a quote is left open.
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields(1);
+  bool inside = false;
+  for (std::size_t k = 0; k < line.size(); ++k) {
+    if (line[k] == '"') {
+      if (inside && k + 1 < line.size() && line[k + 1] == '"')
+        fields.back() += line[k++];
+      else
+        inside = !inside;
+    } else if (line[k] == ',' && !inside) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[k];
+    }
+  }
+  return inside ? std::vector<std::string>{} : fields;
+}
+
+template <class Value>
+bool parse(const std::string& field, Value& value) {
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc() && end == field.data() + field.size();
+}
+
+bool parse(const std::string& field, std::optional<double>& value) {
+  return field.empty() || (parse(field, value.emplace()) && std::isfinite(*value));
+}
+
+std::optional<EpisodeRow> row_of(std::string_view line) {
+  const std::vector<std::string> fields = fields_of(line);
+  if (fields.size() != kColumns) return std::nullopt;
+  EpisodeRow row;
+  if (fields[1] != "solved" && fields[1] != "infeasible") return std::nullopt;
+  row.status = fields[1] == "solved" ? PlanStatus::kSolved : PlanStatus::kInfeasible;
+  const bool read = parse(fields[0], row.episode) && parse(fields[2], row.cost) && parse(fields[3], row.plan_ms) &&
+                    parse(fields[4], row.nodes_checked) && parse(fields[5], row.fcl_calls) &&
+                    parse(fields[6], row.tool_path_error_mm_mean) && parse(fields[7], row.tool_path_error_mm_max) &&
+                    parse(fields[8], row.failed_s);
+  row.reason = fields[9];
+  return read ? std::optional(row) : std::nullopt;
+}
+
+}  // namespace
+
+CampaignFile::CampaignFile(fs::path csv, const Shard& shard, std::uint64_t episodes) : csv_(std::move(csv)), part_(csv_) {
+  part_ += ".part";
+  for (const fs::path& file : {csv_, part_}) {
+    std::error_code ignored;
+    // Renaming over a device would replace it.
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
+      bad_input(file.string(), "is a folder or a device", "the name of a file");
+  }
+  descriptor_ = open(part_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail(errno);
+  const auto refuse = [this](const std::string& where, const std::string& what, const std::string& allowed) {
+    close(descriptor_);
+    bad_input(where, what, allowed);
+  };
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+    refuse(part_.string(), "another campaign is writing it", "one campaign at a time for one results file");
+
+  const std::string text = read_file(part_, "CSV file");
+  const std::string mine = "the first rows of this campaign and shard; remove the file to start anew";
+  const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  if (!std::string_view(text).starts_with(kHeader) && !kHeader.starts_with(text))
+    refuse(part_.string() + ":1", "another header", mine);
+  std::size_t begin = complete > 0 ? kHeader.size() : 0;
+  ends_.push_back(begin);
+  while (begin < complete) {
+    const std::size_t end = text.find('\n', begin) + 1;
+    const std::size_t k = rows_.size();
+    const std::string where = at_line(part_.string(), static_cast<int>(k) + 2);
+    const auto row = row_of(std::string_view(text).substr(begin, end - 1 - begin));
+    if (!row) refuse(where, "not a row of results", mine);
+    if (k >= shard.size(episodes)) refuse(where, "more rows than the shard has episodes", mine);
+    if (row->episode != shard.episode(k))
+      refuse(where, "episode " + std::to_string(row->episode) + " where the shard has " + std::to_string(shard.episode(k)), mine);
+    rows_.push_back(*row);
+    ends_.push_back(end);
+    begin = end;
+  }
+  keep(rows_.size());  // cuts what is torn
+  if (complete == 0) {
+    write(std::string(kHeader));
+    ends_.front() = kHeader.size();
+  }
+}
+
+CampaignFile::~CampaignFile() {
+  if (descriptor_ < 0) return;
+  std::error_code ignored;
+  if (rows_.empty()) fs::remove(part_, ignored);
+  close(descriptor_);
+}
+
+void CampaignFile::keep(std::size_t count) {
+  rows_.resize(count);
+  ends_.resize(count + 1);
+  if (ftruncate(descriptor_, static_cast<off_t>(ends_.back())) != 0) fail(errno);
+}
+
+void CampaignFile::append(const EpisodeRow& row) {
+  const std::string line = line_of(row);
+  write(line);
+  rows_.push_back(row);
+  ends_.push_back(ends_.back() + line.size());
+}
+
+void CampaignFile::finish() {
+  std::error_code error;
+  // A link should keep pointing at its file.
+  const fs::path target = fs::is_symlink(csv_, error) ? fs::canonical(csv_, error) : csv_;
+  fs::rename(part_, target, error);
+  if (error) fail(error.value());
+  close(descriptor_);
+  descriptor_ = -1;
+}
+
+void CampaignFile::write(const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
+    if (count < 0 && errno != EINTR) fail(errno);
+    if (count > 0) done += static_cast<std::size_t>(count);
+  }
+}
+
+void CampaignFile::fail(int error) const {
+  bad_input(part_.string(), std::strerror(error), "a file in an existing, writable folder");
+}
+
+}  // namespace swivel::io

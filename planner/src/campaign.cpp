@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/campaign.hpp"
+
+#include <atomic>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Holds rows back until all before them have been delivered.
+class InOrder {
+ public:
+  InOrder(std::uint64_t first, const std::function<void(const EpisodeRow&)>& row_done) : next_(first), row_done_(row_done) {}
+
+  void add(std::uint64_t k, EpisodeRow row) {
+    const std::lock_guard lock(mutex_);
+    waiting_.emplace(k, std::move(row));
+    // A row whose delivery throws stays first: those after it would leave a gap.
+    for (; !waiting_.empty() && waiting_.begin()->first == next_ && !failed_; ++next_, waiting_.erase(waiting_.begin())) {
+      failed_ = true;
+      row_done_(waiting_.begin()->second);
+      failed_ = false;
+    }
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::uint64_t, EpisodeRow> waiting_;
+  std::uint64_t next_;
+  bool failed_ = false;
+  const std::function<void(const EpisodeRow&)>& row_done_;
+};
+
+}  // namespace
+
+void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
+                  const std::function<void(const EpisodeRow&)>& row_done) {
+  if (problem.vary.empty() && options.episodes > 1)
+    throw InputError(problem.source +
+                     ": vary: missing, so that all episodes would be the same: allowed are a key vary, or --episodes 1");
+  const std::uint64_t size = options.shard.size(options.episodes);
+  if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
+    throw InputError("--episodes: too many for one shard: allowed are 2147483647");
+  if (options.skip >= size) return;
+
+  PlanOptions single = options.plan;
+  single.threads = 1;
+  single.report = true;  // the tool-path error and the reason are columns
+  single.progress = nullptr;
+
+  Executor executor(options.plan.threads, options.plan.backend);
+  InOrder in_order(options.skip, row_done);
+  // Taken from a counter and not from the executor's index, which starts threads far apart: rows would wait for long, and be lost
+  // when killed.
+  std::atomic<std::uint64_t> next{options.skip};
+  std::atomic<bool> stopped{false};
+  executor.for_each(static_cast<int>(size - options.skip), [&](int, int) {
+    if (stopped || (single.cancel != nullptr && *single.cancel)) return;
+    const std::uint64_t k = next++;
+    const std::uint64_t episode = options.shard.episode(k);
+    try {
+      const PlanResult result = plan(robot, episode_problem(problem, options.seed, episode), single);
+      if (result.status != PlanStatus::kSolved && result.status != PlanStatus::kInfeasible) {
+        stopped = true;
+        return;
+      }
+      if (options.planned) options.planned(episode, result);
+      in_order.add(k, EpisodeRow(episode, result));
+    } catch (const InputError& error) {
+      stopped = true;
+      throw InputError(std::string(error.what()) + " (episode " + std::to_string(episode) + ")");
+    } catch (...) {
+      stopped = true;
+      throw;
+    }
+  });
+}
+
+}  // namespace swivel
