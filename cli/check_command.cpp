@@ -22,8 +22,9 @@ int run(const CheckArguments& arguments) {
   const auto rows = io::load_trajectory(arguments.trajectory, robot.arm().chain.joint_names);
   const CheckResult result = check_trajectory(problem, rows);
   for (const std::string& failure : result.failures) std::printf("%s\n", failure.c_str());
-  std::printf("%s: %zu rows, tool within %.2g m and %.2g rad of the path at rows, within %.3f mm between, cost %.9g", result.passed ? "passed" : "failed",
-              rows.size(), result.worst_position, result.worst_angle, 1e3 * result.worst_path_error, result.cost);
+  std::printf("%s: %zu rows, tool within %.2g m and %.2g rad of the path at rows, within %.3f mm between, cost %.9g",
+              result.passed ? "passed" : "failed", rows.size(), result.worst_position, result.worst_angle,
+              1e3 * result.worst_path_error, result.cost);
   if (result.min_clearance) std::printf(", clearance at least %.3f mm", 1e3 * *result.min_clearance);
   std::printf("\n");
   return result.passed ? kOk : kNo;

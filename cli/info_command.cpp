@@ -42,7 +42,8 @@ std::string deepest_link(const RobotModel& robot) {
   int most = -1;
   for (const Link& link : robot.links) {
     int joints = 0;
-    for (int j = link.parent_joint; j >= 0; j = robot.links[static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(j)].parent_link)].parent_joint)
+    for (int j = link.parent_joint; j >= 0;
+         j = robot.links[static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(j)].parent_link)].parent_joint)
       joints += robot.joints[static_cast<std::size_t>(j)].movable();
     if (joints > most) {
       most = joints;
@@ -60,25 +61,31 @@ int run(const InfoArguments& arguments) {
   const SrsArm srs = fit_srs(arm.chain, robot->source);
   std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
-  const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 || std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
+  const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
+                      std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
   std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
   if (srs.exact)
     std::printf("fit        exact: closed form\n");
   else
-    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n", 1e3 * srs.deviation.offset,
-                1e3 * srs.deviation.angle);
-  const auto print_point = [](const char* name, const Vector3d& p) { std::printf("%-10s %.6f %.6f %.6f m\n", name, p.x(), p.y(), p.z()); };
+    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n",
+                1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+  const auto print_point = [](const char* name, const Vector3d& p) {
+    std::printf("%-10s %.6f %.6f %.6f m\n", name, p.x(), p.y(), p.z());
+  };
   print_point("shoulder", srs.S);
-  std::printf("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore, srs.wrist_in_tool.norm());
-  std::printf("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore), srs.upper + srs.fore);
-  std::printf("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi), std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
+  std::printf("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore,
+              srs.wrist_in_tool.norm());
+  std::printf("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore),
+              srs.upper + srs.fore);
+  std::printf("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
+              std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = arm.chain.limit[j];
     if (limit.continuous)
       std::printf("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
     else
-      std::printf("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1, arm.chain.joint_names[j].c_str(), limit.lower, limit.upper,
-                  limit.lower * 180 / kPi, limit.upper * 180 / kPi);
+      std::printf("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1, arm.chain.joint_names[j].c_str(),
+                  limit.lower, limit.upper, limit.lower * 180 / kPi, limit.upper * 180 / kPi);
     limit.velocity > 0 ? std::printf(", %.3f rad/s\n", limit.velocity) : std::printf(", no speed limit\n");
   }
   return kOk;

@@ -44,27 +44,30 @@ void print_summary(const PlanResult& result) {
     case PlanStatus::kInfeasible: {
       const Diagnosis& d = result.diagnosis;
       if (d.reached_layer)
-        std::printf("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where %s stops it\n", *d.reached_layer,
-                    result.lattice.layers - 1, *d.reached_s, d.reason.c_str());
+        std::printf("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where %s stops it\n",
+                    *d.reached_layer, result.lattice.layers - 1, *d.reached_s, d.reason.c_str());
       else
         std::printf("no path at this resolution: the first layer has no valid node (%s)\n", d.reason.c_str());
       constexpr std::size_t kMostLines = 40;
       for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) {
         const EmptyLayer& empty = d.empty_layers[k];
         std::printf("  layer %d%s, s = %.4f m: no valid node: %s\n", empty.layer,
-                    empty.waypoint >= 0 ? (" (waypoint " + std::to_string(empty.waypoint) + ")").c_str() : "", empty.s, empty.reason.c_str());
+                    empty.waypoint >= 0 ? (" (waypoint " + std::to_string(empty.waypoint) + ")").c_str() : "", empty.s,
+                    empty.reason.c_str());
       }
-      if (d.empty_layers.size() > kMostLines) std::printf("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
+      if (d.empty_layers.size() > kMostLines)
+        std::printf("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
       break;
     }
     default:
       std::printf("stopped: %s\n", to_string(result.status));
   }
   const Counters& c = result.counters;
-  std::printf("%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
-              result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"), ms(result, "prepare"), ms(result, "plan"),
-              static_cast<long long>(c.nodes_checked), static_cast<long long>(result.lattice.nodes), static_cast<long long>(c.edges_checked),
-              static_cast<long long>(c.fcl_calls));
+  std::printf(
+      "%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
+      result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"), ms(result, "prepare"),
+      ms(result, "plan"), static_cast<long long>(c.nodes_checked), static_cast<long long>(result.lattice.nodes),
+      static_cast<long long>(c.edges_checked), static_cast<long long>(c.fcl_calls));
   for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
@@ -112,7 +115,8 @@ void EpisodeChoice::add_to(CLI::App& command) {
 }
 
 Problem EpisodeChoice::apply(const Problem& problem) const {
-  if (seed.has_value() != episode.has_value()) throw InputError("--seed, --episode: one without the other: allowed are both or neither");
+  if (seed.has_value() != episode.has_value())
+    throw InputError("--seed, --episode: one without the other: allowed are both or neither");
   return seed ? episode_problem(problem, *seed, *episode) : problem;
 }
 

@@ -9,8 +9,8 @@
 
 namespace swivel::cli {
 
-/// One line on a terminal for work that takes more than half a second, redrawn five times a second from a thread of its own, so that
-/// stages which report nothing are seen to run too.
+/// One line on a terminal for work that takes more than half a second, redrawn five times a second from a thread of its own, so
+/// that stages which report nothing are seen to run too.
 class ProgressLine {
  public:
   explicit ProgressLine(bool enabled) {
@@ -30,7 +30,8 @@ class ProgressLine {
     std::unique_lock lock(mutex_);
     for (auto wait = std::chrono::milliseconds(500); !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
          wait = std::chrono::milliseconds(200)) {
-      std::fprintf(stderr, "\r\033[K%.1f s: %s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), phrase_.c_str());
+      std::fprintf(stderr, "\r\033[K%.1f s: %s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                   phrase_.c_str());
       shown = true;
     }
     if (shown) std::fprintf(stderr, "\r\033[K");

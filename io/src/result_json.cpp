@@ -66,7 +66,9 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   return rows;
 }
 
-Json spread_json(const Spread& spread) { return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}}; }
+Json spread_json(const Spread& spread) {
+  return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
+}
 
 }  // namespace
 

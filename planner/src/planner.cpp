@@ -49,7 +49,8 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
   if (needed > 0.8 * memory)
-    throw InputError(source + ": --planner eager: its graph would need about " + std::to_string(static_cast<long long>(needed / 1e9)) +
+    throw InputError(source + ": --planner eager: its graph would need about " +
+                     std::to_string(static_cast<long long>(needed / 1e9)) +
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 

@@ -50,9 +50,9 @@ void solve_triple(const TripleTask& task) {
   double* __restrict middle1 = task.q[1][1];
   double* __restrict last1 = task.q[1][2];
   double* __restrict sine = task.sin_middle;
-  const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0], b12 = task.m[1][1], c12 = task.m[1][2],
-               a22 = task.m[2][0], b22 = task.m[2][1], c22 = task.m[2][2], a20 = task.m[3][0], b20 = task.m[3][1], c20 = task.m[3][2],
-               a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
+  const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0], b12 = task.m[1][1],
+               c12 = task.m[1][2], a22 = task.m[2][0], b22 = task.m[2][1], c22 = task.m[2][2], a20 = task.m[3][0],
+               b20 = task.m[3][1], c20 = task.m[3][2], a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
   const double base0 = task.base[0], base1 = task.base[1], base2 = task.base[2], shift = task.shift;
 #pragma GCC ivdep  // GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
   for (int k = 0; k < task.n; ++k) {

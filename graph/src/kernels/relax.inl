@@ -5,20 +5,25 @@
 namespace swivel::SWIVEL_ISA {
 namespace {
 
-inline double magnitude(double x) { return x < 0 ? -x : x; }
-inline double larger(double a, double b) { return a > b ? a : b; }
+inline double magnitude(double x) {
+  return x < 0 ? -x : x;
+}
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
 
 template <RelaxMetric kMetric, bool kWraps>
 void relax_run(const RelaxTask& task) {
-  const double *__restrict a0 = task.from[0], *__restrict a1 = task.from[1], *__restrict a2 = task.from[2], *__restrict a3 = task.from[3],
-                          *__restrict a4 = task.from[4], *__restrict a5 = task.from[5], *__restrict a6 = task.from[6];
-  const double *__restrict b0 = task.to[0], *__restrict b1 = task.to[1], *__restrict b2 = task.to[2], *__restrict b3 = task.to[3],
-                          *__restrict b4 = task.to[4], *__restrict b5 = task.to[5], *__restrict b6 = task.to[6];
+  const double* __restrict a0 = task.from[0], * __restrict a1 = task.from[1], * __restrict a2 = task.from[2], * __restrict a3 = task.from[3], * __restrict a4 = task.from[4], * __restrict a5 = task.from[5], * __restrict a6 = task.from[6];
+  const double* __restrict b0 = task.to[0], * __restrict b1 = task.to[1], * __restrict b2 = task.to[2], * __restrict b3 = task.to[3], * __restrict b4 = task.to[4], * __restrict b5 = task.to[5], * __restrict b6 = task.to[6];
   const double* __restrict value = task.value;
   double* __restrict best = task.best;
-  const double w0 = task.scale[0], w1 = task.scale[1], w2 = task.scale[2], w3 = task.scale[3], w4 = task.scale[4], w5 = task.scale[5], w6 = task.scale[6];
-  const double l0 = task.bound[0], l1 = task.bound[1], l2 = task.bound[2], l3 = task.bound[3], l4 = task.bound[4], l5 = task.bound[5], l6 = task.bound[6];
-  const double t0 = task.turn[0], t1 = task.turn[1], t2 = task.turn[2], t3 = task.turn[3], t4 = task.turn[4], t5 = task.turn[5], t6 = task.turn[6];
+  const double w0 = task.scale[0], w1 = task.scale[1], w2 = task.scale[2], w3 = task.scale[3], w4 = task.scale[4],
+               w5 = task.scale[5], w6 = task.scale[6];
+  const double l0 = task.bound[0], l1 = task.bound[1], l2 = task.bound[2], l3 = task.bound[3], l4 = task.bound[4],
+               l5 = task.bound[5], l6 = task.bound[6];
+  const double t0 = task.turn[0], t1 = task.turn[1], t2 = task.turn[2], t3 = task.turn[3], t4 = task.turn[4], t5 = task.turn[5],
+               t6 = task.turn[6];
   const auto move = [](double from, double to, double turn) {
     const double d = to - from;
     if (!kWraps) return d;
@@ -32,8 +37,10 @@ void relax_run(const RelaxTask& task) {
   for (int k = 0; k < task.n; ++k) {
     const double d0 = move(a0[k], b0[k], t0), d1 = move(a1[k], b1[k], t1), d2 = move(a2[k], b2[k], t2), d3 = move(a3[k], b3[k], t3),
                  d4 = move(a4[k], b4[k], t4), d5 = move(a5[k], b5[k], t5), d6 = move(a6[k], b6[k], t6);
-    const double m0 = magnitude(d0), m1 = magnitude(d1), m2 = magnitude(d2), m3 = magnitude(d3), m4 = magnitude(d4), m5 = magnitude(d5), m6 = magnitude(d6);
-    const double excess = larger(larger(larger(m0 - l0, m1 - l1), larger(m2 - l2, m3 - l3)), larger(larger(m4 - l4, m5 - l5), m6 - l6));
+    const double m0 = magnitude(d0), m1 = magnitude(d1), m2 = magnitude(d2), m3 = magnitude(d3), m4 = magnitude(d4),
+                 m5 = magnitude(d5), m6 = magnitude(d6);
+    const double excess =
+        larger(larger(larger(m0 - l0, m1 - l1), larger(m2 - l2, m3 - l3)), larger(larger(m4 - l4, m5 - l5), m6 - l6));
     double cost;
     if (kMetric == RelaxMetric::kL2) {
       const double x0 = w0 * d0, x1 = w1 * d1, x2 = w2 * d2, x3 = w3 * d3, x4 = w4 * d4, x5 = w5 * d5, x6 = w6 * d6;

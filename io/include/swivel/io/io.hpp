@@ -44,8 +44,8 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 /// Writes text beside the target and renames it over; a device or pipe is written to.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// RESULTS.csv of a campaign, design.md 4. Rows are appended to RESULTS.csv.part as they come, so that a killed campaign goes on from
-/// there; finish() renames it. Settings are not in the file: whoever changes seed or resolution removes the .part file first.
+/// RESULTS.csv of a campaign, design.md 4. Rows are appended to RESULTS.csv.part as they come, so that a killed campaign goes on
+/// from there; finish() renames it. Settings are not in the file: whoever changes seed or resolution removes the .part file first.
 class CampaignFile {
  public:
   /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
