@@ -40,12 +40,16 @@ CostToGo::Nodes CostToGo::nodes(int layer, int first, int count, LayerNodes& scr
     lattice_->solve(layer, first, count, scratch);
     return {&scratch, 0};
   }
-  auto& cached = cache_[static_cast<std::size_t>(layer)];
-  if (!cached) {
-    cached = std::make_unique<Joints>();
-    solve(layer, *cached);
+  return {&kept(layer).nodes, (first + lattice_->window()) % lattice_->angles()};
+}
+
+const CostToGo::Joints& CostToGo::kept(int layer) {
+  auto& joints = cache_[static_cast<std::size_t>(layer)];
+  if (!joints) {
+    joints = std::make_unique<Joints>();
+    solve(layer, *joints);
   }
-  return {&cached->nodes, (first + lattice_->window()) % lattice_->angles()};
+  return *joints;
 }
 
 void CostToGo::solve(int layer, Joints& joints) {
@@ -82,12 +86,7 @@ void CostToGo::load(int layer, Block& block) {
     if (block.own.layer != layer) solve(layer, block.own);
     block.joints = &block.own;
   } else {
-    auto& cached = cache_[static_cast<std::size_t>(layer)];
-    if (!cached) {
-      cached = std::make_unique<Joints>();
-      solve(layer, *cached);
-    }
-    block.joints = cached.get();
+    block.joints = &kept(layer);
   }
   load_values(&g_[index(layer, 0)], block);
 }

@@ -115,6 +115,8 @@ class CostToGo {
   }
   [[nodiscard]] int chunks() const { return (lattice_->angles() + kChunk - 1) / kChunk; }
   void solve(int layer, Joints& joints);
+  /// The joints of a layer that are kept, solved at the first call. Only where cache_ is in use.
+  [[nodiscard]] const Joints& kept(int layer);
   void load(int layer, Block& block);
   void load_values(const double* row, Block& block) const;
   [[nodiscard]] bool may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const;
