@@ -6,8 +6,6 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 
-#include <algorithm>
-#include <array>
 #include <utility>
 
 #include "swivel/core/input_error.hpp"
@@ -16,26 +14,11 @@ namespace swivel {
 
 namespace {
 
-/// Triangles less than a nanometre high are left out: their neighbours' edges cover them, and FCL returns an unset distance for a
-/// triangle without area.
-std::vector<fcl::Triangle> triangles_with_area(const TriangleMesh& mesh) {
-  constexpr double kLeastHeight = 1e-9;
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const std::array<std::size_t, 3> k{static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
-                                       static_cast<std::size_t>(t[2])};
-    const Vector3d ab = mesh.vertices[k[1]] - mesh.vertices[k[0]], ac = mesh.vertices[k[2]] - mesh.vertices[k[0]];
-    const double longest = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    if (ab.cross(ac).norm() > kLeastHeight * longest) triangles.emplace_back(k[0], k[1], k[2]);
-  }
-  return triangles;
-}
-
 template <class Tree>
 void build(Tree& tree, const TriangleMesh& mesh) {
-  const std::vector<fcl::Triangle> triangles = triangles_with_area(mesh);
-  if (triangles.empty()) throw InputError(mesh.source + ": mesh: no triangle with an area: at least one is needed");
+  std::vector<fcl::Triangle> triangles;
+  for (const auto& t : triangles_with_area(mesh))
+    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2]));
   tree.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   tree.addSubModel(mesh.vertices, triangles);
   tree.endModel();
@@ -52,10 +35,15 @@ struct PrimitiveVisitor {
 
 }  // namespace
 
-MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)) {
-  build(boolean_tree_, *mesh_);
+MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)), triangles_(tree_of(*mesh_)) {
+  if (!triangles_) throw InputError(mesh_->source + ": mesh: no triangle with an area: at least one is needed");
   if (mesh_->closed) solid_.emplace(*mesh_);
   part_points_ = one_point_per_part(*mesh_);
+}
+
+const fcl::BVHModel<fcl::OBBd>& MeshModel::boolean_tree() const {
+  std::call_once(boolean_tree_once_, [this] { build(boolean_tree_, *mesh_); });
+  return boolean_tree_;
 }
 
 const fcl::BVHModel<fcl::RSSd>& MeshModel::distance_tree() const {
@@ -77,10 +65,16 @@ FclShape make_fcl_shape(const Shape& shape, MeshStore& store) {
   if (const auto* mesh = std::get_if<MeshPtr>(&shape)) {
     result.kind = FclShape::Kind::kMesh;
     result.mesh = store.model(*mesh);
+    result.triangles = result.mesh->triangles();
   } else {
     const bool round = std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
     result.kind = round ? FclShape::Kind::kRound : FclShape::Kind::kSolid;
     result.geometry = std::visit(PrimitiveVisitor{}, shape);
+    if (const auto* box = std::get_if<Box>(&shape)) result.triangles = tree_of(surface_of(*box));
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
+      result.triangles = tree_of(surface_of(*cylinder));
+      result.beyond_triangles = beyond_prism(*cylinder);
+    }
   }
   return result;
 }

@@ -14,6 +14,7 @@
 
 #include "bound.hpp"
 #include "closed_mesh.hpp"
+#include "polyhedron.hpp"
 #include "swivel/core/shape.hpp"
 
 namespace swivel {
@@ -23,9 +24,12 @@ class MeshModel {
  public:
   /// Throws InputError for a mesh without a triangle that has an area.
   explicit MeshModel(MeshPtr mesh);
-  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
-  [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const { return boolean_tree_; }
-  /// For distances, which an OBB cannot bound. Built at the first call, since many worlds ask booleans only.
+  /// For certificates.
+  [[nodiscard]] const std::shared_ptr<const TriangleTree>& triangles() const { return triangles_; }
+  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test. FCL's trees are built
+  /// at the first call, since certificates leave few questions, and many worlds ask booleans only.
+  [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const;
+  /// For distances, which an OBB cannot bound.
   [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
   /// Set when the mesh is closed.
   [[nodiscard]] const std::optional<ClosedMesh>& solid() const { return solid_; }
@@ -34,10 +38,11 @@ class MeshModel {
 
  private:
   MeshPtr mesh_;
-  fcl::BVHModel<fcl::OBBd> boolean_tree_;
+  std::shared_ptr<const TriangleTree> triangles_;  // shared: every shape made of the mesh
   std::optional<ClosedMesh> solid_;
   std::vector<Vector3d> part_points_;
-  mutable std::once_flag distance_tree_once_;
+  mutable std::once_flag boolean_tree_once_, distance_tree_once_;
+  mutable fcl::BVHModel<fcl::OBBd> boolean_tree_;
   mutable fcl::BVHModel<fcl::RSSd> distance_tree_;
 };
 
@@ -58,6 +63,8 @@ struct FclShape {
   Shape shape;
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;  // shared: worlds of one robot; null for a mesh
   std::shared_ptr<const MeshModel> mesh;                    // shared through the store; null unless a mesh
+  std::shared_ptr<const TriangleTree> triangles;            // shared: the same; the surface of a box or mesh, a prism in a cylinder
+  double beyond_triangles = 0;                              // no point of the cylinder is further from its prism, m
   Bound bound;
 };
 [[nodiscard]] FclShape make_fcl_shape(const Shape& shape, MeshStore& store);

@@ -14,16 +14,6 @@ namespace swivel {
 
 namespace {
 
-/// A point of `inner` lies in the solid mesh `outer`.
-bool holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
-  if (!outer.shape->mesh || !outer.shape->mesh->solid()) return false;
-  const ClosedMesh& solid = *outer.shape->mesh->solid();
-  const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
-  if (!inner.shape->mesh) return solid.contains(to_outer.translation());
-  const auto& points = inner.shape->mesh->part_points();
-  return std::any_of(points.begin(), points.end(), [&](const Vector3d& p) { return solid.contains(to_outer * p); });
-}
-
 const fcl::CollisionGeometryd& distance_geometry(const PlacedShapeRef& body) {
   if (body.shape->mesh) return body.shape->mesh->distance_tree();
   return *body.shape->geometry;
@@ -31,11 +21,6 @@ const fcl::CollisionGeometryd& distance_geometry(const PlacedShapeRef& body) {
 
 bool is_round(const PlacedShapeRef& body) {
   return body.shape->kind == FclShape::Kind::kRound;
-}
-
-/// For bodies whose surfaces do not meet. FCL sees a mesh as a surface, so it cannot tell.
-bool one_inside_other(const PlacedShapeRef& a, const PlacedShapeRef& b) {
-  return holds_a_point(a, b) || holds_a_point(b, a);
 }
 
 }  // namespace

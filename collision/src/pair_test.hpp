@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fcl_shapes.hpp"
+#include "placed_shape.hpp"
 #include "swivel/collision/world.hpp"
 
 namespace swivel {
-
-/// A body where it is.
-struct PlacedShapeRef {
-  const FclShape* shape;
-  const Pose* pose;  ///< of the shape, base frame
-};
 
 /// FCL's verdicts on one pair of bodies, and a count of what they took; so it belongs to one thread.
 /// Every verdict is a function of its arguments alone: fresh results, a before b, no cached guess, no penetration depth (which can

@@ -5,6 +5,7 @@
 #include <limits>
 #include <tuple>
 
+#include "certificate.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
 
@@ -123,12 +124,15 @@ static constexpr double kBoundSafety = 1e-6;
 
 struct World::Query::Impl {
   const World::Impl* world;
+  Certificates certificates;
   PairTest test;
+  CollisionCounters own;  // all but what the test counts
+  bool certain = false;   // no verdict of this question needed FCL
   std::vector<Pose> poses;
   std::vector<PlacedBound> bounds;
   Config placed_at = Config::Constant(std::numeric_limits<double>::quiet_NaN());
 
-  explicit Impl(const World::Impl& w) : world(&w) {
+  Impl(const World::Impl& w, Certificates c) : world(&w), certificates(c) {
     for (const auto& body : w.bodies) {
       poses.push_back(body.pose);
       bounds.push_back(place(body.shape.bound, body.pose));
@@ -148,23 +152,36 @@ struct World::Query::Impl {
   }
 
   bool below(const BodyPair& p, double d) {
-    return !surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety) &&
-           test.below(placed(p.a), placed(p.b), d);
+    const Certificate certificate = certify_pair(p, d);
+    certain &= certificate != Certificate::kNone;
+    if (certificates != Certificates::kCompared && certificate != Certificate::kNone) return certificate == Certificate::kColliding;
+    const bool verdict = test.below(placed(p.a), placed(p.b), d);
+    own.contradictions += certificate == (verdict ? Certificate::kFree : Certificate::kColliding);
+    return verdict;
+  }
+  [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d) const {
+    if (surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
+    return certificates == Certificates::kOff ? Certificate::kNone : certify(placed(p.a), placed(p.b), d);
   }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[static_cast<std::size_t>(i)]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
   [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[static_cast<std::size_t>(i)]; }
 };
 
-World::Query::Query(const World& world) : impl_(std::make_unique<Impl>(*world.impl_)) {}
+World::Query::Query(const World& world, Certificates certificates) : impl_(std::make_unique<Impl>(*world.impl_, certificates)) {}
 World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
 std::optional<BodyPair> World::Query::first_below(const Config& q, double d) {
   impl_->move_to(q);
+  impl_->certain = impl_->certificates != Certificates::kOff;
   for (const BodyPair& p : impl_->world->pairs)
-    if (impl_->below(p, d)) return p;
+    if (impl_->below(p, d)) {
+      impl_->own.certified_colliding += impl_->certain;
+      return p;
+    }
+  impl_->own.certified_free += impl_->certain;
   return std::nullopt;
 }
 
@@ -196,8 +213,10 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   return Clearance{least, pairs[where]};
 }
 
-const CollisionCounters& World::Query::counters() const {
-  return impl_->test.counters();
+CollisionCounters World::Query::counters() const {
+  CollisionCounters counters = impl_->own;
+  counters += impl_->test.counters();
+  return counters;
 }
 
 }  // namespace swivel

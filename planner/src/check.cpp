@@ -14,7 +14,7 @@ namespace swivel {
 
 namespace {
 
-constexpr double kPose = 1e-6, kLimit = 1e-9, kBand = 0.05e-3;
+constexpr double kPose = 1e-6, kLimit = 1e-9;
 
 /// The waypoints' own straight segments: a path cut at waypoints alone.
 ToolPath segments_of(const Problem& problem) {
@@ -103,7 +103,7 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
   World::Query query(world);
   const Limits& limits = problem.limits;
   EdgeRule rule = edge_rule(limits, robot.radii());
-  rule.d_edge = std::max(0.0, rule.d_edge - kBand);
+  rule.d_edge = std::max(0.0, rule.d_edge - kVerdictBand);
 
   if (rows.size() < 2) report.fail("%zu row(s): at least two are needed", rows.size());
   if (problem.start && !rows.empty() && (rows[0].q - *problem.start).lpNorm<Eigen::Infinity>() > kPose)
@@ -136,7 +136,7 @@ CheckResult check_trajectory(const Problem& problem, const std::vector<Trajector
     const auto clearance = query.clearance(q);
     if (clearance) {
       result.min_clearance = std::min(result.min_clearance.value_or(clearance->distance), clearance->distance);
-      if (!(clearance->distance >= limits.clearance - kBand))
+      if (!(clearance->distance >= limits.clearance - kVerdictBand))
         report.fail("row %zu: clearance %.3f mm between '%s' and '%s' is below %.3f mm", k, 1e3 * clearance->distance,
                     world.body_names()[static_cast<std::size_t>(clearance->pair.a)].c_str(),
                     world.body_names()[static_cast<std::size_t>(clearance->pair.b)].c_str(), 1e3 * limits.clearance);

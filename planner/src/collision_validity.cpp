@@ -11,11 +11,11 @@ EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) 
   return rule;
 }
 
-CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor,
-                                     const Stop& stop, const Progress& progress)
+CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
+                                     Executor& executor, const Stop& stop, const Progress& progress)
     : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop), progress_(progress) {
   queries_.reserve(static_cast<std::size_t>(executor.threads()));
-  for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world);
+  for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world, certificates);
 }
 
 void CollisionValidity::report() const {
@@ -40,8 +40,7 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
 /// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
 /// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
 std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q, const BodyPair& pair) const {
-  constexpr double kBand = 0.05e-3;
-  if (!lattice_->arm().exact || !query.pair_below(q, pair, lattice_->limits().clearance - kBand)) return kOnNodeAlone;
+  if (!lattice_->arm().exact || !query.pair_below(q, pair, lattice_->limits().clearance - kVerdictBand)) return kOnNodeAlone;
   std::uint8_t depends = 0;
   for (const int body : {pair.a, pair.b}) {
     constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
@@ -74,10 +73,10 @@ bool CollisionValidity::stopped() const {
   return stop_->reason() != Stop::Reason::kNone;
 }
 
-std::int64_t CollisionValidity::fcl_calls() const {
-  std::int64_t calls = 0;
-  for (const World::Query& query : queries_) calls += query.counters().fcl_calls;
-  return calls;
+CollisionCounters CollisionValidity::counters() const {
+  CollisionCounters sum;
+  for (const World::Query& query : queries_) sum += query.counters();
+  return sum;
 }
 
 }  // namespace swivel

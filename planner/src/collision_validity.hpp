@@ -16,8 +16,8 @@ namespace swivel {
 class CollisionValidity final : public Validity {
  public:
   using Progress = std::function<void(const std::string&)>;
-  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Executor& executor, const Stop& stop,
-                    const Progress& progress);
+  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates, Executor& executor,
+                    const Stop& stop, const Progress& progress);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
@@ -26,7 +26,8 @@ class CollisionValidity final : public Validity {
 
   [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
   [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
-  [[nodiscard]] std::int64_t fcl_calls() const;
+  /// Of all workers.
+  [[nodiscard]] CollisionCounters counters() const;
 
  private:
   void report() const;

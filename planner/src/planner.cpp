@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
@@ -42,6 +43,12 @@ struct Found {
   SearchOutcome outcome;
   int deepest = -1;  // where there is no path
 };
+
+/// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
+Certificates certificates_of(const PlanOptions& options) {
+  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp) return Certificates::kOff;
+  return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
+}
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge; beyond the machine's memory it would be killed, not refused.
 void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
@@ -185,12 +192,17 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
 
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
   if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-  CollisionValidity validity(lattice, world, rule, executor, stop, options.progress);
+  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, stop, options.progress);
   const Found found = search(lattice, validity, options, result);
   result.time_ms["find"] = watch.lap();
   result.counters.nodes_checked = validity.nodes_checked();
   result.counters.edges_checked = validity.edges_checked();
-  result.counters.fcl_calls = validity.fcl_calls();
+  const CollisionCounters collision = validity.counters();
+  result.counters.fcl_calls = collision.fcl_calls;
+  result.counters.certified_free = collision.certified_free;
+  result.counters.certified_colliding = collision.certified_colliding;
+  if (collision.contradictions > 0)
+    throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
   if (found.outcome.stopped) {
     result.status = stop.reason() == Stop::Reason::kCancelled ? PlanStatus::kCancelled : PlanStatus::kTimeout;
   } else if (found.outcome.path.empty()) {

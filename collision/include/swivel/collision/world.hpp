@@ -18,15 +18,31 @@ struct BodyPair {
   int a = 0, b = 0;  ///< indices into World::body_names(), a < b
 };
 
+/// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. design.md 1.
+inline constexpr double kVerdictBand = 0.05e-3;
+
 /// Work counted per query object; add up over threads.
 struct CollisionCounters {
-  std::int64_t fcl_calls = 0;     ///< fcl::collide and fcl::distance
-  std::int64_t fcl_failures = 0;  ///< of those, the ones that threw; the bodies then count as touching
+  std::int64_t fcl_calls = 0;            ///< fcl::collide and fcl::distance
+  std::int64_t fcl_failures = 0;         ///< of those, the ones that threw; the bodies then count as touching
+  std::int64_t certified_free = 0;       ///< first_below: answers "none" that needed no FCL
+  std::int64_t certified_colliding = 0;  ///< first_below: pairs found without FCL
+  std::int64_t contradictions = 0;       ///< pairs that FCL and a certificate judge differently; with Certificates::kCompared
   CollisionCounters& operator+=(const CollisionCounters& o) {
     fcl_calls += o.fcl_calls;
     fcl_failures += o.fcl_failures;
+    certified_free += o.certified_free;
+    certified_colliding += o.certified_colliding;
+    contradictions += o.contradictions;
     return *this;
   }
+};
+
+/// Who answers a Query's first_below and pair_below. The answers are the same.
+enum class Certificates {
+  kOff,       ///< FCL, behind bounding volumes
+  kOn,        ///< closed forms, where they prove the clearance outside the band; FCL within it
+  kCompared,  ///< FCL, asked about every pair; what kOn would have answered is held against it. For tests.
 };
 
 /// The robot's bodies among the scene's, with FCL as the authority on every pair. Immutable after construction; const calls are
@@ -59,7 +75,7 @@ class World {
   /// The world must outlive it, and may be moved meanwhile.
   class Query {
    public:
-    explicit Query(const World& world);
+    explicit Query(const World& world, Certificates certificates = Certificates::kOff);
     ~Query();
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
@@ -74,7 +90,7 @@ class World {
       BodyPair pair;
     };
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
-    [[nodiscard]] const CollisionCounters& counters() const;
+    [[nodiscard]] CollisionCounters counters() const;
 
    private:
     struct Impl;

@@ -29,7 +29,7 @@ struct Counters {
   std::int64_t nodes_checked = 0;   ///< nodes whose clearance was asked
   std::int64_t edges_checked = 0;   ///< edges whose tool-path error or clearance was asked
   std::int64_t fcl_calls = 0;       ///< fcl::collide + fcl::distance
-  std::int64_t certified_free = 0;  ///< configurations proved free without FCL
+  std::int64_t certified_free = 0;  ///< questions about a configuration's clearance answered without FCL
   std::int64_t certified_colliding = 0;
   std::int64_t expansions = 0;  ///< vertices popped by the graph search
   std::int64_t iterations = 0;  ///< candidate paths tried

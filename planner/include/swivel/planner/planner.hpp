@@ -34,6 +34,8 @@ struct PlanOptions {
   const std::atomic<bool>* cancel = nullptr;  ///< set from elsewhere to stop
   bool report = true;  ///< fill what only a report needs: min_clearance, tool-path error, arm_angle, diagnosis
   EagerSearch eager_search = EagerSearch::kDijkstra;
+  /// lazy, parallel: FCL is asked about every pair as well; std::logic_error where a certificate contradicts it. For tests.
+  bool compare_with_fcl = false;
   Executor::Backend backend = Executor::Backend::kTbb;
   /// Called now and then from the planning thread with one phrase on what is going on.
   std::function<void(const std::string&)> progress;

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "swivel/collision/world.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kRounding = 1e-6;  // far above what these distances lose, far below the band
+
+/// A distance below `low` is a collision, one from `high` on is free.
+struct Range {
+  double low, high;
+  Range(double d, double growth) : low(d + growth - kVerdictBand - kRounding), high(d + growth + kVerdictBand + kRounding) {}
+  [[nodiscard]] Certificate of(double distance) const {
+    return distance < low ? Certificate::kColliding : distance >= high ? Certificate::kFree : Certificate::kNone;
+  }
+};
+
+bool is_round(const PlacedShapeRef& body) {
+  return body.shape->kind == FclShape::Kind::kRound;
+}
+
+double radius_of(const Shape& round) {
+  const auto* sphere = std::get_if<Sphere>(&round);
+  return sphere ? sphere->radius : std::get<Capsule>(round).radius;
+}
+
+/// What the radius grows: base frame.
+Segment core_of(const PlacedShapeRef& round) {
+  const auto* capsule = std::get_if<Capsule>(&round.shape->shape);
+  const Vector3d along = capsule ? Vector3d(capsule->length * round.pose->linear().col(2)) : Vector3d::Zero();
+  return {round.pose->translation() - along / 2, along};
+}
+
+Segment in_frame(const Segment& s, const Pose& frame) {
+  return {frame.linear().transpose() * (s.start - frame.translation()), frame.linear().transpose() * s.along};
+}
+
+/// From the nearest point of a solid to this one.
+Vector3d way_out(const Box& box, const Vector3d& p) {
+  return (p.cwiseAbs() - box.size / 2).cwiseMax(0).cwiseProduct(p.cwiseSign());
+}
+Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
+  const double r = std::hypot(p.x(), p.y());
+  const double aside = r > cylinder.radius ? 1 - cylinder.radius / r : 0;
+  return {aside * p.x(), aside * p.y(), std::copysign(std::max(0.0, std::abs(p.z()) - cylinder.length / 2), p.z())};
+}
+
+/// A convex solid's distance is convex along a segment: its least value lies between the values and the tangents on both sides.
+template <class Solid>
+Certificate bracket(const Segment& s, const Solid& solid, const Range& range) {
+  struct Place {
+    double t, distance, slope;
+  };
+  const auto at = [&](double t) {
+    const Vector3d out = way_out(solid, s.at(t));
+    const double distance = out.norm();
+    return Place{t, distance, distance > 0 ? out.dot(s.along) / distance : 0};
+  };
+  constexpr int kSteps = 40;
+  Place left = at(0), right = at(1);
+  for (int step = 0; step < kSteps; ++step) {
+    if (range.of(std::min(left.distance, right.distance)) == Certificate::kColliding) return Certificate::kColliding;
+    if (left.slope >= 0) return range.of(left.distance);
+    if (right.slope <= 0) return range.of(right.distance);
+    const double to_crossing =
+        (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
+    if (range.of(left.distance + left.slope * to_crossing) == Certificate::kFree) return Certificate::kFree;
+    const Place middle = at(left.t + to_crossing);
+    (middle.slope < 0 ? left : right) = middle;
+  }
+  return Certificate::kNone;
+}
+
+Certificate certify_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d) {
+  const Segment core = core_of(round);
+  const double radius = radius_of(round.shape->shape);
+  if (is_round(other))
+    return Range(d, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
+  const Segment there = in_frame(core, *other.pose);
+  const Range range(d, radius);
+  if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
+  if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
+  const Certificate surface = range.of(other.shape->triangles->distance(there, range.low, range.high));
+  return surface == Certificate::kFree && one_inside_other(round, other) ? Certificate::kColliding : surface;
+}
+
+/// A point of `inner` lies in the box or cylinder `outer`, where their surfaces do not meet.
+bool solid_holds(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
+  const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
+  const auto holds = [&](const Vector3d& p) {
+    const Vector3d x = to_outer * p;
+    const auto* box = std::get_if<Box>(&outer.shape->shape);
+    return (box ? way_out(*box, x) : way_out(std::get<Cylinder>(outer.shape->shape), x)).isZero(0);
+  };
+  if (outer.shape->kind != FclShape::Kind::kSolid) return false;
+  if (!inner.shape->mesh) return holds(Vector3d::Zero());
+  const auto& points = inner.shape->mesh->part_points();
+  return std::any_of(points.begin(), points.end(), holds);
+}
+
+Certificate certify_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
+  if (!a.shape->triangles || !b.shape->triangles) return Certificate::kNone;
+  Range range(d, 0);
+  range.high += a.shape->beyond_triangles + b.shape->beyond_triangles;
+  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
+  const Certificate surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.high));
+  if (surface != Certificate::kFree) return surface;
+  return one_inside_other(a, b) || solid_holds(a, b) || solid_holds(b, a) ? Certificate::kColliding : Certificate::kFree;
+}
+
+}  // namespace
+
+Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
+  if (is_round(a)) return certify_round(a, b, d);
+  if (is_round(b)) return certify_round(b, a, d);
+  return certify_triangles(a, b, d);
+}
+
+}  // namespace swivel

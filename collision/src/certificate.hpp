@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "placed_shape.hpp"
+
+namespace swivel {
+
+/// What is proved of one pair of bodies without FCL.
+enum class Certificate { kFree, kColliding, kNone };
+
+/// kFree: their clearance is at least d + kVerdictBand. kColliding: below d - kVerdictBand, or one holds a point of the other, as
+/// FCL's verdict has it. Else FCL has to be asked. d >= 0, metres.
+///
+/// A sphere or capsule is a core (a point or segment) and a radius, so its distance is one of segments: in closed form to segments
+/// and triangles (segment.hpp), bracketed to boxes and cylinders. Boxes, cylinders and meshes among each other are compared as
+/// triangles, a cylinder as a prism inside it and what the prism may lack.
+/// A function of its arguments alone. Const-safe from many threads.
+[[nodiscard]] Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
+
+}  // namespace swivel

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+
+#include "swivel/core/shape.hpp"
+#include "triangle_tree.hpp"
+
+namespace swivel {
+
+/// Triangles as collision has them: those less than a nanometre high are left out, since their neighbours' edges cover them and FCL
+/// returns an unset distance for a triangle without area.
+[[nodiscard]] std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh);
+/// Null where no triangle has an area.
+[[nodiscard]] std::shared_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh);
+
+[[nodiscard]] TriangleMesh surface_of(const Box& box);
+/// A prism inside the cylinder. No point of the cylinder is further than `beyond_prism` from it, m.
+[[nodiscard]] TriangleMesh surface_of(const Cylinder& cylinder);
+[[nodiscard]] double beyond_prism(const Cylinder& cylinder);
+
+}  // namespace swivel
