@@ -68,8 +68,7 @@ Certificate bracket(const Segment& s, const Solid& solid, const Range& range) {
     if (range.of(std::min(left.distance, right.distance)) == Certificate::kColliding) return Certificate::kColliding;
     if (left.slope >= 0) return range.of(left.distance);
     if (right.slope <= 0) return range.of(right.distance);
-    const double to_crossing =
-        (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
+    const double to_crossing = (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
     if (range.of(left.distance + left.slope * to_crossing) == Certificate::kFree) return Certificate::kFree;
     const Place middle = at(left.t + to_crossing);
     (middle.slope < 0 ? left : right) = middle;

@@ -14,8 +14,7 @@ double on_unit(double t) {
 
 /// Whether x, relative to corner a and in the triangle's plane, lies in the triangle.
 bool holds(const Triangle& t, const Vector3d& x) {
-  return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 &&
-         t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
+  return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 && t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ class TriangleTree {
 
  private:
   struct Node {
-    Vector3d center, half;     ///< of the box
-    int begin = 0, end = 0;    ///< its triangles
-    int right = 0;             ///< second child; the first is the next node; 0: a leaf
+    Vector3d center, half;   ///< of the box
+    int begin = 0, end = 0;  ///< its triangles
+    int right = 0;           ///< second child; the first is the next node; 0: a leaf
   };
   void build(int begin, int end);
 
