@@ -86,7 +86,7 @@ Certificate certify_round(const PlacedShapeRef& round, const PlacedShapeRef& oth
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
   const Certificate surface = range.of(other.shape->triangles->distance(there, range.low, range.high));
-  return surface == Certificate::kFree && one_inside_other(round, other) ? Certificate::kColliding : surface;
+  return surface != Certificate::kColliding && one_inside_other(round, other) ? Certificate::kColliding : surface;
 }
 
 /// A point of `inner` lies in the box or cylinder `outer`, where their surfaces do not meet.
@@ -109,8 +109,10 @@ Certificate certify_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, 
   range.high += a.shape->beyond_triangles + b.shape->beyond_triangles;
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   const Certificate surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.high));
-  if (surface != Certificate::kFree) return surface;
-  return one_inside_other(a, b) || solid_holds(a, b) || solid_holds(b, a) ? Certificate::kColliding : Certificate::kFree;
+  if (surface == Certificate::kColliding) return surface;
+  const bool surfaces_apart = surface == Certificate::kFree || range.low > 0;
+  const bool inside = one_inside_other(a, b) || (surfaces_apart && (solid_holds(a, b) || solid_holds(b, a)));
+  return inside ? Certificate::kColliding : surface;
 }
 
 }  // namespace

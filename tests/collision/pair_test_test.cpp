@@ -9,6 +9,7 @@
 #include <map>
 
 #include "bound.hpp"
+#include "certificate.hpp"
 #include "reference.hpp"
 #include "support.hpp"
 
@@ -60,7 +61,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   PairTest test;
   MeshStore store;
   std::map<std::pair<int, int>, Tally> tally;
-  int verdicts = 0;
+  int verdicts = 0, certified = 0;
   double worst = 0;
   for (int ka = 0; ka < 7; ++ka)
     for (int kb = 0; kb < 7; ++kb)
@@ -95,12 +96,17 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
           }
           const bool apart = surely_apart(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b), d + 1e-6);
           ASSERT_FALSE(apart && below) << what;
+          const Certificate certificate = certify(pa, pb, d);
+          ASSERT_FALSE(certificate == Certificate::kFree && (truth < d || truth == 0)) << what << ", d " << d;
+          ASSERT_FALSE(certificate == Certificate::kColliding && truth >= d && truth > 0) << what << ", d " << d;
+          certified += certificate != Certificate::kNone;
           ++verdicts;
         }
         ++(truth > 0 ? tally[{ka, kb}].apart : tally[{ka, kb}].touching);
       }
   EXPECT_EQ(test.counters().fcl_failures, 0);
   EXPECT_GT(verdicts, 5500);
+  EXPECT_GT(certified, verdicts * 3 / 4);
   for (const auto& [kinds, t] : tally) {
     const std::string what = kKinds[static_cast<std::size_t>(kinds.first)] + " / " + kKinds[static_cast<std::size_t>(kinds.second)];
     EXPECT_GT(t.apart, 0) << what;

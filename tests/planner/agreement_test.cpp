@@ -117,6 +117,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Agreement");
   const auto robots = all_robots();
   int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0;
+  std::int64_t certified = 0, lazy_fcl_calls = 0;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -135,6 +136,14 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     astar.planner = PlannerKind::kEager;
     astar.eager_search = EagerSearch::kAStar;
     results.push_back(plan(problem, astar));
+    PlanOptions compared;
+    compared.planner = PlannerKind::kLazy;
+    compared.compare_with_fcl = true;  // throws where a certificate contradicts FCL
+    results.push_back(plan(problem, compared));
+    ASSERT_EQ(results.back().counters.certified_free, results[2].counters.certified_free) << what;
+    ASSERT_EQ(results.back().counters.certified_colliding, results[2].counters.certified_colliding) << what;
+    certified += results[2].counters.certified_free + results[2].counters.certified_colliding;
+    lazy_fcl_calls += results[2].counters.fcl_calls;
     ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
     for (std::size_t k = 1; k < results.size(); ++k) {
       expect_same(results[0], results[k], what + " planner " + results[k].planner);
@@ -167,9 +176,11 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   }
   std::printf(
       "%d problems: %d solved (%d after failures, %d label changes), %d infeasible, %d continuous, %d with a start, %d with "
-      "obstacles\n",
-      count, solved, detours, label_changes, infeasible, continuous, started, obstacles);
+      "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
+      count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
+      static_cast<long long>(lazy_fcl_calls));
   EXPECT_GE(solved, count / 4);
+  EXPECT_GT(certified, 10 * lazy_fcl_calls);
   EXPECT_GE(infeasible, count / 20);
   EXPECT_GE(continuous, count / 5);
   EXPECT_GE(started, count / 10);

@@ -54,6 +54,8 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
       ASSERT_EQ(result.status, first->status);
       ASSERT_EQ(result.cost, first->cost);
       ASSERT_EQ(result.counters.fcl_calls, first->counters.fcl_calls);
+      ASSERT_EQ(result.counters.certified_free, first->counters.certified_free);
+      ASSERT_EQ(result.counters.certified_colliding, first->counters.certified_colliding);
       ASSERT_EQ(result.counters.nodes_checked, first->counters.nodes_checked);
       ASSERT_EQ(result.counters.edges_checked, first->counters.edges_checked);
       ASSERT_EQ(result.trajectory.size(), first->trajectory.size());

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Certificates against FCL: a verdict that a certificate gives must be FCL's. design.md 1.
+#include "certificate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pair_test.hpp"
+#include "robots.hpp"
+#include "support.hpp"
+
+namespace swivel {
+namespace {
+
+using test::Random;
+
+constexpr double kTau = kVerdictBand;
+
+Pose random_pose(Random& random, double range) {
+  Eigen::Vector4d turn;
+  for (int k = 0; k < 4; ++k) turn[k] = random.uniform(-1, 1);
+  Pose pose = Pose::Identity();
+  pose.linear() = Quaterniond(turn.normalized()).toRotationMatrix();
+  for (int k = 0; k < 3; ++k) pose.translation()[k] = random.uniform(-range, range);
+  return pose;
+}
+
+Vector3d random_size(Random& random, double low, double high) {
+  return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
+}
+
+/// One sheet of triangles, without thickness.
+TriangleMesh sheet_mesh(double width, double height, int n) {
+  TriangleMesh mesh = testing::panel_mesh(width, height, 0.04, n);
+  mesh.triangles.resize(static_cast<std::size_t>(4 * n * n));  // the upper side comes first
+  return mesh;
+}
+
+/// Meshes with walls thin and thick, open and closed, with room for a body inside.
+std::vector<MeshPtr> meshes() {
+  return {testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel"),
+          testing::as_mesh(testing::panel_mesh(0.6, 0.5, 0.001, 6), "thin panel"),
+          testing::as_mesh(sheet_mesh(0.8, 0.6, 6), "sheet"),
+          testing::as_mesh(testing::box_mesh(Vector3d(0.9, 0.8, 0.7), 2), "crate"),
+          testing::as_mesh(testing::torus_mesh(0.2, 0.05, 8), "torus"),
+          testing::as_mesh(testing::tube_mesh(0.08, 0.6, 12), "pipe"),
+          testing::as_mesh(testing::sphere_mesh(0.1, 5), "ball"),
+          testing::as_mesh(testing::joined(testing::box_mesh(Vector3d(0.5, 0.5, 0.5), 1), testing::sphere_mesh(0.04, 4)), "two parts")};
+}
+
+std::vector<SceneObject> random_scene(Random& random, const std::vector<MeshPtr>& pool) {
+  std::vector<SceneObject> scene;
+  for (int k = 0; k < 3; ++k) {
+    Shape shape;
+    switch (random.below(7)) {
+      case 0:
+        shape = Sphere{random.uniform(0.005, 0.2)};
+        break;
+      case 1:
+        shape = Capsule{random.uniform(0.005, 0.1), random.uniform(0.05, 0.8)};
+        break;
+      case 2:
+        shape = Box{random_size(random, 0.05, 0.5)};
+        break;
+      case 3:
+        shape = Box{Vector3d(random.uniform(0.2, 1), random.uniform(0.2, 1), 0.001)};
+        break;
+      case 4:
+        shape = Cylinder{random.uniform(0.005, 0.15), random.uniform(0.02, 1)};
+        break;
+      default:
+        shape = pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
+    }
+    Pose pose = random_pose(random, 0.9);
+    pose.translation().z() += 0.6;
+    scene.push_back({"object" + std::to_string(k), shape, pose, {}});
+  }
+  return scene;
+}
+
+class Lanes : public ::testing::TestWithParam<int> {};
+
+TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
+  const std::uint64_t base = test::seed("Certificates");
+  Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
+  const auto pool = meshes();
+  const auto robots = test::all_robots();
+  const test::TestRobot& robot = robots[static_cast<std::size_t>(GetParam()) % robots.size()];
+  const ArmModel arm = test::arm_of(robot);
+  const World empty(*robot.model, arm, test::problem_for(robot));
+  const int scenes = test::trials(125), configurations = 1000;
+  CollisionCounters sum;
+  std::int64_t questions = 0, at_threshold = 0;
+  for (int s = 0; s < scenes; ++s) {
+    const World world(empty, random_scene(random, pool));
+    World::Query compared(world, Certificates::kCompared), fast(world, Certificates::kOn);
+    std::int64_t contradictions = 0;
+    for (int k = 0; k < configurations; ++k) {
+      const Config q = test::random_config(arm.chain, random);
+      const auto ask = [&](double d) {
+        const bool below = compared.first_below(q, d).has_value();
+        EXPECT_EQ(compared.counters().contradictions, contradictions)
+            << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k << " d " << d;
+        contradictions = compared.counters().contradictions;
+        ++questions;
+        return below;
+      };
+      ask(k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05));
+      if (k % 20 != 0) continue;
+      double low = 0, high = 0.3;  // of the clearance
+      if (fast.first_below(q, low) || !fast.first_below(q, high)) continue;
+      while (high - low > 1e-7) {
+        const double middle = (low + high) / 2;
+        (fast.first_below(q, middle) ? high : low) = middle;
+      }
+      for (const double offset : {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
+        if (low + offset < 0) continue;
+        const bool below = ask(low + offset);
+        if (std::abs(offset) > kTau) {
+          EXPECT_EQ(below, offset > 0) << "clearance " << low << " offset " << offset;
+        }
+        ++at_threshold;
+      }
+    }
+    sum += compared.counters();
+  }
+  const std::int64_t undecided = questions - sum.certified_free - sum.certified_colliding;
+  std::printf("%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld certified free, %lld certified "
+              "colliding, %lld undecided, %lld FCL calls, %lld contradictions\n",
+              robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
+              static_cast<long long>(sum.certified_free), static_cast<long long>(sum.certified_colliding),
+              static_cast<long long>(undecided), static_cast<long long>(sum.fcl_calls), static_cast<long long>(sum.contradictions));
+  EXPECT_EQ(sum.contradictions, 0);
+  EXPECT_EQ(sum.fcl_failures, 0);
+  EXPECT_GT(at_threshold, scenes * 10);
+  EXPECT_GT(sum.certified_free, questions / 50);
+  EXPECT_GT(sum.certified_colliding, questions / 50);
+  EXPECT_LT(undecided, questions / 50 + at_threshold);
+}
+INSTANTIATE_TEST_SUITE_P(Eight, Lanes, ::testing::Range(0, 8));
+
+struct Verdicts {
+  int free = 0, colliding = 0, none = 0;
+  void add(Certificate c) { ++(c == Certificate::kFree ? free : c == Certificate::kColliding ? colliding : none); }
+  [[nodiscard]] int all() const { return free + colliding + none; }
+};
+
+class MeshLanes : public ::testing::TestWithParam<int> {};
+
+TEST_P(MeshLanes, MeshesAgainstFclDistances) {
+  const std::uint64_t base = test::seed("CertificatesOfMeshes");
+  Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
+  const auto pool = meshes();
+  MeshStore store;
+  PairTest fcl;
+  Verdicts round, solid, mesh, touching;
+  const int count = test::trials(5000);
+  for (int k = 0; k < count; ++k) {
+    const double small = random.coin(0.2) ? 0.005 : random.uniform(0.01, 0.15);
+    const int kind = random.below(6);
+    Shape other;
+    if (kind == 0) other = Sphere{small};
+    if (kind == 1 || kind == 2) other = Capsule{small, random.uniform(0.01, 0.5)};
+    if (kind == 3) other = Box{random_size(random, small / 4, 2 * small)};
+    if (kind == 4) other = Cylinder{small, random.uniform(0.005, 0.4)};
+    if (kind == 5) other = pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
+    const FclShape fa = make_fcl_shape(pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))], store);
+    const FclShape fb = make_fcl_shape(other, store);
+    const Pose X_a = random_pose(random, 0.1);
+    const Pose X_b = X_a * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside
+    const bool swapped = random.coin();
+    const PlacedShapeRef a = swapped ? PlacedShapeRef{&fb, &X_b} : PlacedShapeRef{&fa, &X_a};
+    const PlacedShapeRef b = swapped ? PlacedShapeRef{&fa, &X_a} : PlacedShapeRef{&fb, &X_b};
+    const double clearance = fcl.clearance(a, b);
+    Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
+    const double beyond = fa.beyond_triangles + fb.beyond_triangles;
+    for (const double d : {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau, clearance + 3 * kTau,
+                           clearance + random.uniform(-0.02, 0.02)}) {
+      if (d < 0) continue;
+      const Certificate certificate = certify(a, b, d);
+      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k) + " kind " +
+                               std::to_string(kind) + " clearance " + std::to_string(clearance) + " d " + std::to_string(d);
+      ASSERT_FALSE(certificate == Certificate::kFree && (clearance < d || clearance == 0)) << what;
+      ASSERT_FALSE(certificate == Certificate::kColliding && clearance >= d && clearance > 0) << what;
+      // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all is decided.
+      if (clearance > d + 2.5 * kTau + beyond) {
+        ASSERT_EQ(certificate, Certificate::kFree) << what;
+      }
+      if (clearance < d - 2.5 * kTau - beyond) {
+        ASSERT_EQ(certificate, Certificate::kColliding) << what;
+      }
+      tally.add(certificate);
+    }
+  }
+  for (const auto& [name, tally] : {std::pair("apart: sphere or capsule", round), std::pair("apart: box or cylinder", solid),
+                                    std::pair("apart: mesh", mesh), std::pair("touching or contained", touching)}) {
+    std::printf("%s: %d certified free, %d certified colliding, %d undecided\n", name, tally.free, tally.colliding, tally.none);
+    EXPECT_GT(tally.all(), count / 4) << name;
+    EXPECT_GT(tally.colliding, tally.all() / 10) << name;
+  }
+  EXPECT_EQ(touching.free, 0);
+  EXPECT_GT(round.free, round.all() / 4);
+  EXPECT_EQ(fcl.counters().fcl_failures, 0);
+  std::printf("%d pairs of bodies, %lld FCL calls\n", count, static_cast<long long>(fcl.counters().fcl_calls));
+}
+INSTANTIATE_TEST_SUITE_P(Four, MeshLanes, ::testing::Range(0, 4));
+
+TEST(Certificates, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
+  MeshStore store;
+  const Pose origin = Pose::Identity();
+  for (const bool closed : {true, false}) {
+    TriangleMesh crate = testing::box_mesh(Vector3d(1, 1, 1), 1);
+    if (!closed) crate.triangles.pop_back();
+    const FclShape outer = make_fcl_shape(testing::as_mesh(crate, "crate"), store);
+    for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1},
+                                                 testing::as_mesh(testing::sphere_mesh(0.1, 4), "ball")}) {
+      const FclShape inner = make_fcl_shape(shape, store);
+      const Certificate expected = closed ? Certificate::kColliding : Certificate::kFree;
+      EXPECT_EQ(certify({&outer, &origin}, {&inner, &origin}, 0.005), expected) << shape.index();
+      EXPECT_EQ(certify({&inner, &origin}, {&outer, &origin}, 0), expected) << shape.index();
+    }
+  }
+  const FclShape speck = make_fcl_shape(testing::as_mesh(testing::sphere_mesh(0.01, 4), "speck"), store);
+  for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1}}) {
+    const FclShape outer = make_fcl_shape(shape, store);
+    EXPECT_EQ(certify({&speck, &origin}, {&outer, &origin}, 0), Certificate::kColliding) << shape.index();
+  }
+}
+
+TEST(Segments, DegenerateCasesAreExact) {
+  const auto squared = [](Vector3d p, Vector3d u, Vector3d q, Vector3d v) { return squared_distance(Segment{p, u}, Segment{q, v}); };
+  const Vector3d o = Vector3d::Zero(), x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  EXPECT_EQ(squared(o, o, 3 * x, o), 9);               // points
+  EXPECT_EQ(squared(o, o, y - x, 2 * x), 1);           // a point over a segment
+  EXPECT_EQ(squared(y - x, 2 * x, o, o), 1);           // and below
+  EXPECT_EQ(squared(o, x, y + 0.5 * x, x), 1);         // parallel, side by side
+  EXPECT_EQ(squared(o, x, 3 * x, x), 4);               // in line
+  EXPECT_EQ(squared(o, x, 3 * x, -x), 1);              // in line, towards
+  EXPECT_EQ(squared(o, x, 0.5 * x, x), 0);             // in line, over each other
+  EXPECT_EQ(squared(-x, 2 * x, z - y, 2 * y), 1);      // crossing
+  const Triangle t(o, 2 * x, 2 * y);
+  const auto to_triangle = [&](Vector3d p, Vector3d u) { return squared_distance(Segment{p, u}, t, 1e9); };
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y + z, o), 1);            // a point above
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y, o), 0);                // a point on it
+  EXPECT_EQ(to_triangle(-x - y + z, 4 * x + 4 * y), 1);           // parallel above, ends outside
+  EXPECT_EQ(to_triangle(0.2 * x + 0.2 * y, 0.1 * x), 0);          // within it
+  EXPECT_EQ(to_triangle(-3 * x, x), 4);                           // in its plane, outside
+  EXPECT_EQ(to_triangle(-x + y, 4 * x), 0);                       // in its plane, across
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y - z, 2 * z), 0);        // through it
+  EXPECT_EQ(to_triangle(-x - z, 2 * z), 1);                       // through its plane, beside it
+}
+
+}  // namespace
+}  // namespace swivel
