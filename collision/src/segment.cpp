@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace swivel {
 
@@ -17,6 +18,38 @@ bool holds(const Triangle& t, const Vector3d& x) {
   return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 && t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
 }
 
+constexpr double kNotInside = std::numeric_limits<double>::max();
+
+/// The squared distance where the segment comes nearest, or is at least `limit`, over the triangle's inside; else kNotInside: where
+/// it passes over the inside elsewhere, it comes nearer until it is over an edge.
+double squared_distance_over_inside(const Segment& s, const Triangle& t, double limit) {
+  const Vector3d from = s.start - t.a;
+  const double height = t.normal.dot(from), end_height = height + t.normal.dot(s.along);
+  if (height * end_height <= 0) {  // meets the plane
+    const Vector3d x = height == end_height ? from : Vector3d(from + height / (height - end_height) * s.along);
+    return holds(t, x) ? 0 : kNotInside;
+  }
+  const bool start_nearer = std::abs(height) <= std::abs(end_height);
+  const double nearer = start_nearer ? height : end_height;
+  if (nearer * nearer >= limit) return nearer * nearer;
+  const Vector3d foot = (start_nearer ? from : Vector3d(from + s.along)) - nearer * t.normal;
+  return holds(t, foot) ? nearer * nearer : kNotInside;
+}
+
+/// A plane of one, or their boxes, part them by `limit`.
+bool surely_further(const Triangle& s, const Triangle& t, double limit) {
+  const auto above = [limit](const Triangle& below, const Triangle& other) {
+    const double h = below.normal.dot(other.a - below.a), hb = h + below.normal.dot(other.ab), hc = h + below.normal.dot(other.ac);
+    const double least = std::max(std::min({h, hb, hc}), -std::max({h, hb, hc}));
+    return least > 0 && least * least >= limit;
+  };
+  if (above(s, t) || above(t, s)) return true;
+  const auto low = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMin(x.ac).cwiseMin(0)); };
+  const auto high = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMax(x.ac).cwiseMax(0)); };
+  const Vector3d gap = (low(s) - high(t)).cwiseMax(low(t) - high(s)).cwiseMax(0);
+  return gap.squaredNorm() >= limit;
+}
+
 }  // namespace
 
 Triangle::Triangle(const Vector3d& corner, const Vector3d& b, const Vector3d& c)
@@ -26,6 +59,13 @@ Segment Triangle::edge(int k) const {
   if (k == 0) return {a, ab};
   if (k == 1) return {a, ac};
   return {a + ab, ac - ab};
+}
+
+Triangle Triangle::moved(const Pose& pose) const {
+  Triangle triangle = *this;
+  triangle.a = pose * a;
+  for (Vector3d* v : {&triangle.ab, &triangle.ac, &triangle.normal}) *v = pose.linear() * *v;
+  return triangle;
 }
 
 double squared_distance(const Segment& s, const Segment& t) {
@@ -44,26 +84,17 @@ double squared_distance(const Segment& s, const Segment& t) {
 }
 
 double squared_distance(const Segment& s, const Triangle& t, double limit) {
-  const Vector3d from = s.start - t.a;
-  const double height = t.normal.dot(from), end_height = height + t.normal.dot(s.along);
-  if (height * end_height <= 0) {  // meets the plane
-    const Vector3d x = height == end_height ? from : Vector3d(from + height / (height - end_height) * s.along);
-    if (holds(t, x)) return 0;
-  } else {
-    const bool start_nearer = std::abs(height) <= std::abs(end_height);
-    const double least = std::min(std::abs(height), std::abs(end_height));
-    if (least * least >= limit) return least * least;
-    const Vector3d foot = (start_nearer ? from : Vector3d(from + s.along)) - (start_nearer ? height : end_height) * t.normal;
-    if (holds(t, foot)) return least * least;
-  }
-  // Where else the segment is above the inside, it comes nearer until it is above an edge.
+  const double over_inside = squared_distance_over_inside(s, t, limit);
+  if (over_inside < kNotInside) return over_inside;
   return std::min({squared_distance(s, t.edge(0)), squared_distance(s, t.edge(1)), squared_distance(s, t.edge(2))});
 }
 
 double squared_distance(const Triangle& s, const Triangle& t, double limit) {
+  if (surely_further(s, t, limit)) return limit;
   for (int k = 0; k < 3; ++k) {
-    limit = std::min(limit, squared_distance(s.edge(k), t, limit));
-    limit = std::min(limit, squared_distance(t.edge(k), s, limit));
+    limit = std::min(limit, squared_distance_over_inside(s.edge(k), t, limit));
+    limit = std::min(limit, squared_distance_over_inside(t.edge(k), s, limit));
+    for (int l = 0; l < 3; ++l) limit = std::min(limit, squared_distance(s.edge(k), t.edge(l)));
   }
   return limit;
 }

@@ -14,6 +14,7 @@ struct Segment {
 struct Triangle {
   Triangle(const Vector3d& a, const Vector3d& b, const Vector3d& c);
   [[nodiscard]] Segment edge(int k) const;  ///< k = 0, 1, 2
+  [[nodiscard]] Triangle moved(const Pose& pose) const;
   Vector3d a, ab, ac, normal;
 };
 

@@ -34,32 +34,61 @@ class BoxBound {
   std::array<Vector3d, 3> across_;
 };
 
+/// Least squared distance of a box from another, which stands at a pose: by the gaps along the axes of both.
+class BoxPairBound {
+ public:
+  explicit BoxPairBound(const Pose& pose) : pose_(pose), turn_(pose.linear()), spread_(turn_.cwiseAbs()) {}
+  [[nodiscard]] double squared(const Vector3d& center, const Vector3d& half, const Vector3d& other_center,
+                               const Vector3d& other_half) const {
+    const Vector3d offset = pose_ * other_center - center;
+    const Vector3d gap = offset.cwiseAbs() - half - spread_ * other_half;
+    const Vector3d other_gap = (turn_.transpose() * offset).cwiseAbs() - other_half - spread_.transpose() * half;
+    return std::max(gap.cwiseMax(0).squaredNorm(), other_gap.cwiseMax(0).squaredNorm());
+  }
+
+ private:
+  Pose pose_;
+  Matrix3d turn_, spread_;
+};
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
+  std::vector<Item> items;
+  items.reserve(triangles_.size());
+  for (const Triangle& t : triangles_) items.push_back({t.a + (t.ab + t.ac) / 3, static_cast<int>(items.size())});
   nodes_.reserve(triangles_.size());
-  build(0, static_cast<int>(triangles_.size()));
+  build(items, 0, static_cast<int>(items.size()));
+  std::vector<Triangle> in_order;
+  in_order.reserve(items.size());
+  for (const Item& item : items) in_order.push_back(triangles_[static_cast<std::size_t>(item.triangle)]);
+  triangles_.swap(in_order);
 }
 
-void TriangleTree::build(int begin, int end) {
-  Eigen::AlignedBox3d box, centers;
-  const auto center = [](const Triangle& t) { return Vector3d(t.a + (t.ab + t.ac) / 3); };
-  for (int k = begin; k < end; ++k) {
-    const Triangle& t = triangles_[static_cast<std::size_t>(k)];
-    box.extend(t.a).extend(t.a + t.ab).extend(t.a + t.ac);
-    centers.extend(center(t));
-  }
+Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int end) {
   const std::size_t index = nodes_.size();
-  nodes_.push_back({box.center(), box.sizes() / 2, begin, end, 0});
-  if (end - begin <= kLeaf) return;
-  int axis = 0;
-  centers.sizes().maxCoeff(&axis);
-  const int middle = begin + (end - begin) / 2;
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
-                   [&](const Triangle& s, const Triangle& t) { return center(s)[axis] < center(t)[axis]; });
-  build(begin, middle);
-  nodes_[index].right = static_cast<int>(nodes_.size());
-  build(middle, end);
+  nodes_.push_back({Vector3d::Zero(), Vector3d::Zero(), begin, end, 0});
+  Eigen::AlignedBox3d box;
+  if (end - begin <= kLeaf) {
+    for (int k = begin; k < end; ++k) {
+      const Triangle& t = triangles_[static_cast<std::size_t>(items[static_cast<std::size_t>(k)].triangle)];
+      box.extend(t.a).extend(t.a + t.ab).extend(t.a + t.ac);
+    }
+  } else {
+    Eigen::AlignedBox3d centers;
+    for (int k = begin; k < end; ++k) centers.extend(items[static_cast<std::size_t>(k)].center);
+    int axis = 0;
+    centers.sizes().maxCoeff(&axis);
+    const int middle = begin + (end - begin) / 2;
+    std::nth_element(items.begin() + begin, items.begin() + middle, items.begin() + end,
+                     [axis](const Item& s, const Item& t) { return s.center[axis] < t.center[axis]; });
+    box = build(items, begin, middle);
+    nodes_[index].right = static_cast<int>(nodes_.size());
+    box.extend(build(items, middle, end));
+  }
+  nodes_[index].center = box.center();
+  nodes_[index].half = box.sizes() / 2;
+  return box;
 }
 
 double TriangleTree::distance(const Segment& segment, double enough, double limit) const {
@@ -97,13 +126,10 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
 }
 
 double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit) const {
-  const Matrix3d turn = pose.linear(), spread = turn.cwiseAbs();
+  const BoxPairBound bound(pose);
   const auto squared_bound = [&](int a, int b) {
     const Node &m = nodes_[static_cast<std::size_t>(a)], &n = other.nodes_[static_cast<std::size_t>(b)];
-    const Vector3d offset = pose * n.center - m.center;
-    const Vector3d gap = offset.cwiseAbs() - m.half - spread * n.half;
-    const Vector3d other_gap = (turn.transpose() * offset).cwiseAbs() - n.half - spread.transpose() * m.half;
-    return std::max(gap.cwiseMax(0).squaredNorm(), other_gap.cwiseMax(0).squaredNorm());
+    return bound.squared(m.center, m.half, n.center, n.half);
   };
   struct Open {
     int a, b;
@@ -121,8 +147,7 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     if (m.right == 0 && n.right == 0) {
       for (int j = n.begin; j < n.end; ++j) {
         const Triangle& t = other.triangles_[static_cast<std::size_t>(j)];
-        const Vector3d corner = pose * t.a;
-        const Triangle moved(corner, corner + turn * t.ab, corner + turn * t.ac);
+        const Triangle moved = t.moved(pose);
         for (int k = m.begin; k < m.end; ++k) {
           least = std::min(least, squared_distance(triangles_[static_cast<std::size_t>(k)], moved, least));
           if (least < squared_enough) return std::sqrt(least);

@@ -23,7 +23,11 @@ class TriangleTree {
     int begin = 0, end = 0;  ///< its triangles
     int right = 0;           ///< second child; the first is the next node; 0: a leaf
   };
-  void build(int begin, int end);
+  struct Item {
+    Vector3d center;
+    int triangle;
+  };
+  Eigen::AlignedBox3d build(std::vector<Item>& items, int begin, int end);
 
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;

@@ -19,7 +19,7 @@ std::string most_frequent(const Reasons& reasons) {
 class Inspector {
  public:
   Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule)
-      : lattice_(lattice), world_(world), query_(world), rule_(rule) {}
+      : lattice_(lattice), world_(world), query_(world, Certificates::kOn), rule_(rule) {}
 
   /// Empty string where the node is valid.
   std::string node_reason(const Config& q) {

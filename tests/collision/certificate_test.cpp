@@ -40,14 +40,15 @@ TriangleMesh sheet_mesh(double width, double height, int n) {
 
 /// Meshes with walls thin and thick, open and closed, with room for a body inside.
 std::vector<MeshPtr> meshes() {
-  return {testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel"),
-          testing::as_mesh(testing::panel_mesh(0.6, 0.5, 0.001, 6), "thin panel"),
-          testing::as_mesh(sheet_mesh(0.8, 0.6, 6), "sheet"),
-          testing::as_mesh(testing::box_mesh(Vector3d(0.9, 0.8, 0.7), 2), "crate"),
-          testing::as_mesh(testing::torus_mesh(0.2, 0.05, 8), "torus"),
-          testing::as_mesh(testing::tube_mesh(0.08, 0.6, 12), "pipe"),
-          testing::as_mesh(testing::sphere_mesh(0.1, 5), "ball"),
-          testing::as_mesh(testing::joined(testing::box_mesh(Vector3d(0.5, 0.5, 0.5), 1), testing::sphere_mesh(0.04, 4)), "two parts")};
+  return {
+      testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel"),
+      testing::as_mesh(testing::panel_mesh(0.6, 0.5, 0.001, 6), "thin panel"),
+      testing::as_mesh(sheet_mesh(0.8, 0.6, 6), "sheet"),
+      testing::as_mesh(testing::box_mesh(Vector3d(0.9, 0.8, 0.7), 2), "crate"),
+      testing::as_mesh(testing::torus_mesh(0.2, 0.05, 8), "torus"),
+      testing::as_mesh(testing::tube_mesh(0.08, 0.6, 12), "pipe"),
+      testing::as_mesh(testing::sphere_mesh(0.1, 5), "ball"),
+      testing::as_mesh(testing::joined(testing::box_mesh(Vector3d(0.5, 0.5, 0.5), 1), testing::sphere_mesh(0.04, 4)), "two parts")};
 }
 
 std::vector<SceneObject> random_scene(Random& random, const std::vector<MeshPtr>& pool) {
@@ -127,11 +128,12 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
     sum += compared.counters();
   }
   const std::int64_t undecided = questions - sum.certified_free - sum.certified_colliding;
-  std::printf("%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld certified free, %lld certified "
-              "colliding, %lld undecided, %lld FCL calls, %lld contradictions\n",
-              robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
-              static_cast<long long>(sum.certified_free), static_cast<long long>(sum.certified_colliding),
-              static_cast<long long>(undecided), static_cast<long long>(sum.fcl_calls), static_cast<long long>(sum.contradictions));
+  std::printf(
+      "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld certified free, %lld certified "
+      "colliding, %lld undecided, %lld FCL calls, %lld contradictions\n",
+      robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
+      static_cast<long long>(sum.certified_free), static_cast<long long>(sum.certified_colliding),
+      static_cast<long long>(undecided), static_cast<long long>(sum.fcl_calls), static_cast<long long>(sum.contradictions));
   EXPECT_EQ(sum.contradictions, 0);
   EXPECT_EQ(sum.fcl_failures, 0);
   EXPECT_GT(at_threshold, scenes * 10);
@@ -230,26 +232,28 @@ TEST(Certificates, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
 }
 
 TEST(Segments, DegenerateCasesAreExact) {
-  const auto squared = [](Vector3d p, Vector3d u, Vector3d q, Vector3d v) { return squared_distance(Segment{p, u}, Segment{q, v}); };
+  const auto squared = [](Vector3d p, Vector3d u, Vector3d q, Vector3d v) {
+    return squared_distance(Segment{p, u}, Segment{q, v});
+  };
   const Vector3d o = Vector3d::Zero(), x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
-  EXPECT_EQ(squared(o, o, 3 * x, o), 9);               // points
-  EXPECT_EQ(squared(o, o, y - x, 2 * x), 1);           // a point over a segment
-  EXPECT_EQ(squared(y - x, 2 * x, o, o), 1);           // and below
-  EXPECT_EQ(squared(o, x, y + 0.5 * x, x), 1);         // parallel, side by side
-  EXPECT_EQ(squared(o, x, 3 * x, x), 4);               // in line
-  EXPECT_EQ(squared(o, x, 3 * x, -x), 1);              // in line, towards
-  EXPECT_EQ(squared(o, x, 0.5 * x, x), 0);             // in line, over each other
-  EXPECT_EQ(squared(-x, 2 * x, z - y, 2 * y), 1);      // crossing
+  EXPECT_EQ(squared(o, o, 3 * x, o), 9);           // points
+  EXPECT_EQ(squared(o, o, y - x, 2 * x), 1);       // a point over a segment
+  EXPECT_EQ(squared(y - x, 2 * x, o, o), 1);       // and below
+  EXPECT_EQ(squared(o, x, y + 0.5 * x, x), 1);     // parallel, side by side
+  EXPECT_EQ(squared(o, x, 3 * x, x), 4);           // in line
+  EXPECT_EQ(squared(o, x, 3 * x, -x), 1);          // in line, towards
+  EXPECT_EQ(squared(o, x, 0.5 * x, x), 0);         // in line, over each other
+  EXPECT_EQ(squared(-x, 2 * x, z - y, 2 * y), 1);  // crossing
   const Triangle t(o, 2 * x, 2 * y);
   const auto to_triangle = [&](Vector3d p, Vector3d u) { return squared_distance(Segment{p, u}, t, 1e9); };
-  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y + z, o), 1);            // a point above
-  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y, o), 0);                // a point on it
-  EXPECT_EQ(to_triangle(-x - y + z, 4 * x + 4 * y), 1);           // parallel above, ends outside
-  EXPECT_EQ(to_triangle(0.2 * x + 0.2 * y, 0.1 * x), 0);          // within it
-  EXPECT_EQ(to_triangle(-3 * x, x), 4);                           // in its plane, outside
-  EXPECT_EQ(to_triangle(-x + y, 4 * x), 0);                       // in its plane, across
-  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y - z, 2 * z), 0);        // through it
-  EXPECT_EQ(to_triangle(-x - z, 2 * z), 1);                       // through its plane, beside it
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y + z, o), 1);      // a point above
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y, o), 0);          // a point on it
+  EXPECT_EQ(to_triangle(-x - y + z, 4 * x + 4 * y), 1);     // parallel above, ends outside
+  EXPECT_EQ(to_triangle(0.2 * x + 0.2 * y, 0.1 * x), 0);    // within it
+  EXPECT_EQ(to_triangle(-3 * x, x), 4);                     // in its plane, outside
+  EXPECT_EQ(to_triangle(-x + y, 4 * x), 0);                 // in its plane, across
+  EXPECT_EQ(to_triangle(0.5 * x + 0.5 * y - z, 2 * z), 0);  // through it
+  EXPECT_EQ(to_triangle(-x - z, 2 * z), 1);                 // through its plane, beside it
 }
 
 }  // namespace
