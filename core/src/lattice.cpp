@@ -60,6 +60,14 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
     windings_ *= images.count;
   }
 
+  tracks_ = 2;
+  if (arm.exact) {
+    for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
+    tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
+  } else {
+    tracks_ += static_cast<std::size_t>(labels()) * (kDof + 1);
+  }
+
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
   const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
@@ -89,7 +97,12 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
     const Pose& tool = path.layer(i).tool;
     planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
     reach_.push_back(reach_status(arm, planes_.back().reach));
-    if (reach_.back() == ReachStatus::kReachable) circles_[static_cast<std::size_t>(i)] = elbow_circles(arm, planes_.back(), tool);
+    const bool reachable = reach_.back() == ReachStatus::kReachable;
+    auto& circles = circles_[static_cast<std::size_t>(i)];
+    if (reachable) circles = elbow_circles(arm, planes_.back(), tool);
+    const Images& images = images_[kElbowJoint];
+    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it
+      elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
   }
 
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
@@ -156,133 +169,177 @@ double Lattice::phi(int layer, int slot) const {
 }
 
 int Lattice::winding_images(int winding, int joint) const {
+  if (windings_ == 1) return 0;
   for (int k = kDof - 1; k > joint; --k) winding /= images_[static_cast<std::size_t>(k)].count;
   return winding % images_[static_cast<std::size_t>(joint)].count;
 }
 
 void Lattice::solve(int layer, int first, int count, LayerNodes& out) const {
-  if (arm_->exact)
-    solve_exact(sine_.data() + first, cosine_.data() + first, layer, count, out);
-  else
-    solve_polished(layer, first, count, out);
-  if (layer != 0 || !start_) return;
-  std::fill(out.valid_.begin(), out.valid_.begin() + static_cast<std::ptrdiff_t>(labels()) * count, std::uint8_t{0});
-  const int label = label_of(start_->slot);
-  const bool valid = fault(0, start_->slot).status == NodeStatus::kValid;
-  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - first, angles_); k < count; k += angles_) {
-    for (int j = 0; j < kDof; ++j)
-      out.data_[static_cast<Eigen::Index>(out.q_[static_cast<std::size_t>(label * kDof + j)]) + k] = start_->q[j];
-    out.valid_[static_cast<std::size_t>(label * count + k)] = valid;
-  }
+  lay_out(layer, first, count, out);
+  for (int elbow = 0; elbow < 2; ++elbow) solve_part(elbow, 0, count, out);
 }
 
-void Lattice::solve_exact(const double* sine, const double* cosine, int layer, int count, LayerNodes& out) const {
-  const auto n = static_cast<std::size_t>(count);
-  const auto label_count = static_cast<std::size_t>(labels());
-  out.count_ = count;
-  out.q_.resize(label_count * kDof);
-  out.valid_.resize(label_count * n);
-  if (reach_[static_cast<std::size_t>(layer)] != ReachStatus::kReachable) {
-    out.data_.setZero(count);
-    std::fill(out.q_.begin(), out.q_.end(), std::size_t{0});
-    std::fill(out.valid_.begin(), out.valid_.end(), std::uint8_t{0});
-    return;
-  }
+void LayerNodes::repeat(int from, int to, int count) {
+  for (Eigen::Index array = 0; array + count_ <= data_.size(); array += count_)
+    std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
+}
 
-  // One array per (elbow sign, joint, sign of its triple, image): branches share what they have in common.
-  std::size_t image_count = 0;
-  for (const Images& images : images_) image_count += static_cast<std::size_t>(images.count);
-  out.data_.resize(static_cast<Eigen::Index>((image_count * 4 + 4) * n));
+std::optional<double> Lattice::elbow_angle(int layer, int elbow) const {
+  const Images& images = images_[kElbowJoint];
+  if (!arm_->exact || images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow))
+    return std::nullopt;
+  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4, images.base);
+}
+
+void Lattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
+  const auto n = static_cast<std::size_t>(count);
+  out.layer_ = layer;
+  out.first_ = first;
+  out.count_ = count;
+  out.offsets_.resize(static_cast<std::size_t>(labels()));
+  const auto needed = static_cast<Eigen::Index>(tracks_ * n);
+  if (out.data_.size() < needed) out.data_.setZero(needed);
   std::size_t used = 0;
-  const auto allot = [&](int images) {
+  const auto allot = [&](int arrays = 1) {
     const std::size_t offset = used;
-    used += static_cast<std::size_t>(images) * n;
+    used += static_cast<std::size_t>(arrays) * n;
     return offset;
   };
-  double* const data = out.data_.data();
+  const std::size_t free = allot(), never = allot();
+  std::fill_n(out.data_.data() + free, n, 0.0);
+  std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
+  if (layer == 0 && start_) {
+    for (LayerNodes::Offsets& label : out.offsets_) label = {.q = {}, .bar = {never, free}, .alive = false};
+    return lay_out_start(out);
+  }
   for (int elbow = 0; elbow < 2; ++elbow) {
-    const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
-    const double q4 = image_from(circle.q4, images_[kElbowJoint].base);
-    if (q4 > images_[kElbowJoint].upper) {  // one elbow angle serves the whole circle, so four branches are gone at once
-      const int first_label = (elbow ? kElbowBit : 0) * windings_, last_label = first_label + 4 * windings_;
-      std::fill(out.q_.begin() + first_label * kDof, out.q_.begin() + last_label * kDof, std::size_t{0});
-      std::fill(out.valid_.begin() + first_label * count, out.valid_.begin() + last_label * count, std::uint8_t{0});
-      continue;
-    }
-    std::array<std::array<std::size_t, kDof>, 2> track;  // [sign of the triple][joint]
-    std::array<std::size_t, 2> sines;                    // [shoulder, wrist]
-    for (int triple = 0; triple < 2; ++triple) {
-      const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
-      TripleTask task;
-      const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
-      for (std::size_t row = 0; row < 5; ++row)
-        for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
-      task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
-      task.n = count;
-      task.sin_phi = sine;
-      task.cos_phi = cosine;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const Images& images = images_[static_cast<std::size_t>(joint0) + j];
-        task.base[j] = images.base;
-        for (std::size_t sign = 0; sign < 2; ++sign) {
-          track[sign][static_cast<std::size_t>(joint0) + j] = allot(images.count);
-          task.q[sign][j] = data + track[sign][static_cast<std::size_t>(joint0) + j];
-        }
+    const bool alive = elbow_alive(layer, elbow);
+    // Exact arms: one array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
+    std::array<std::array<std::size_t, kDof>, 2> track{};
+    std::array<std::array<std::size_t, 2>, 2> bar{};  // [sign][triple]
+    if (alive && arm_->exact)
+      for (std::size_t sign = 0; sign < 2; ++sign) {
+        for (std::size_t j = 0; j < kDof; ++j)
+          track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
+        for (std::size_t& triple : bar[sign]) triple = windings_ == 1 ? allot() : never;
       }
-      sines[static_cast<std::size_t>(triple)] = allot(1);
-      task.sin_middle = data + sines[static_cast<std::size_t>(triple)];
-      circle_kernels().solve_triple(task);
-    }
-    track[0][kElbowJoint] = track[1][kElbowJoint] = allot(images_[kElbowJoint].count);
-    std::fill_n(data + track[0][kElbowJoint], n, q4);
-    for (std::size_t sign = 0; sign < 2; ++sign)
-      for (std::size_t j = 0; j < kDof; ++j)
-        for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image)
-          for (std::size_t k = 0; k < n; ++k)
-            if (j != kElbowJoint || sign == 0)
-              data[track[sign][j] + image * n + k] = data[track[sign][j] + k] + kTwoPi * static_cast<double>(image);
-
-    const double* const shoulder_sine = data + sines[0];
-    const double* const wrist_sine = data + sines[1];
-    for (int sign = 0; sign < 4; ++sign) {
-      const int branch = sign | (elbow ? kElbowBit : 0);
-      for (int winding = 0; winding < windings_; ++winding) {
-        const std::size_t label = static_cast<std::size_t>(branch * windings_ + winding);
-        std::array<const double*, kDof> q;
-        for (int j = 0; j < kDof; ++j) {
-          const std::size_t bit = j < kWristJoints ? (sign & kShoulderBit ? 1 : 0) : (sign & kWristBit ? 1 : 0);
-          const std::size_t offset =
-              track[bit][static_cast<std::size_t>(j)] + static_cast<std::size_t>(winding_images(winding, j)) * n;
-          out.q_[label * kDof + static_cast<std::size_t>(j)] = offset;
-          q[static_cast<std::size_t>(j)] = data + offset;
-        }
-        std::uint8_t* const valid = out.valid_.data() + label * n;
-        const auto& u = images_;
-        for (std::size_t k = 0; k < n; ++k)
-          valid[k] = static_cast<std::uint8_t>((shoulder_sine[k] >= kSingularSine) & (wrist_sine[k] >= kSingularSine) &
-                                               (q[0][k] <= u[0].upper) & (q[1][k] <= u[1].upper) & (q[2][k] <= u[2].upper) &
-                                               (q[3][k] <= u[3].upper) & (q[4][k] <= u[4].upper) & (q[5][k] <= u[5].upper) &
-                                               (q[6][k] <= u[6].upper));
-      }
+    for (int winding = 0, first_label = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
+      const int label = first_label + winding, branch = label / windings_;
+      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+      offsets.alive = alive;
+      offsets.bar = {never, free};
+      if (!alive) continue;
+      const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
+      if (windings_ == 1 && arm_->exact)
+        offsets.bar = {bar[shoulder][0], bar[wrist][1]};
+      else
+        offsets.bar = {allot(), free};
+      for (int j = 0; j < kDof; ++j)
+        offsets.q[static_cast<std::size_t>(j)] = arm_->exact
+                                                     ? track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
+                                                           static_cast<std::size_t>(winding_images(label % windings_, j)) * n
+                                                     : allot();
     }
   }
 }
 
-void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) const {
-  const auto n = static_cast<std::size_t>(count);
-  const auto label_count = static_cast<std::size_t>(labels());
-  out.count_ = count;
-  out.q_.resize(label_count * kDof);
-  out.valid_.assign(label_count * n, 0);
-  out.data_.setZero(static_cast<Eigen::Index>(label_count * kDof * n));
-  for (std::size_t k = 0; k < out.q_.size(); ++k) out.q_[k] = k * n;
-  if (reach_[static_cast<std::size_t>(layer)] != ReachStatus::kReachable) return;
+void Lattice::lay_out_start(LayerNodes& out) const {
+  const int label = label_of(start_->slot), n = out.count_;
+  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+  offsets.alive = true;
+  std::size_t used = 2 * static_cast<std::size_t>(n);
+  for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
+    offsets.q[j] = used;
+    std::fill_n(out.data_.data() + used, n, start_->q[static_cast<Eigen::Index>(j)]);
+  }
+  offsets.bar[0] = used;
+  double* const bar = out.data_.data() + used;
+  std::fill_n(bar, n, std::numeric_limits<double>::infinity());
+  if (fault(0, start_->slot).status != NodeStatus::kValid) return;
+  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_) bar[k] = 0;
+}
+
+void Lattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
+  if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
+  if (arm_->exact)
+    solve_exact(elbow, begin, end, out);
+  else
+    solve_polished(elbow, begin, end, out);
+}
+
+void Lattice::solve_exact(int elbow, int begin, int end, LayerNodes& out) const {
+  const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
+  const int first_label = elbow ? kElbowBit * windings_ : 0;
+  double* const data = out.data_.data();
+  // Of the first winding: the images 0.
+  const std::array<LayerNodes::Offsets*, 2> sign{&out.offsets_[static_cast<std::size_t>(first_label)],
+                                                 &out.offsets_[static_cast<std::size_t>(first_label + 3 * windings_)]};
+  static_assert((kShoulderBit | kWristBit) == 3);
+  const bool shares_bars = windings_ == 1;
+  std::vector<double> unlimited;  // bars of singularity alone, where the limits are each winding's own
+  if (!shares_bars) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
+  for (int triple = 0; triple < 2; ++triple) {
+    const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
+    TripleTask task;
+    const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
+    for (std::size_t row = 0; row < 5; ++row)
+      for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
+    task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
+    task.least_sine = kSingularSine;
+    task.n = end - begin;
+    task.sin_phi = sine_.data() + out.first_ + begin;
+    task.cos_phi = cosine_.data() + out.first_ + begin;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Images& images = images_[static_cast<std::size_t>(joint0) + j];
+      task.base[j] = images.base;
+      task.upper[j] = shares_bars ? images.upper : std::numeric_limits<double>::infinity();
+      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s]->q[static_cast<std::size_t>(joint0) + j] + begin;
+    }
+    for (std::size_t s = 0; s < 2; ++s)
+      task.bar[s] = shares_bars ? data + sign[s]->bar[static_cast<std::size_t>(triple)] + begin
+                                : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
+    circle_kernels().solve_triple(task);
+  }
+  std::fill(data + sign[0]->q[kElbowJoint] + begin, data + sign[0]->q[kElbowJoint] + end,
+            image_from(circle.q4, images_[kElbowJoint].base));
+  if (shares_bars) return;
+
+  const std::size_t n = static_cast<std::size_t>(out.count_);
+  for (std::size_t s = 0; s < 2; ++s)
+    for (std::size_t j = 0; j < kDof; ++j)
+      for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image) {
+        const double* from = data + sign[s]->q[j];
+        double* to = data + sign[s]->q[j] + image * n;
+        for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
+      }
+  const auto length = static_cast<std::size_t>(end - begin);
+  for (int label = first_label; label < first_label + 4 * windings_; ++label) {
+    const int branch = label / windings_;
+    const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
+    const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
+    double* bar = data + out.offsets_[static_cast<std::size_t>(label)].bar[0] + begin;
+    for (std::size_t k = 0; k < length; ++k) {
+      double excess = shoulder[k] + wrist[k];
+      for (int j = 0; j < kDof; ++j)
+        excess =
+            std::max(excess, out.q(label, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
+      bar[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+void Lattice::solve_polished(int elbow, int begin, int end, LayerNodes& out) const {
   constexpr double kLargestMove = 0.05;  // of polish(): limits further off than this stay violated
-  const auto& circles = circles_[static_cast<std::size_t>(layer)];
-  for (int k = 0; k < count; ++k) {
-    const double phi_k = -kPi + kTwoPi * ((first + k) % angles_) / angles_;
-    for (int branch = 0; branch < kBranches; ++branch) {
-      const Config seed = srs_ik(*arm_, circles, phi_k, branch);
+  const auto layer = static_cast<std::size_t>(out.layer_);
+  const int first_branch = elbow ? kElbowBit : 0;
+  for (int label = first_branch * windings_; label < (first_branch + 4) * windings_; ++label) {
+    double* bar = out.data_.data() + out.offsets_[static_cast<std::size_t>(label)].bar[0];
+    std::fill(bar + begin, bar + end, std::numeric_limits<double>::infinity());
+  }
+  for (int k = begin; k < end; ++k) {
+    const double phi_k = -kPi + kTwoPi * ((out.first_ + k) % angles_) / angles_;
+    for (int branch = first_branch; branch < first_branch + 4; ++branch) {
+      const Config seed = srs_ik(*arm_, circles_[layer], phi_k, branch);
       if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine ||
           std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine)
         continue;
@@ -292,18 +349,18 @@ void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) c
         hopeless = image_from(seed[j], images.base - kLargestMove) > images.upper + kLargestMove;
       }
       if (hopeless) continue;
-      const auto polished = polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi_k, seed);
+      const auto polished = polish(*chain_, *arm_, planes_[layer], path_->layer(out.layer_).tool, phi_k, seed);
       if (!polished) continue;
       for (int winding = 0; winding < windings_; ++winding) {
-        const auto label = static_cast<std::size_t>(branch * windings_ + winding);
+        const LayerNodes::Offsets& label = out.offsets_[static_cast<std::size_t>(branch * windings_ + winding)];
         bool inside = true;
         for (int j = 0; j < kDof; ++j) {
           const Images& images = images_[static_cast<std::size_t>(j)];
           const double q = image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j);
           inside = inside && q <= images.upper;
-          out.data_[static_cast<Eigen::Index>((label * kDof + static_cast<std::size_t>(j)) * n) + k] = q;
+          out.data_[static_cast<Eigen::Index>(label.q[static_cast<std::size_t>(j)]) + k] = q;
         }
-        out.valid_[label * n + static_cast<std::size_t>(k)] = inside;
+        if (inside) out.data_[static_cast<Eigen::Index>(label.bar[0]) + k] = 0;
       }
     }
   }
@@ -312,7 +369,7 @@ void Lattice::solve_polished(int layer, int first, int count, LayerNodes& out) c
 std::optional<Config> Lattice::node(int layer, int slot) const {
   LayerNodes nodes;
   solve(layer, angle_of(slot), 1, nodes);
-  if (!nodes.valid(label_of(slot))[0]) return std::nullopt;
+  if (!nodes.valid(label_of(slot), 0)) return std::nullopt;
   return nodes.config(label_of(slot), 0);
 }
 

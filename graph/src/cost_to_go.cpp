@@ -8,115 +8,166 @@
 
 namespace swivel {
 
-CostToGo::Range CostToGo::range(const double* q, int begin, int end) {
-  Range result{kUnreachable, -kUnreachable};
-  for (int k = begin; k < end; ++k) {
-    result.low = q[k] < result.low ? q[k] : result.low;
-    result.high = q[k] > result.high ? q[k] : result.high;
-  }
-  return result;
-}
+namespace {
 
-CostToGo::CostToGo(const Lattice& lattice)
+struct Interval {
+  double low = kUnreachable, high = -kUnreachable;
+  Interval(const double* q, int begin, int end) {
+    for (int k = begin; k < end; ++k) {
+      low = q[k] < low ? q[k] : low;
+      high = q[k] > high ? q[k] : high;
+    }
+  }
+  [[nodiscard]] double gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
+};
+
+}  // namespace
+
+struct CostToGo::Joints {
+  int layer = -1;
+  LayerNodes nodes;
+  std::array<std::vector<std::uint8_t>, 2> solved;  // [elbow][chunk]
+};
+
+struct CostToGo::Block {
+  int layer = -1;
+  Joints own;
+  Joints* joints = nullptr;
+  std::vector<double> row;    // [label][angle], where live
+  Marks todo, live;           // to be relaxed; holding values
+  std::vector<double> value;  // [label][padded angle]: the row once it is settled, infinite elsewhere
+  std::vector<int> labels;    // with a finite value
+  /// First and last padded position of finite values in the window of a chunk; none where last < first.
+  struct Near {
+    int first = 0, last = -1;
+  };
+  std::vector<Near> near;  // [label][chunk]
+  [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
+};
+
+CostToGo::CostToGo(const Lattice& lattice, Extent extent)
     : lattice_(&lattice),
-      g_(static_cast<std::size_t>(lattice.nodes()), kUnreachable),
+      bounded_(extent == Extent::kBounded),
+      cell_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0),
       verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown) {
-  constexpr std::int64_t kMostKept = 1'000'000;  // nodes; about 25 bytes each
-  if (!lattice.arm().exact || lattice.nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice.layers()));
-  // A branch flips only through the zero of a middle angle, so those three joints tell branches apart; joints with several images
-  // tell windings apart. Continuous joints have no plain interval.
-  const auto& limit = lattice.chain().limit;
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& l = limit[static_cast<std::size_t>(j)];
-    if (!l.continuous && (j == 1 || j == 3 || j == 5 || l.upper - l.lower > kTwoPi)) separating_.push_back(j);
+  cells_.emplace_back().fill(kUnreachable);
+  if (!lattice.arm().exact) cache_.resize(static_cast<std::size_t>(lattice.layers()));
+  const std::size_t marks = mark(lattice.labels(), 0);
+  for (auto& block : block_) {
+    block = std::make_unique<Block>();
+    block->row.resize(static_cast<std::size_t>(lattice.width()));
+    block->todo.resize(marks);
+    block->live.resize(marks);
+    block->near.resize(marks);
+    block->value.assign(static_cast<std::size_t>(lattice.labels() * (lattice.angles() + 2 * lattice.window())), kUnreachable);
   }
 }
 
 CostToGo::~CostToGo() = default;
 
-CostToGo::Nodes CostToGo::nodes(int layer, int first, int count, LayerNodes& scratch) {
-  if (cache_.empty()) {
-    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels();
-    lattice_->solve(layer, first, count, scratch);
-    return {&scratch, 0};
-  }
-  return {&kept(layer).nodes, (first + lattice_->window()) % lattice_->angles()};
-}
+// --- joints
 
-const CostToGo::Joints& CostToGo::kept(int layer) {
-  auto& joints = cache_[static_cast<std::size_t>(layer)];
-  if (!joints) {
-    joints = std::make_unique<Joints>();
-    solve(layer, *joints);
+CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
+  Joints* joints = &block.own;
+  if (!cache_.empty()) {
+    auto& kept = cache_[static_cast<std::size_t>(layer)];
+    if (!kept) kept = std::make_unique<Joints>();
+    joints = kept.get();
+  }
+  if (joints->layer != layer) {
+    const int n = lattice_->angles(), window = lattice_->window();
+    joints->layer = layer;
+    lattice_->lay_out(layer, (n - window % n) % n, n + 2 * window, joints->nodes);
+    for (auto& solved : joints->solved) solved.assign(static_cast<std::size_t>(chunks()), 0);
   }
   return *joints;
 }
 
-void CostToGo::solve(int layer, Joints& joints) {
-  const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
-  joints.layer = layer;
-  ik_nodes_ += static_cast<std::int64_t>(length) * labels;
-  lattice_->solve(layer, (n - window % n) % n, length, joints.nodes);
-  joints.ranges.resize(range_row(labels, 0));
-  joints.alive.resize(static_cast<std::size_t>(labels));
-  for (int label = 0; label < labels; ++label) {
-    const std::uint8_t* valid = joints.nodes.valid(label);
-    const bool alive = std::find(valid, valid + length, 1) != valid + length;
-    joints.alive[static_cast<std::size_t>(label)] = alive;
-    for (std::size_t s = 0; alive && s < separating_.size(); ++s) {
-      const double* q = joints.nodes.q(label, separating_[s]);
-      ChunkRange* ranges = &joints.ranges[range_row(label, s)];
-      int twin = label - 1;  // branches share what they have in common
-      while (twin >= 0 && !(joints.alive[static_cast<std::size_t>(twin)] && joints.nodes.q(twin, separating_[s]) == q)) --twin;
-      if (twin >= 0) {
-        std::copy_n(&joints.ranges[range_row(twin, s)], chunks(), ranges);
-        continue;
-      }
-      for (int chunk = 0; chunk < chunks(); ++chunk) {
-        const int first = chunk * kChunk, last = std::min(n, first + kChunk);
-        ranges[chunk] = {range(q, window + first, window + last), range(q, first, last + 2 * window)};
-      }
+void CostToGo::want(Joints& joints, int elbow, int chunk) {
+  std::uint8_t& solved = joints.solved[static_cast<std::size_t>(elbow)][static_cast<std::size_t>(chunk)];
+  if (solved) return;
+  solved = 1;
+  const int n = lattice_->angles(), window = lattice_->window(), begin = chunk * kChunk, end = std::min(n, begin + kChunk);
+  ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->labels() / 2;
+  lattice_->solve_part(elbow, window + begin, window + end, joints.nodes);
+  // The window reaches around the circle.
+  if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
+  if (end > n - window) {
+    const int first = std::max(begin, n - window);
+    joints.nodes.repeat(window + first, window + first - n, end - first);
+  }
+}
+
+CostToGo::Nodes CostToGo::nodes(int layer, int elbow, int first, int count, LayerNodes& scratch) {
+  const int n = lattice_->angles();
+  if (cache_.empty()) {
+    if (n >= kChunk) count = (count + kChunk - 1) / kChunk * kChunk;  // whole vectors are quicker
+    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels() / 2;
+    lattice_->lay_out(layer, first, count, scratch);
+    lattice_->solve_part(elbow, 0, count, scratch);
+    return {&scratch, 0};
+  }
+  Joints& kept = joints(layer, *block_[0]);
+  for (int k = 0; k < count; ++k) want(kept, elbow, (first + k) % n / kChunk);
+  return {&kept.nodes, (first + lattice_->window()) % n};
+}
+
+Config CostToGo::config(int layer, int slot) {
+  const int label = lattice_->label_of(slot);
+  const Nodes here = nodes(layer, lattice_->elbow_of(label), lattice_->angle_of(slot), 1, scratch_);
+  return here.nodes->config(label, here.shift);
+}
+
+// --- one layer
+
+void CostToGo::clear(int layer, Block& block) {
+  const int n = lattice_->angles(), length = n + 2 * lattice_->window();
+  for (const int label : block.labels) {
+    const auto row = block.value.begin() + static_cast<std::ptrdiff_t>(label) * length;
+    std::fill(row, row + length, kUnreachable);
+  }
+  block.labels.clear();
+  block.layer = layer;
+  block.joints = &joints(layer, block);
+  std::fill(block.todo.begin(), block.todo.end(), std::uint8_t{0});
+  std::fill(block.live.begin(), block.live.end(), std::uint8_t{0});
+}
+
+bool CostToGo::elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const {
+  if (elbow == other) return true;
+  const auto angle = lattice_->elbow_angle(layer, elbow), other_angle = lattice_->elbow_angle(other_layer, other);
+  return !angle || !other_angle || std::abs(*angle - *other_angle) <= lattice_->step_bound(step_layer)[3];
+}
+
+void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
+  std::array<bool, 2> reaches[2];
+  for (int elbow = 0; elbow < 2; ++elbow)
+    for (int other = 0; other < 2; ++other)
+      reaches[elbow][static_cast<std::size_t>(other)] = elbows_may_connect(step_layer, from.layer, elbow, to.layer, other);
+  for (int chunk = 0; chunk < chunks(); ++chunk) {
+    std::array<bool, 2> near{};
+    for (const int label : to.labels)
+      if (to.near[mark(label, chunk)].last >= 0) near[static_cast<std::size_t>(lattice_->elbow_of(label))] = true;
+    for (int elbow = 0; elbow < 2; ++elbow) {
+      if (!((near[0] && reaches[elbow][0]) || (near[1] && reaches[elbow][1]))) continue;
+      want(*from.joints, elbow, chunk);
+      for (int label = 0; label < lattice_->labels(); ++label)
+        if (lattice_->elbow_of(label) == elbow) from.todo[mark(label, chunk)] = from.nodes().alive(label);
     }
   }
 }
 
-void CostToGo::load(int layer, Block& block) {
-  block.layer = layer;
-  if (cache_.empty()) {
-    if (block.own.layer != layer) solve(layer, block.own);
-    block.joints = &block.own;
-  } else {
-    block.joints = &kept(layer);
-  }
-  load_values(&g_[index(layer, 0)], block);
-}
-
-void CostToGo::load_values(const double* row, Block& block) const {
-  const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window, labels = lattice_->labels();
-  block.value.resize(static_cast<std::size_t>(labels * length));
-  for (int label = 0; label < labels; ++label) {
-    const double* from = row + static_cast<std::ptrdiff_t>(label) * n;
-    double* to = block.value.data() + static_cast<std::ptrdiff_t>(label) * length;
-    std::copy(from + n - window, from + n, to);
-    std::copy(from, from + n, to + window);
-    std::copy(from, from + window, to + window + n);
-  }
-}
-
-bool CostToGo::may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const {
-  if (!from.joints->alive[static_cast<std::size_t>(label)] || !to.joints->alive[static_cast<std::size_t>(other)]) return false;
-  const Config& bound = lattice_->step_bound(layer);
-  for (std::size_t s = 0; s < separating_.size(); ++s) {
-    const Range& own = from.joints->ranges[range_row(label, s) + static_cast<std::size_t>(chunk)].own;
-    const Range& near = to.joints->ranges[range_row(other, s) + static_cast<std::size_t>(chunk)].near;
-    if (own.gap(near) > bound[separating_[s]]) return false;
-  }
-  // Few pairs come this far: near a singular pose the outer joints of the triple must meet as well, which a look at them tells.
-  const int window = lattice_->window(), first = chunk * kChunk, last = std::min(lattice_->angles(), first + kChunk);
-  for (const int joint : {0, 2, 4, 6}) {
+bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+  if (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other))) return false;
+  const Config& bound = lattice_->step_bound(step_layer);
+  const Block::Near& near = to.near[mark(other, chunk)];
+  const int begin = lattice_->window() + chunk * kChunk, end = std::min(lattice_->window() + lattice_->angles(), begin + kChunk);
+  // A branch flips only through the zero of a middle angle, so those tell branches apart; near a singular pose the outer joints of
+  // the triple must meet as well. Joints of several turns tell windings apart. Continuous joints have no plain interval.
+  for (const int joint : {1, 5, 3, 0, 2, 4, 6}) {
     if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
-    const Range own = range(from.nodes().q(label, joint), window + first, window + last);
-    if (own.gap(range(to.nodes().q(other, joint), first, last + 2 * window)) > bound[joint]) return false;
+    const Interval own(from.nodes().q(label, joint), begin, end);
+    if (own.gap(Interval(to.nodes().q(other, joint), near.first, near.last + 1)) > bound[joint]) return false;
   }
   return true;
 }
@@ -126,10 +177,10 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
   RelaxTask task;
   task.n = count;
+  task.offsets = 2 * window + 1;
   task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
   task.wraps = false;
   const Config& bound = lattice_->step_bound(step_layer);
-  const double* to_q[kDof];
   for (int j = 0; j < kDof; ++j) {
     const bool turns = lattice_->continuous()[static_cast<std::size_t>(j)];
     task.wraps |= turns;
@@ -137,111 +188,259 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
     task.scale[j] = lattice_->cost_scale()[static_cast<std::size_t>(j)];
     task.bound[j] = bound[j];
     task.from[j] = from.nodes().q(label, j) + window + first;
-    to_q[j] = to.nodes().q(other, j) + first;
+    task.to[j] = to.nodes().q(other, j) + first;
   }
   task.best = best;
-  const double* value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
-  edges_ += static_cast<std::int64_t>(count) * (2 * window + 1);
-  for (int offset = 0; offset <= 2 * window; ++offset) {
-    for (int j = 0; j < kDof; ++j) task.to[j] = to_q[j] + offset;
-    task.value = value + offset;
-    relax_kernels().relax(task);
-  }
+  task.value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
+  edges_ += static_cast<std::int64_t>(count) * task.offsets;
+  relax_kernels().relax(task);
 }
 
-void CostToGo::relax_chunk(int step_layer, const Block& from, int label, int chunk, const Block& to, double* row) {
-  const int n = lattice_->angles(), first = chunk * kChunk, count = std::min(kChunk, n - first);
-  double* best = row + static_cast<std::ptrdiff_t>(label) * n + first;
-  std::fill(best, best + count, kUnreachable);
-  if (!from.joints->alive[static_cast<std::size_t>(label)]) return;
-  if (to.joints->alive[static_cast<std::size_t>(label)]) relax_run(step_layer, from, label, first, count, to, label, best);
-  for (int other = 0; other < lattice_->labels(); ++other)
-    if (other != label && may_connect(step_layer, from, label, chunk, to, other))
-      relax_run(step_layer, from, label, first, count, to, other, best);
-}
-
-void CostToGo::relax_layer(int step_layer, const Block& from, const Block& to, double* row) {
-  const int n = lattice_->angles(), labels = lattice_->labels();
-  std::fill(row, row + lattice_->width(), kUnreachable);
-  for (int label = 0; label < labels; ++label) {
-    if (!from.joints->alive[static_cast<std::size_t>(label)]) continue;
-    if (to.joints->alive[static_cast<std::size_t>(label)])
-      relax_run(step_layer, from, label, 0, n, to, label, row + static_cast<std::ptrdiff_t>(label) * n);
-    for (int other = 0; other < labels; ++other)
-      for (int chunk = 0; other != label && to.joints->alive[static_cast<std::size_t>(other)] && chunk < chunks(); ++chunk)
-        if (may_connect(step_layer, from, label, chunk, to, other))
-          relax_run(step_layer, from, label, chunk * kChunk, std::min(kChunk, n - chunk * kChunk), to, other,
-                    row + static_cast<std::ptrdiff_t>(label) * n + chunk * kChunk);
-  }
-  drop_invalid(from, row);
-}
-
-void CostToGo::drop_invalid(const Block& block, double* row) const {
-  const int n = lattice_->angles(), window = lattice_->window();
-  const Verdict* verdict = &verdict_[index(block.layer, 0)];
+void CostToGo::relax(int step_layer, Block& from, const Block& to) {
+  const int n = lattice_->angles(), count = chunks();
   for (int label = 0; label < lattice_->labels(); ++label) {
-    const std::uint8_t* valid = block.nodes().valid(label) + window;
-    for (int j = 0; j < n; ++j) {
-      const int slot = label * n + j;
-      if (!valid[j] || verdict[slot] == Verdict::kRemoved) row[slot] = kUnreachable;
+    double* row = from.row.data() + static_cast<std::ptrdiff_t>(label) * n;
+    std::uint8_t* todo = from.todo.data() + mark(label, 0);
+    std::uint8_t* live = from.live.data() + mark(label, 0);
+    if (std::find(todo, todo + count, 1) == todo + count) continue;
+    for (int chunk = 0; chunk < count; ++chunk)
+      if (todo[chunk]) std::fill(row + chunk * kChunk, row + std::min(n, (chunk + 1) * kChunk), kUnreachable);
+    for (const int other : to.labels) {
+      int begin = 0;  // of a run of chunks
+      for (int chunk = 0; chunk <= count; ++chunk) {
+        if (chunk < count && todo[chunk] && to.near[mark(other, chunk)].last >= 0 &&
+            (label == other || may_connect(step_layer, from, label, chunk, to, other))) {
+          live[chunk] = 1;
+          continue;
+        }
+        if (begin < chunk)
+          relax_run(step_layer, from, label, begin * kChunk, std::min(n, chunk * kChunk) - begin * kChunk, to, other,
+                    row + begin * kChunk);
+        begin = chunk + 1;
+      }
     }
   }
+}
+
+void CostToGo::bar(Block& block) const {
+  const int n = lattice_->angles(), window = lattice_->window();
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    const std::uint8_t* live = block.live.data() + mark(label, 0);
+    double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
+    const double* shoulder = block.nodes().shoulder_bar(label) + window;
+    const double* wrist = block.nodes().wrist_bar(label) + window;
+    const Verdict* verdict = &verdict_[index(block.layer, label * n)];
+    for (int chunk = 0; chunk < chunks(); ++chunk)
+      for (int j = chunk * kChunk, end = std::min(n, j + kChunk); live[chunk] && j < end; ++j)
+        row[j] = verdict[j] == Verdict::kRemoved ? kUnreachable : row[j] + (shoulder[j] + wrist[j]);
+  }
+}
+
+void CostToGo::cut(Block& block) const {
+  if (limit_ == kUnreachable) return;
+  const int n = lattice_->angles();
+  const float* bound = chords_->row(block.layer);
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    const std::uint8_t* live = block.live.data() + mark(label, 0);
+    double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
+    const float* before = bound ? bound + static_cast<std::ptrdiff_t>(label) * n : nullptr;
+    for (int chunk = 0; chunk < chunks(); ++chunk)
+      for (int j = chunk * kChunk, end = std::min(n, j + kChunk); live[chunk] && j < end; ++j)
+        if (row[j] + (before ? before[j] : 0) > limit_) row[j] = kUnreachable;
+  }
+}
+
+void CostToGo::settle(Block& block) {
+  const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    std::uint8_t* live = block.live.data() + mark(label, 0);
+    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
+    double* value = block.value.data() + static_cast<std::ptrdiff_t>(label) * length;
+    Block::Near* near = block.near.data() + mark(label, 0);
+    bool any = false;
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      if (!live[chunk]) continue;
+      int first = chunk * kChunk, last = std::min(n, first + kChunk) - 1;
+      while (first <= last && row[first] == kUnreachable) ++first;
+      while (first <= last && row[last] == kUnreachable) --last;
+      live[chunk] = first <= last;
+      if (first > last) continue;
+      if (!any) {
+        std::fill(near, near + chunks(), Block::Near{length, -1});
+        block.labels.push_back(label);
+        any = true;
+      }
+      std::copy(row + first, row + last + 1, value + window + first);
+      for (const int turn : {0, n, -n}) {
+        const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
+        if (low > high) continue;
+        if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
+        // The window of chunk c is at the padded positions c * kChunk ... c * kChunk + kChunk - 1 + 2 * window.
+        const int begin = std::max(0, low - 2 * window) / kChunk, end = std::min(chunks() - 1, high / kChunk);
+        for (int c = begin; c <= end; ++c) {
+          near[c].first = std::min(near[c].first, std::max(low, c * kChunk));
+          near[c].last = std::max(near[c].last, std::min(high, c * kChunk + kChunk - 1 + 2 * window));
+        }
+      }
+    }
+    if (any)
+      for (int c = 0; c < chunks(); ++c)
+        if (near[c].first > near[c].last) near[c].last = -1;
+  }
+}
+
+double& CostToGo::cell_value(int layer, int slot) {
+  const int j = lattice_->angle_of(slot);
+  std::uint32_t& cell = cell_[cell_index(layer, lattice_->label_of(slot), j / kChunk)];
+  if (cell == 0) {
+    cell = static_cast<std::uint32_t>(cells_.size());
+    cells_.emplace_back().fill(kUnreachable);
+  }
+  return cells_[cell][static_cast<std::size_t>(j % kChunk)];
+}
+
+void CostToGo::store(const Block& block) {
+  const int n = lattice_->angles();
+  for (const int label : block.labels)
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      if (!block.live[mark(label, chunk)]) continue;
+      cell_[cell_index(block.layer, label, chunk)] = static_cast<std::uint32_t>(cells_.size());
+      Cell& cell = cells_.emplace_back();
+      const double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n + static_cast<std::ptrdiff_t>(chunk) * kChunk;
+      const int count = std::min(kChunk, n - chunk * kChunk);
+      std::copy(row, row + count, cell.begin());
+      std::fill(cell.begin() + count, cell.end(), kUnreachable);
+    }
+}
+
+void CostToGo::load(int layer, Block& block) {
+  clear(layer, block);
+  const int n = lattice_->angles();
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      const std::uint32_t cell = cell_[cell_index(layer, label, chunk)];
+      if (cell == 0) continue;
+      want(*block.joints, lattice_->elbow_of(label), chunk);
+      std::copy_n(cells_[cell].begin(), std::min(kChunk, n - chunk * kChunk),
+                  block.row.begin() + static_cast<std::ptrdiff_t>(label) * n + static_cast<std::ptrdiff_t>(chunk) * kChunk);
+      block.live[mark(label, chunk)] = 1;
+    }
+  settle(block);
 }
 
 double CostToGo::relax_one(int layer, int slot) {
-  LayerNodes here_nodes, next_nodes;
-  const int n = lattice_->angles();
-  const Nodes here = nodes(layer, lattice_->angle_of(slot), 1, here_nodes);
-  const int label = lattice_->label_of(slot);
-  if (!here.nodes->valid(label)[here.shift] || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
+  const int n = lattice_->angles(), label = lattice_->label_of(slot);
+  const Nodes here = nodes(layer, lattice_->elbow_of(label), lattice_->angle_of(slot), 1, scratch_);
+  if (!here.nodes->valid(label, here.shift) || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
   const Config q = here.nodes->config(label, here.shift);
   const Lattice::Run run = lattice_->successors(layer, slot);
-  const Nodes next = nodes(layer + 1, run.first, run.count, next_nodes);
   double best = kUnreachable;
-  for (int k = 0; k < run.count; ++k)
-    for (int other = 0; other < lattice_->labels(); ++other) {
-      const int b = other * n + (run.first + k) % n;
-      const double rest = at(layer + 1, b);
-      if (rest == kUnreachable || edge_verdict(layer, slot, b) == Verdict::kRemoved) continue;
-      const Config delta = lattice_->delta(q, next.nodes->config(other, next.shift + k));
-      ++edges_;
-      if (lattice_->step_allowed(layer, delta)) best = std::min(best, lattice_->edge_cost(delta) + rest);
-    }
+  for (int elbow = 0; elbow < 2; ++elbow) {
+    Nodes next;
+    for (int other = 0; other < lattice_->labels(); ++other)
+      for (int k = 0; lattice_->elbow_of(other) == elbow && k < run.count; ++k) {
+        const int b = other * n + (run.first + k) % n;
+        const double rest = at(layer + 1, b);
+        if (rest == kUnreachable || edge_verdict(layer, slot, b) == Verdict::kRemoved) continue;
+        if (!next.nodes) next = nodes(layer + 1, elbow, run.first, run.count, scratch_);
+        const Config delta = lattice_->delta(q, next.nodes->config(other, next.shift + k));
+        ++edges_;
+        if (lattice_->step_allowed(layer, delta)) best = std::min(best, lattice_->edge_cost(delta) + rest);
+      }
+  }
   return best;
 }
 
+// --- the whole lattice
+
 bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
   goal_ = goal_layer;
+  limit_ = kUnreachable;
+  if (bounded_ && goal_layer == lattice_->layers() - 1) {
+    if (!chords_) {
+      chords_ = std::make_unique<ChordBound>(*lattice_);
+      ik_nodes_ += chords_->ik_nodes();
+    }
+    raise_limit();
+  }
+  return sweep_once(stop) && make_exact(stop);
+}
+
+void CostToGo::raise_limit() {
+  if (chords_->row(0)) {
+    const double least = chords_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
+    const double passed = limit_ == kUnreachable ? -1 : limit_;
+    for (const double share : {0.01, 0.08, 0.4, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
+      limit_ = least * (1 + share);
+      if (limit_ > passed && (found == kUnreachable || found <= limit_)) return;
+    }
+  }
+  limit_ = kUnreachable;
+}
+
+bool CostToGo::make_exact(const std::function<bool()>& stop) {
+  while (limit_ != kUnreachable && !(best() <= limit_)) {
+    raise_limit();
+    if (!sweep_once(stop)) return false;
+  }
+  return true;
+}
+
+bool CostToGo::sweep_once(const std::function<bool()>& stop) {
   pending_.clear();
-  const bool start = lattice_->has_start();
-  const auto row = [&](int layer) { return &g_[index(layer, 0)]; };
-  Block* next = &block_[0];
-  Block* here = &block_[1];
-  std::fill(row(goal_layer), row(goal_layer) + lattice_->width(), 0.0);
-  load(goal_layer, *next);
-  drop_invalid(*next, row(goal_layer));
-  load_values(row(goal_layer), *next);
-  for (int layer = goal_layer - 1; layer >= 0; --layer) {
+  std::fill(cell_.begin(), cell_.end(), 0U);
+  cells_.resize(1);
+  const int n = lattice_->angles();
+  Block* next = block_[0].get();
+  Block* here = block_[1].get();
+  clear(goal_, *next);
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int chunk = 0; next->nodes().alive(label) && chunk < chunks(); ++chunk) {
+      want(*next->joints, lattice_->elbow_of(label), chunk);
+      next->live[mark(label, chunk)] = 1;
+      std::fill_n(next->row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
+    }
+  bar(*next);
+  cut(*next);
+  settle(*next);
+  store(*next);
+  for (int layer = goal_ - 1; layer >= 0 && !next->labels.empty(); --layer) {
     if (stop && stop()) return false;
-    if (layer == 0 && start) {
-      std::fill(row(0), row(0) + lattice_->width(), kUnreachable);
-      g_[index(0, lattice_->start_slot())] = relax_one(0, lattice_->start_slot());
+    if (layer == 0 && lattice_->has_start()) {
+      const double value = relax_one(0, lattice_->start_slot());
+      if (value <= limit_) cell_value(0, lattice_->start_slot()) = value;
       break;
     }
-    load(layer, *here);
-    relax_layer(layer, *here, *next, row(layer));
-    const auto removed = removed_edges_.find(layer);
-    if (removed != removed_edges_.end())
-      for (const auto& [a, b] : removed->second) g_[index(layer, a)] = relax_one(layer, a);
-    load_values(row(layer), *here);
+    clear(layer, *here);
+    mark_reach(layer, *next, *here);
+    relax(layer, *here, *next);
+    bar(*here);
+    relax_removed(*here);
+    cut(*here);
+    settle(*here);
+    store(*here);
     std::swap(here, next);
   }
   return true;
 }
 
-double CostToGo::best() const {
-  return *std::min_element(g_.begin(), g_.begin() + lattice_->width());
+void CostToGo::relax_removed(Block& block) {
+  const auto removed = removed_edges_.find(block.layer);
+  if (removed == removed_edges_.end()) return;
+  for (const auto& [a, b] : removed->second)
+    if (block.live[mark(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)])
+      block.row[static_cast<std::size_t>(a)] = relax_one(block.layer, a);
 }
+
+double CostToGo::best() const {
+  double best = kUnreachable;
+  for (std::size_t k = 0; k < mark(lattice_->labels(), 0); ++k)
+    if (cell_[k] != 0)
+      for (const double value : cells_[cell_[k]]) best = std::min(best, value);
+  return best;
+}
+
+// --- removals
 
 void CostToGo::remove_node(int layer, int slot) {
   verdict_[index(layer, slot)] = Verdict::kRemoved;
@@ -261,6 +460,7 @@ void CostToGo::remove_alike(int layer, int slot, std::uint8_t depends) {
 }
 
 Verdict CostToGo::edge_verdict(int layer, int a, int b) const {
+  if (edge_verdict_.empty()) return Verdict::kUnknown;
   const auto found = edge_verdict_.find({static_cast<std::int64_t>(index(layer, a)), b});
   return found == edge_verdict_.end() ? Verdict::kUnknown : found->second;
 }
@@ -275,84 +475,62 @@ void CostToGo::remove_edge(int layer, int a, int b) {
   pending_[layer].tails.push_back(a);
 }
 
-CostToGo::Marks CostToGo::reached_by(const Marks& changed, int layer, const Block& from, const Block& to) const {
-  const int n = lattice_->angles(), window = lattice_->window(), labels = lattice_->labels(), count = chunks();
-  Marks widened(changed.size(), 0);  // chunks whose window overlaps a changed chunk
-  for (int label = 0; label < labels; ++label)
-    for (int c = 0; c < count; ++c) {
-      if (!changed[static_cast<std::size_t>(label * count + c)]) continue;
-      const int first = c * kChunk - window, last = std::min(n, (c + 1) * kChunk) - 1 + window;
-      if (last - first + 1 >= n) {
-        std::fill_n(widened.begin() + label * count, count, std::uint8_t{1});
-        continue;
-      }
-      for (int j = first; j <= last; ++j) widened[static_cast<std::size_t>(label * count + ((j + n) % n) / kChunk)] = 1;
-    }
-  Marks result = widened;
-  for (int label = 0; label < labels; ++label)
-    for (int c = 0; c < count; ++c)
-      for (int other = 0; other < labels && !result[static_cast<std::size_t>(label * count + c)]; ++other)
-        if (other != label && widened[static_cast<std::size_t>(other * count + c)] && may_connect(layer, from, label, c, to, other))
-          result[static_cast<std::size_t>(label * count + c)] = 1;
-  return result;
+bool CostToGo::repair(const std::function<bool()>& stop) {
+  repair_once();
+  return make_exact(stop);
 }
 
-void CostToGo::repair() {
-  const int labels = lattice_->labels(), count = chunks();
-  Marks changed(static_cast<std::size_t>(labels * count), 0);
-  std::vector<double> fresh(static_cast<std::size_t>(lattice_->width()));
+void CostToGo::mark_dependents(const Marks& changed, Block& block) const {
+  const int n = lattice_->angles(), window = lattice_->window(), count = chunks();
+  Marks columns(static_cast<std::size_t>(count), 0);  // whose window holds a changed chunk of any label
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int c = 0; c < count; ++c)
+      if (changed[mark(label, c)])
+        for (int j = c * kChunk - window; j < std::min(n, (c + 1) * kChunk) + window; ++j)
+          columns[static_cast<std::size_t>((j % n + n) % n / kChunk)] = 1;
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int c = 0; c < count; ++c) block.todo[mark(label, c)] = columns[static_cast<std::size_t>(c)] & block.live[mark(label, c)];
+}
+
+void CostToGo::repair_once() {
+  const int n = lattice_->angles();
+  Marks changed(mark(lattice_->labels(), 0), 0), here_changed(changed.size());
   bool any = false;
-  Block* next = &block_[0];
-  Block* here = &block_[1];
+  Block* next = block_[0].get();
+  Block* here = block_[1].get();
   while (!pending_.empty() && pending_.rbegin()->first > goal_) pending_.erase(std::prev(pending_.end()));
   for (int layer = pending_.empty() ? -1 : pending_.rbegin()->first; layer >= 0; --layer) {
-    Marks here_changed(changed.size(), 0);
+    std::fill(here_changed.begin(), here_changed.end(), std::uint8_t{0});
     bool here_any = false;
-    double* row = &g_[index(layer, 0)];
-    const auto mark = [&](int slot) {
-      here_changed[static_cast<std::size_t>(lattice_->label_of(slot) * count + lattice_->angle_of(slot) / kChunk)] = 1;
+    const auto set = [&](int slot, double value) {
+      double& cell = cell_value(layer, slot);
+      if (cell == value) return;
+      cell = value;
+      here_changed[mark(lattice_->label_of(slot), lattice_->angle_of(slot) / kChunk)] = 1;
       here_any = true;
     };
-    if (any) {
-      if (layer == 0 && lattice_->has_start()) {
-        row[lattice_->start_slot()] = relax_one(0, lattice_->start_slot());
-      } else {
-        if (next->layer != layer + 1) load(layer + 1, *next);
-        load_values(&g_[index(layer + 1, 0)], *next);
-        load(layer, *here);
-        const Marks todo = reached_by(changed, layer, *here, *next);
-        std::copy(row, row + lattice_->width(), fresh.begin());
-        for (int label = 0; label < labels; ++label)
-          for (int c = 0; c < count; ++c)
-            if (todo[static_cast<std::size_t>(label * count + c)]) relax_chunk(layer, *here, label, c, *next, fresh.data());
-        drop_invalid(*here, fresh.data());
-        const auto removed = removed_edges_.find(layer);
-        if (removed != removed_edges_.end())
-          for (const auto& [a, b] : removed->second)
-            if (todo[static_cast<std::size_t>(lattice_->label_of(a) * count + lattice_->angle_of(a) / kChunk)])
-              fresh[static_cast<std::size_t>(a)] = relax_one(layer, a);
-        for (int slot = 0; slot < lattice_->width(); ++slot)
-          if (fresh[static_cast<std::size_t>(slot)] != row[slot]) {
-            row[slot] = fresh[static_cast<std::size_t>(slot)];
-            mark(slot);
-          }
-        std::swap(here, next);
-      }
+    if (any && layer == 0 && lattice_->has_start()) {
+      if (at(0, lattice_->start_slot()) != kUnreachable) set(lattice_->start_slot(), relax_one(0, lattice_->start_slot()));
+    } else if (any) {
+      load(layer + 1, *next);
+      load(layer, *here);
+      mark_dependents(changed, *here);
+      relax(layer, *here, *next);
+      bar(*here);
+      relax_removed(*here);
+      cut(*here);
+      for (int label = 0; label < lattice_->labels(); ++label)
+        for (int chunk = 0; chunk < chunks(); ++chunk)
+          for (int j = chunk * kChunk; here->todo[mark(label, chunk)] && j < std::min(n, (chunk + 1) * kChunk); ++j)
+            set(label * n + j, here->row[static_cast<std::size_t>(label * n + j)]);
     }
+    std::swap(here, next);  // its joints serve once more
     const auto pending = pending_.find(layer);
     if (pending != pending_.end()) {
       for (const int slot : pending->second.nodes)
-        if (row[slot] != kUnreachable) {
-          row[slot] = kUnreachable;
-          mark(slot);
-        }
-      for (const int slot : pending->second.tails) {
-        const double value = layer < goal_ ? relax_one(layer, slot) : row[slot];
-        if (value != row[slot]) {
-          row[slot] = value;
-          mark(slot);
-        }
-      }
+        if (at(layer, slot) != kUnreachable) set(slot, kUnreachable);
+      for (const int slot : pending->second.tails)
+        if (layer < goal_ && at(layer, slot) != kUnreachable) set(slot, relax_one(layer, slot));
       pending_.erase(pending);
     }
     changed.swap(here_changed);
@@ -364,56 +542,69 @@ void CostToGo::repair() {
   }
 }
 
-double CostToGo::relax_one_forward(int layer, int slot, const std::vector<double>& value) {
-  LayerNodes here_nodes, before_nodes;
-  const int n = lattice_->angles(), label = lattice_->label_of(slot);
-  const Nodes here = nodes(layer, lattice_->angle_of(slot), 1, here_nodes);
-  if (!here.nodes->valid(label)[here.shift] || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
+// --- reach
+
+double CostToGo::relax_one_forward(int layer, int slot, const Block& before) {
+  const int n = lattice_->angles(), length = n + 2 * lattice_->window(), label = lattice_->label_of(slot);
+  const Nodes here = nodes(layer, lattice_->elbow_of(label), lattice_->angle_of(slot), 1, scratch_);
+  if (!here.nodes->valid(label, here.shift) || node_verdict(layer, slot) == Verdict::kRemoved) return kUnreachable;
   const Config q = here.nodes->config(label, here.shift);
   const Lattice::Run run = lattice_->predecessors(layer - 1, slot);
-  if (run.count == 0) return kUnreachable;
-  const Nodes before = nodes(layer - 1, run.first, run.count, before_nodes);
   double best = kUnreachable;
-  for (int k = 0; k < run.count; ++k)
-    for (int other = 0; other < lattice_->labels(); ++other) {
-      const int a = other * n + (run.first + k) % n;
-      const double done = value[static_cast<std::size_t>(a)];
+  for (const int other : before.labels)
+    for (int k = 0; k < run.count; ++k) {
+      const int j = (run.first + k) % n, a = other * n + j;
+      const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
       if (done == kUnreachable || edge_verdict(layer - 1, a, slot) == Verdict::kRemoved) continue;
-      const Config delta = lattice_->delta(before.nodes->config(other, before.shift + k), q);
+      const Config delta = lattice_->delta(config(layer - 1, a), q);
       if (lattice_->step_allowed(layer - 1, delta)) best = std::min(best, lattice_->edge_cost(delta) + done);
     }
   return best;
 }
 
 int CostToGo::deepest_reachable() {
-  const auto width = static_cast<std::size_t>(lattice_->width());
-  std::vector<double> value(width, 0.0), ahead(width);
-  Block* before = &block_[0];
-  Block* here = &block_[1];
-  load(0, *before);
-  drop_invalid(*before, value.data());
-  const auto any = [](const std::vector<double>& v) {
-    return std::any_of(v.begin(), v.end(), [](double x) { return x != kUnreachable; });
-  };
-  if (!any(value)) return -1;
-  load_values(value.data(), *before);
+  const int n = lattice_->angles();
+  Block* before = block_[0].get();
+  Block* here = block_[1].get();
+  clear(0, *before);
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int chunk = 0; before->nodes().alive(label) && chunk < chunks(); ++chunk) {
+      want(*before->joints, lattice_->elbow_of(label), chunk);
+      before->live[mark(label, chunk)] = 1;
+      std::fill_n(before->row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
+    }
+  bar(*before);
+  settle(*before);
+  if (before->labels.empty()) return -1;
   int layer = 1;
   for (; layer < lattice_->layers(); ++layer) {
-    load(layer, *here);
+    clear(layer, *here);
+    const auto step_one = [&](int slot) {
+      const std::size_t chunk = mark(lattice_->label_of(slot), lattice_->angle_of(slot) / kChunk);
+      double* row = here->row.data() + lattice_->label_of(slot) * n;
+      const int begin = lattice_->angle_of(slot) / kChunk * kChunk;
+      if (!here->live[chunk]) std::fill(row + begin, row + std::min(n, begin + kChunk), kUnreachable);
+      here->live[chunk] = 1;
+      want(*here->joints, lattice_->elbow_of(lattice_->label_of(slot)), begin / kChunk);
+      row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, *before);
+    };
     if (layer == 1 && lattice_->has_start()) {
-      for (std::size_t slot = 0; slot < width; ++slot) ahead[slot] = relax_one_forward(1, static_cast<int>(slot), value);
+      const Lattice::Run run = lattice_->successors(0, lattice_->start_slot());
+      for (int label = 0; label < lattice_->labels(); ++label)
+        for (int k = 0; k < run.count; ++k) step_one(label * n + (run.first + k) % n);
     } else {
-      relax_layer(layer - 1, *here, *before, ahead.data());
+      mark_reach(layer - 1, *before, *here);
+      relax(layer - 1, *here, *before);
+      bar(*here);
       const auto removed = removed_edges_.find(layer - 1);
       if (removed != removed_edges_.end())
-        for (const auto& [a, b] : removed->second) ahead[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, value);
+        for (const auto& [a, b] : removed->second)
+          if (here->live[mark(lattice_->label_of(b), lattice_->angle_of(b) / kChunk)]) step_one(b);
     }
-    if (!any(ahead)) break;
-    value.swap(ahead);
-    load_values(value.data(), *here);
+    settle(*here);
+    if (here->labels.empty()) break;
     std::swap(before, here);
   }
-  block_[0].layer = block_[1].layer = -1;  // their values are not cost-to-go
   return layer - 1;
 }
 

@@ -20,21 +20,23 @@ const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) cons
   }
   const int layer = layer_of(v), slot = slot_of(v), n = lattice.angles();
   if (layer >= togo_->goal_layer()) return edges_;
-  const CostToGo::Nodes here = togo_->nodes(layer, lattice.angle_of(slot), 1, here_);
-  const Config q = here.nodes->config(lattice.label_of(slot), here.shift);
+  const Config q = togo_->config(layer, slot);
   const Lattice::Run run = lattice.successors(layer, slot);
-  const CostToGo::Nodes next = togo_->nodes(layer + 1, run.first, run.count, next_);
-  for (int label = 0; label < lattice.labels(); ++label)
-    for (int k = 0; k < run.count; ++k) {
-      const int b = label * n + (run.first + k) % n;
-      const double rest = togo_->at(layer + 1, b);
-      if (rest == kUnreachable || rest > bound) continue;
-      const Config delta = lattice.delta(q, next.nodes->config(label, next.shift + k));
-      if (!lattice.step_allowed(layer, delta)) continue;
-      const double cost = lattice.edge_cost(delta);
-      if (cost + rest <= bound && togo_->edge_verdict(layer, slot, b) != Verdict::kRemoved)
-        edges_.push_back({v, vertex(layer + 1, b), cost});
-    }
+  for (int elbow = 0; elbow < 2; ++elbow) {
+    CostToGo::Nodes next;
+    for (int label = 0; label < lattice.labels(); ++label)
+      for (int k = 0; lattice.elbow_of(label) == elbow && k < run.count; ++k) {
+        const int b = label * n + (run.first + k) % n;
+        const double rest = togo_->at(layer + 1, b);
+        if (rest == kUnreachable || rest > bound) continue;
+        if (!next.nodes) next = togo_->nodes(layer + 1, elbow, run.first, run.count, next_);
+        const Config delta = lattice.delta(q, next.nodes->config(label, next.shift + k));
+        if (!lattice.step_allowed(layer, delta)) continue;
+        const double cost = lattice.edge_cost(delta);
+        if (cost + rest <= bound && togo_->edge_verdict(layer, slot, b) != Verdict::kRemoved)
+          edges_.push_back({v, vertex(layer + 1, b), cost});
+      }
+  }
   return edges_;
 }
 

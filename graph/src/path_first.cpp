@@ -44,7 +44,7 @@ class Search {
       ++counters.iterations;
       fail_first_.next_round();
       if (valid(path)) return {.stopped = false, .path = path, .cost = togo_.best()};
-      togo_.repair();
+      togo_.repair([this] { return validity_.stopped(); });
     }
   }
 
@@ -139,10 +139,7 @@ class Search {
     return failed;
   }
 
-  NodeQuestion question(int layer, int slot) {
-    const CostToGo::Nodes nodes = togo_.nodes(layer, lattice_.angle_of(slot), 1, scratch_);
-    return {layer, slot, nodes.nodes->config(lattice_.label_of(slot), nodes.shift)};
-  }
+  NodeQuestion question(int layer, int slot) { return {layer, slot, togo_.config(layer, slot)}; }
   [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
 
   CostToGo& togo_;
@@ -151,7 +148,6 @@ class Search {
   PathFirstOptions options_;
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
-  LayerNodes scratch_;
 };
 
 }  // namespace

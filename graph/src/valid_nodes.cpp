@@ -14,7 +14,7 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
     valid.ik_nodes += lattice.width();
     questions.clear();
     for (int slot = 0; slot < lattice.width(); ++slot)
-      if (nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)])
+      if (nodes.valid(lattice.label_of(slot), lattice.angle_of(slot)))
         questions.push_back({layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot))});
     answers.assign(questions.size(), {});
     validity.nodes(questions, answers);

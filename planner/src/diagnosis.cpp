@@ -47,7 +47,7 @@ class Inspector {
     const int width = lattice_.width();
     for (int k = 0; k < width; ++k) {
       const int slot = (hint + k) % width;
-      if (!nodes_.valid(lattice_.label_of(slot))[lattice_.angle_of(slot)]) continue;
+      if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
       const std::string reason = node_reason(nodes_.config(lattice_.label_of(slot), lattice_.angle_of(slot)));
       if (reason.empty()) {
         hint = slot;
@@ -83,7 +83,7 @@ class Inspector {
     std::vector<int> left;
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       const int label = lattice_.label_of(slot), j = lattice_.angle_of(slot);
-      if (!nodes_.valid(label)[j]) {
+      if (!nodes_.valid(label, j)) {
         const Lattice::NodeFault fault = lattice_.fault(layer + 1, slot);
         if (fault.status == NodeStatus::kLimit)
           for (int k = 0; k < kDof; ++k) reasons[joint_name(k)] += (fault.joints >> k) & 1;
@@ -102,7 +102,7 @@ class Inspector {
     int edges = 0;
     for (int a = 0; a < lattice_.width() && edges < kMostEdges; ++a) {
       const int label = lattice_.label_of(a), j = lattice_.angle_of(a);
-      if (left.empty() || !before.valid(label)[j]) continue;
+      if (left.empty() || !before.valid(label, j)) continue;
       const Config qa = before.config(label, j);
       if (!node_reason(qa).empty()) continue;
       for (const int b : left) {

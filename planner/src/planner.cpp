@@ -74,7 +74,7 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
     return found;
   }
   Stopwatch watch;
-  CostToGo togo(lattice);
+  CostToGo togo(lattice, CostToGo::Extent::kBounded);
   found.outcome.stopped = !togo.sweep(lattice.layers() - 1, [&] { return validity.stopped(); });
   result.time_ms["sweep"] = watch.lap();
   if (found.outcome.stopped) return found;

@@ -50,7 +50,7 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
       for (int layer = 0; layer < lattice.layers(); ++layer) {
         lattice.solve(layer, nodes);
         for (int slot = 0; slot < lattice.width(); ++slot) {
-          const bool exists = nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)];
+          const bool exists = nodes.valid(lattice.label_of(slot), lattice.angle_of(slot));
           const auto fault = lattice.fault(layer, slot);
           const auto alone = lattice.node(layer, slot);
           ASSERT_EQ(exists, alone.has_value());
@@ -131,12 +131,12 @@ TEST(Lattice, CarriedReferenceKeepsNeighboursAlignedWhereTheLinePassesAxisOne) {
     lattice.solve(layer + 1, next);
     for (int slot = 0; slot < lattice.width(); slot += 3) {
       const int label = lattice.label_of(slot);
-      if (!here.valid(label)[lattice.angle_of(slot)]) continue;
+      if (!here.valid(label, lattice.angle_of(slot))) continue;
       const Config q = here.config(label, lattice.angle_of(slot));
       int best = -1;
       double least = 1e9;
       for (int j = 0; j < lattice.angles(); ++j)
-        if (next.valid(label)[j]) {
+        if (next.valid(label, j)) {
           const double cost = lattice.edge_cost(lattice.delta(q, next.config(label, j)));
           if (cost < least) {
             least = cost;
@@ -169,7 +169,7 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
     lattice.solve(0, nodes);
     int valid = 0;
     for (int slot = 0; slot < lattice.width(); ++slot)
-      if (nodes.valid(lattice.label_of(slot))[lattice.angle_of(slot)]) {
+      if (nodes.valid(lattice.label_of(slot), lattice.angle_of(slot))) {
         ++valid;
         EXPECT_EQ(slot, lattice.start_slot());
         EXPECT_EQ(nodes.config(lattice.label_of(slot), lattice.angle_of(slot)), q0);

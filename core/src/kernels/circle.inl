@@ -32,6 +32,10 @@ inline double atan2_poly(double y, double x) {
   return y < 0 ? -half : half;
 }
 
+inline double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 /// The image of angle q that lies in [base, base + 2 pi).
 inline double image_from(double q, double base) {
   const double x = (base - q) * 0.15915494309189535;
@@ -49,11 +53,13 @@ void solve_triple(const TripleTask& task) {
   double* __restrict first1 = task.q[1][0];
   double* __restrict middle1 = task.q[1][1];
   double* __restrict last1 = task.q[1][2];
-  double* __restrict sine = task.sin_middle;
+  double* __restrict bar0 = task.bar[0];
+  double* __restrict bar1 = task.bar[1];
   const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0], b12 = task.m[1][1],
                c12 = task.m[1][2], a22 = task.m[2][0], b22 = task.m[2][1], c22 = task.m[2][2], a20 = task.m[3][0],
                b20 = task.m[3][1], c20 = task.m[3][2], a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
   const double base0 = task.base[0], base1 = task.base[1], base2 = task.base[2], shift = task.shift;
+  const double upper0 = task.upper[0], upper1 = task.upper[1], upper2 = task.upper[2], least_sine = task.least_sine;
 #pragma GCC ivdep  // GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
   for (int k = 0; k < task.n; ++k) {
     const double x = a02 * s[k] + b02 * c[k] + c02, y = a12 * s[k] + b12 * c[k] + c12, z = a22 * s[k] + b22 * c[k] + c22;
@@ -62,13 +68,18 @@ void solve_triple(const TripleTask& task) {
     const double last = atan2_poly(a21 * s[k] + b21 * c[k] + c21, -(a20 * s[k] + b20 * c[k] + c20));
     const double first_flip = first > 0 ? first - 3.1415926535897931 : first + 3.1415926535897931;
     const double last_flip = last > 0 ? last - 3.1415926535897931 : last + 3.1415926535897931;
-    sine[k] = h;
-    first0[k] = image_from(first, base0);
-    middle0[k] = image_from(middle - shift, base1);
-    last0[k] = image_from(last, base2);
-    first1[k] = image_from(first_flip, base0);
-    middle1[k] = image_from(-middle - shift, base1);
-    last1[k] = image_from(last_flip, base2);
+    const double f0 = image_from(first, base0), m0 = image_from(middle - shift, base1), l0 = image_from(last, base2);
+    const double f1 = image_from(first_flip, base0), m1 = image_from(-middle - shift, base1), l1 = image_from(last_flip, base2);
+    const double excess0 = larger(larger(f0 - upper0, m0 - upper1), larger(l0 - upper2, least_sine - h));
+    const double excess1 = larger(larger(f1 - upper0, m1 - upper1), larger(l1 - upper2, least_sine - h));
+    first0[k] = f0;
+    middle0[k] = m0;
+    last0[k] = l0;
+    first1[k] = f1;
+    middle1[k] = m1;
+    last1[k] = l1;
+    bar0[k] = excess0 <= 0 ? 0.0 : __builtin_inf();
+    bar1[k] = excess1 <= 0 ? 0.0 : __builtin_inf();
   }
 }
 

@@ -5,14 +5,16 @@ namespace swivel {
 
 /// One triple of joints over a run of arm angles: both signs of the middle angle. Arrays of n.
 struct TripleTask {
-  double m[5][3];  ///< TripleCircle: rows m02, m12, m22, m20, m21; columns sin, cos, 1
-  double shift;    ///< subtracted from the middle angle
-  double base[3];  ///< each joint's image is taken in [base, base + 2 pi)
+  double m[5][3];     ///< TripleCircle: rows m02, m12, m22, m20, m21; columns sin, cos, 1
+  double shift;       ///< subtracted from the middle angle
+  double base[3];     ///< each joint's image is taken in [base, base + 2 pi)
+  double upper[3];    ///< and exists up to here
+  double least_sine;  ///< below: singular
   int n;
   const double* sin_phi;
   const double* cos_phi;
-  double* q[2][3];     ///< [sign of the middle angle's sine][joint of the triple]
-  double* sin_middle;  ///< |sin| of the middle angle from its singular pose
+  double* q[2][3];  ///< [sign of the middle angle's sine][joint of the triple]
+  double* bar[2];   ///< [sign]: 0 where the triple is solved within its limits and not singular, else infinity
 };
 
 struct CircleKernels {

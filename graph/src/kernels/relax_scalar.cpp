@@ -5,7 +5,7 @@
 
 namespace swivel {
 const RelaxKernels& scalar_relax_kernels() {
-  static constexpr RelaxKernels kernels{&scalar::relax};
+  static constexpr RelaxKernels kernels{&scalar::relax, &scalar::chord};
   return kernels;
 }
 }  // namespace swivel

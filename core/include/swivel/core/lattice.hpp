@@ -16,15 +16,20 @@ namespace swivel {
 enum class NodeStatus : std::uint8_t { kValid, kNoIk, kSingular, kLimit };
 
 /// The joints of all labels of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice node.
+/// Labels share the arrays of what they have in common: four branches have a triple's solution each.
 class LayerNodes {
  public:
   /// Joint k (0..6) of label, an array over the run.
-  [[nodiscard]] const double* q(int label, int k) const { return data_.data() + q_[static_cast<std::size_t>(label * kDof + k)]; }
-  /// 1 where the node exists (IK, singularity, limits), an array over the run.
-  [[nodiscard]] const std::uint8_t* valid(int label) const {
-    return valid_.data() + static_cast<std::size_t>(label) * static_cast<std::size_t>(count_);
-  }
+  [[nodiscard]] const double* q(int label, int k) const { return data_.data() + at(label).q[static_cast<std::size_t>(k)]; }
+  /// Arrays over the run, of zeros and infinities: a node exists (IK, singularity, limits) where both are 0.
+  [[nodiscard]] const double* shoulder_bar(int label) const { return data_.data() + at(label).bar[0]; }
+  [[nodiscard]] const double* wrist_bar(int label) const { return data_.data() + at(label).bar[1]; }
+  [[nodiscard]] bool valid(int label, int k) const { return shoulder_bar(label)[k] + wrist_bar(label)[k] == 0; }
+  /// False where no node of the label exists, whatever the arm angle.
+  [[nodiscard]] bool alive(int label) const { return at(label).alive; }
   [[nodiscard]] int count() const { return count_; }
+  /// Copies `count` entries of every array from one place of the run to another.
+  void repeat(int from, int to, int count);
   [[nodiscard]] Config config(int label, int k) const {
     Config c;
     for (int j = 0; j < kDof; ++j) c[j] = q(label, j)[k];
@@ -33,10 +38,15 @@ class LayerNodes {
 
  private:
   friend class Lattice;
-  int count_ = 0;
-  Eigen::ArrayXd data_;              // not a vector: that would write zeros first
-  std::vector<std::size_t> q_;       // [label][joint] -> offset into data_
-  std::vector<std::uint8_t> valid_;  // [label][angle]
+  struct Offsets {  // into data_
+    std::array<std::size_t, kDof> q{};
+    std::array<std::size_t, 2> bar{};
+    bool alive = false;
+  };
+  [[nodiscard]] const Offsets& at(int label) const { return offsets_[static_cast<std::size_t>(label)]; }
+  int layer_ = -1, first_ = 0, count_ = 0;
+  Eigen::ArrayXd data_;
+  std::vector<Offsets> offsets_;  // [label]
 };
 
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
@@ -77,6 +87,12 @@ class Lattice {
   /// Nodes j = first ... first + count - 1 of every label, taken around the circle; first < angles, count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
+  /// The same bit by bit: room for the run, then entries begin ... end - 1 of it for the labels of one sign of the elbow (0, 1).
+  void lay_out(int layer, int first, int count, LayerNodes& out) const;
+  void solve_part(int elbow, int begin, int end, LayerNodes& out) const;
+  /// Joint 4 of a layer's nodes by the sign of the elbow, where the arm angle does not move it: exact arms, layers without a start.
+  [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
+  [[nodiscard]] int elbow_of(int label) const { return label / windings_ & kElbowBit ? 1 : 0; }
   /// One node; none where it does not exist.
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const;
   /// Manipulability bound alone; everything else that makes a node kinematically valid is in solve().
@@ -127,8 +143,10 @@ class Lattice {
     double phi = 0;
     Config q;
   };
-  void solve_exact(const double* sine, const double* cosine, int layer, int count, LayerNodes& out) const;
-  void solve_polished(int layer, int first, int count, LayerNodes& out) const;
+  void solve_exact(int elbow, int begin, int end, LayerNodes& out) const;
+  void solve_polished(int elbow, int begin, int end, LayerNodes& out) const;
+  void lay_out_start(LayerNodes& out) const;
+  [[nodiscard]] bool elbow_alive(int layer, int elbow) const { return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)]; }
   void place_start(const Config& q, const std::string& source);
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
@@ -140,12 +158,14 @@ class Lattice {
   Cost cost_;
   int angles_ = 0, windings_ = 1, window_ = 1;
   std::array<Images, kDof> images_;
+  std::size_t tracks_ = 0;  // arrays in a LayerNodes
   std::array<bool, kDof> continuous_{};
   std::array<double, kDof> cost_scale_{};
   std::vector<double> sine_, cosine_;  // of the grid angles, three times around
   std::vector<ArmPlane> planes_;
   std::vector<ReachStatus> reach_;
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
+  std::vector<std::uint8_t> elbow_alive_;            // [layer][elbow]: its angle lies within the limits
   std::vector<Config> step_bounds_;
   std::optional<Start> start_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "swivel/core/lattice.hpp"
+#include "swivel/graph/chord_bound.hpp"
 
 namespace swivel {
 
@@ -18,21 +19,33 @@ inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 /// What is known of a node or edge beyond the closed form.
 enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
-/// The exact cost from every node to the goal layer over the lattice minus what has been removed from it: a backward layered
-/// dynamic program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the
-/// perfect heuristic of the lattice that remains. Memory: 9 bytes a node, and the joints of a layer where it is worth keeping them:
-/// lattices of up to a million nodes, and polished arms, whose joints are costly.
+/// The cost from the nodes to the goal layer over the lattice minus what has been removed from it: a backward layered dynamic
+/// program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the perfect
+/// heuristic of the lattice that remains.
+///
+/// Extent::kBounded leaves out what cannot matter: nodes that ChordBound proves to lie on no path of cost `limit` or less. best()
+/// is exact then as well, and so is at() on every best path: as long as best() <= limit no path that matters is missing, and where
+/// it comes to be more, the limit is raised and the sweep repeated. Other nodes may read as unreachable, or as costlier than they
+/// are.
+///
+/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, half a byte for the bounds. Joints are solved again where they
+/// are wanted again, but for polished arms, whose joints are costly and kept.
 class CostToGo {
  public:
-  explicit CostToGo(const Lattice& lattice);
+  enum class Extent { kWhole, kBounded };
+  explicit CostToGo(const Lattice& lattice, Extent extent = Extent::kWhole);
   ~CostToGo();
 
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
 
   /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept. False when `stop`, asked once a layer, said so.
+  /// Bounded only where the goal is the last layer.
   bool sweep(int goal_layer, const std::function<bool()>& stop = {});
   [[nodiscard]] int goal_layer() const { return goal_; }
-  [[nodiscard]] double at(int layer, int slot) const { return g_[index(layer, slot)]; }
+  [[nodiscard]] double at(int layer, int slot) const {
+    const int j = lattice_->angle_of(slot);
+    return cells_[cell_[cell_index(layer, lattice_->label_of(slot), j / kChunk)]][static_cast<std::size_t>(j % kChunk)];
+  }
   /// Least over layer 0; kUnreachable when no path is left.
   [[nodiscard]] double best() const;
 
@@ -44,51 +57,36 @@ class CostToGo {
   [[nodiscard]] Verdict edge_verdict(int layer, int a, int b) const;
   void keep_edge(int layer, int a, int b);
   void remove_edge(int layer, int a, int b);
-  /// Makes at() exact again after removals.
-  void repair();
+  /// Makes best() exact again after removals. False when `stop`, as in sweep(), said so.
+  bool repair(const std::function<bool()>& stop = {});
 
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
   [[nodiscard]] int deepest_reachable();
 
-  /// Joints of the nodes j = first ... first + count - 1 of a layer, count <= 2 window + 1; entry k of the run is at
-  /// nodes->q(label, joint)[shift + k].
+  /// Joints of the nodes j = first ... first + count - 1 of a layer for the labels of one sign of the elbow, count <= 2 window + 1;
+  /// entry k of the run is at nodes->q(label, joint)[shift + k].
   struct Nodes {
     const LayerNodes* nodes = nullptr;
     int shift = 0;
   };
-  [[nodiscard]] Nodes nodes(int layer, int first, int count, LayerNodes& scratch);
+  [[nodiscard]] Nodes nodes(int layer, int elbow, int first, int count, LayerNodes& scratch);
+  /// One node's joints.
+  [[nodiscard]] Config config(int layer, int slot);
 
   /// Work so far: nodes solved and edges compared, repeats counted.
   [[nodiscard]] std::int64_t ik_nodes() const { return ik_nodes_; }
   [[nodiscard]] std::int64_t edges() const { return edges_; }
 
  private:
-  static constexpr int kChunk = 16;  // angles; the unit of repair and of the label-pair test
+  static constexpr int kChunk = 8;  // angles: a cache line of costs, one vector of the widest unit
 
-  struct Range {
-    double low = 0, high = 0;
-    [[nodiscard]] double gap(const Range& other) const { return std::max(low - other.high, other.low - high); }
-  };
-  /// A joint over a chunk, and over the chunk widened by the window on both sides.
-  struct ChunkRange {
-    Range own, near;
-  };
-  [[nodiscard]] static Range range(const double* q, int begin, int end);
-  /// The joints of one layer, from -window to angles + window around the circle, and their ranges by chunk.
-  struct Joints {
-    int layer = -1;
-    LayerNodes nodes;
-    std::vector<ChunkRange> ranges;   // [label][separating joint][chunk]
-    std::vector<std::uint8_t> alive;  // [label] has a node at all
-  };
-  /// One layer ready for relaxation.
-  struct Block {
-    int layer = -1;
-    Joints own;
-    const Joints* joints = nullptr;
-    std::vector<double> value;  // [label][padded angle]
-    [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
-  };
+  /// The joints of one layer, from -window to angles + window around the circle, solved by chunks as they are wanted.
+  struct Joints;
+  /// A layer's values, ready to be relaxed against or being relaxed.
+  struct Block;
+  using Cell = std::array<double, kChunk>;
+  using Marks = std::vector<std::uint8_t>;  // [label][chunk]
+
   struct EdgeKey {
     std::int64_t node;
     int b;
@@ -105,39 +103,55 @@ class CostToGo {
     std::vector<int> nodes;  // removed slots
     std::vector<int> tails;  // slots that lost an edge
   };
-  using Marks = std::vector<std::uint8_t>;  // [label][chunk]
 
   [[nodiscard]] std::size_t index(int layer, int slot) const {
     return static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->width()) + static_cast<std::size_t>(slot);
   }
-  [[nodiscard]] std::size_t range_row(int label, std::size_t separating) const {
-    return (static_cast<std::size_t>(label) * separating_.size() + separating) * static_cast<std::size_t>(chunks());
-  }
   [[nodiscard]] int chunks() const { return (lattice_->angles() + kChunk - 1) / kChunk; }
-  void solve(int layer, Joints& joints);
-  /// The joints of a layer that are kept, solved at the first call. Only where cache_ is in use.
-  [[nodiscard]] const Joints& kept(int layer);
-  void load(int layer, Block& block);
-  void load_values(const double* row, Block& block) const;
-  [[nodiscard]] bool may_connect(int layer, const Block& from, int label, int chunk, const Block& to, int other) const;
+  [[nodiscard]] std::size_t mark(int label, int chunk) const {
+    return static_cast<std::size_t>(label) * static_cast<std::size_t>(chunks()) + static_cast<std::size_t>(chunk);
+  }
+  [[nodiscard]] std::size_t cell_index(int layer, int label, int chunk) const {
+    return static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->labels() * chunks()) + mark(label, chunk);
+  }
+  double& cell_value(int layer, int slot);  // makes the cell
+
+  Joints& joints(int layer, Block& block);
+  void want(Joints& joints, int elbow, int chunk);
+  void clear(int layer, Block& block);
   void relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other, double* best);
-  void relax_chunk(int step_layer, const Block& from, int label, int chunk, const Block& to, double* row);
-  void relax_layer(int step_layer, const Block& from, const Block& to, double* row);
+  void relax(int step_layer, Block& from, const Block& to);
+  [[nodiscard]] bool may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const;
+  [[nodiscard]] bool elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const;
+  void mark_reach(int step_layer, const Block& to, Block& from);
+  void mark_dependents(const Marks& changed, Block& block) const;
+  void bar(Block& block) const;
+  void cut(Block& block) const;
+  void settle(Block& block);
+  void store(const Block& block);
+  void load(int layer, Block& block);
   [[nodiscard]] double relax_one(int layer, int slot);
-  [[nodiscard]] double relax_one_forward(int layer, int slot, const std::vector<double>& value);
-  void drop_invalid(const Block& block, double* row) const;
-  Marks reached_by(const Marks& changed, int layer, const Block& from, const Block& to) const;
+  [[nodiscard]] double relax_one_forward(int layer, int slot, const Block& before);
+  void relax_removed(Block& block);
+  bool sweep_once(const std::function<bool()>& stop);
+  void raise_limit();
+  bool make_exact(const std::function<bool()>& stop);
+  void repair_once();
 
   const Lattice* lattice_;
+  bool bounded_;
+  std::unique_ptr<ChordBound> chords_;  // made by the first bounded sweep
+  double limit_ = kUnreachable;
   int goal_ = 0;
-  std::vector<double> g_;
+  std::vector<std::uint32_t> cell_;  // [layer][label][chunk] -> cells_; 0: unreachable
+  std::vector<Cell> cells_;
   std::vector<Verdict> verdict_;
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_verdict_;
   std::map<int, std::vector<std::pair<int, int>>> removed_edges_;  // layer -> (a, b)
   std::map<int, Pending> pending_;
-  std::vector<int> separating_;                 // joints whose intervals tell labels apart
   std::vector<std::unique_ptr<Joints>> cache_;  // by layer; empty where joints are not kept
-  Block block_[2];
+  std::array<std::unique_ptr<Block>, 2> block_;
+  LayerNodes scratch_;
   std::int64_t ik_nodes_ = 0, edges_ = 0;
 };
 

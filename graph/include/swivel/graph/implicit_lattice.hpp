@@ -42,7 +42,7 @@ class ImplicitLattice {
   double slack_;
   // Scratch of the one search that walks this graph; the graph itself has no state.
   mutable std::vector<Edge> edges_;
-  mutable LayerNodes here_, next_;
+  mutable LayerNodes next_;
 };
 
 // Boost.Graph interface, found by argument-dependent look-up.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+/// Lower bounds of the cost from layer 0 to the nodes of every kStride-th layer and of the last. An edge's cost is a norm of the
+/// joints' move, so a path between two layers costs at least the norm of the chord between its ends: a dynamic program over chords
+/// alone, with the window of kStride steps and any change of label, bounds every path's cost from below and asks for the joints of
+/// one layer in kStride. In single precision, less what that may lose. Memory: half a byte per lattice node.
+class ChordBound {
+ public:
+  static constexpr int kStride = 8;
+  explicit ChordBound(const Lattice& lattice);
+
+  /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
+  [[nodiscard]] double best() const { return best_; }
+  /// [slot], or null where the layer has no bounds.
+  [[nodiscard]] const float* row(int layer) const;
+  [[nodiscard]] std::int64_t ik_nodes() const { return ik_nodes_; }
+
+ private:
+  int last_ = 0, width_ = 0;
+  double best_ = 0;
+  std::vector<float> rows_;  // [coarse layer][slot]
+  std::int64_t ik_nodes_ = 0;
+};
+
+}  // namespace swivel

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Leaving out what cannot matter changes no answer: the bounded sweep against the whole one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/relax.hpp"
+#include "robots.hpp"
+#include "swivel/core/isa.hpp"
+#include "swivel/graph/implicit_lattice.hpp"
+#include "swivel/graph/path_first.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+Problem random_problem(const TestRobot& robot, const Chain& chain, Random& random, int layers) {
+  Problem problem = problem_for(robot);
+  const Config q0 = random_config(chain, random);
+  Config q1 = q0;
+  for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.5, 0.5);
+  problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
+  const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+  problem.resolution = {.ds = length / layers, .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3), .dalpha = 10};
+  problem.limits.arm_slope = random.uniform(1, 3) * problem.resolution.dphi / problem.resolution.ds;
+  problem.limits.joint_step = random.uniform(0.2, 0.6);
+  problem.cost.metric = std::array{CostMetric::kL2, CostMetric::kMax, CostMetric::kTime}[static_cast<std::size_t>(random.below(3))];
+  if (random.coin())
+    for (double& weight : problem.cost.weights) weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
+  if (random.coin()) problem.start = q0;
+  return problem;
+}
+
+/// Cost from layer 0 to every node, forward over every edge of the lattice.
+std::vector<std::vector<double>> cost_to_come(CostToGo& whole) {
+  const Lattice& lattice = whole.lattice();
+  std::vector<std::vector<double>> cost(static_cast<std::size_t>(lattice.layers()),
+                                        std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
+  const ImplicitLattice graph(whole, kUnreachable);
+  for (int slot = 0; slot < lattice.width(); ++slot)
+    if (whole.at(0, slot) != kUnreachable) cost[0][static_cast<std::size_t>(slot)] = 0;
+  for (int layer = 0; layer + 1 < lattice.layers(); ++layer)
+    for (int slot = 0; slot < lattice.width(); ++slot) {
+      const double done = cost[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+      if (done == kUnreachable || whole.at(layer, slot) == kUnreachable) continue;
+      for (const auto& edge : graph.expand(graph.vertex(layer, slot))) {
+        double& there = cost[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(graph.slot_of(edge.target))];
+        there = std::min(there, done + edge.cost);
+      }
+    }
+  return cost;
+}
+
+TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
+  Random random(seed("Bounded"));
+  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0;
+  std::int64_t whole_ik = 0, bounded_ik = 0;
+  double tightest = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
+      const Problem problem = random_problem(robot, arm.chain, random, 2 + random.below(30));
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+      const Lattice lattice(arm.chain, srs, path, problem);
+      CostToGo whole(lattice), bounded(lattice, CostToGo::Extent::kBounded);
+      whole.sweep(lattice.layers() - 1);
+      bounded.sweep(lattice.layers() - 1);
+      ++problems;
+      whole_ik += whole.ik_nodes();
+      bounded_ik += bounded.ik_nodes();
+
+      const ChordBound chords(lattice);
+      const auto come = cost_to_come(whole);
+      ASSERT_LE(chords.best(), whole.best());
+      for (int layer = 0; layer < lattice.layers(); ++layer)
+        for (int slot = 0; const float* row = chords.row(layer) ? chords.row(layer) + slot : nullptr; ++slot) {
+          if (slot == lattice.width()) break;
+          const double cost = come[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
+          ASSERT_LE(*row, cost) << robot.name << " trial " << trial << " layer " << layer << " slot " << slot;
+          if (cost != kUnreachable && cost > 0) {
+            ++bounds;
+            tightest = std::max(tightest, *row / cost);
+          }
+        }
+
+      for (int round = 0; round < 12; ++round) {
+        const std::string what = robot.name + " trial " + std::to_string(trial) + " round " + std::to_string(round) + " metric " +
+                                 std::to_string(static_cast<int>(problem.cost.metric));
+        ++rounds;
+        ASSERT_EQ(bounded.best(), whole.best()) << what;
+        std::int64_t expansions = 0, same_expansions = 0;
+        const SlotPath best = best_path(whole, expansions);
+        ASSERT_EQ(best_path(bounded, same_expansions), best) << what;
+        ASSERT_EQ(expansions, same_expansions) << what;
+        if (best.empty()) {
+          ++ended;
+          break;
+        }
+        for (int layer = 0; layer < lattice.layers(); ++layer)
+          ASSERT_EQ(bounded.at(layer, best[static_cast<std::size_t>(layer)]),
+                    whole.at(layer, best[static_cast<std::size_t>(layer)]));
+        const double before = whole.best();
+        const int layer = random.below(lattice.layers()), slot = best[static_cast<std::size_t>(layer)];
+        const int kind = random.below(4);
+        const int reach = random.below(lattice.angles() / 2);
+        for (CostToGo* togo : {&whole, &bounded}) {
+          if (kind == 0 && layer > 0) {
+            togo->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
+          } else if (kind == 1) {
+            togo->remove_alike(layer, slot, kOnArmAngle | kOnElbow);
+          } else {  // a blob of arm angles, over some layers
+            for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
+              for (int k = -reach; k <= reach; ++k) {
+                const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
+                togo->remove_node(i, lattice.label_of(slot) * n + j);
+              }
+          }
+          togo->repair();
+        }
+        changed += whole.best() != before;
+      }
+      if (whole.best() == kUnreachable) {
+        const int deepest = whole.deepest_reachable();
+        ASSERT_EQ(bounded.deepest_reachable(), deepest);
+        if (deepest < 0) continue;
+        whole.sweep(deepest);
+        bounded.sweep(deepest);
+        ASSERT_EQ(bounded.best(), whole.best());
+      }
+    }
+  }
+  std::printf(
+      "%d problems, %d rounds, optimum changed %d times, %d ended without a path; %d bounds held, up to %.4f of the cost; first "
+      "sweeps "
+      "solved %.1f %% of the whole's nodes\n",
+      problems, rounds, changed, ended, bounds, tightest, 100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik));
+  EXPECT_GT(rounds, 3 * problems);
+  EXPECT_GT(changed, problems);
+  EXPECT_GT(ended, 3);
+  EXPECT_GT(bounds, 1000);
+  EXPECT_GT(tightest, 0.99);
+}
+
+TEST(Kernels, EveryVectorUnitRelaxesToTheScalarBits) {
+  Random random(seed("RelaxKernels"));
+  std::vector<const RelaxKernels*> units{&scalar_relax_kernels()};
+#ifdef SWIVEL_X86_KERNELS
+  if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_relax_kernels());
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    units.push_back(&avx512_relax_kernels());
+#endif
+  int runs = 0;
+  for (int trial = 0; trial < trials(2000); ++trial) {
+    const int n = 1 + random.below(40), offsets = 1 + random.below(9);
+    const auto length = static_cast<std::size_t>(n + offsets);
+    const auto random_values = [&](auto sample) {
+      std::vector<double> values(length);
+      for (double& x : values) x = sample();
+      return values;
+    };
+    std::array<std::vector<double>, kDof> from, to;
+    for (auto* joints : {&from, &to})
+      for (auto& joint : *joints) joint = random_values([&] { return random.uniform(-7, 7); });
+    const auto value = random_values([&] { return random.coin(0.2) ? kUnreachable : random.uniform(0, 5); });
+    RelaxTask task{.n = n,
+                   .offsets = offsets,
+                   .from = {},
+                   .to = {},
+                   .value = value.data(),
+                   .best = nullptr,
+                   .scale = {},
+                   .bound = {},
+                   .turn = {},
+                   .metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax,
+                   .wraps = random.coin()};
+    ChordTask chord{.n = n,
+                    .offsets = offsets,
+                    .from = {},
+                    .to = {},
+                    .value = nullptr,
+                    .best = nullptr,
+                    .scale = {},
+                    .turn = {},
+                    .metric = task.metric,
+                    .wraps = task.wraps};
+    std::array<std::vector<float>, kDof> chord_from, chord_to;
+    const std::vector<float> chord_value(value.begin(), value.end());
+    for (std::size_t j = 0; j < kDof; ++j) {
+      chord_from[j].assign(from[j].begin(), from[j].end());
+      chord_to[j].assign(to[j].begin(), to[j].end());
+      task.from[j] = from[j].data();
+      task.to[j] = to[j].data();
+      chord.from[j] = chord_from[j].data();
+      chord.to[j] = chord_to[j].data();
+      task.scale[j] = random.uniform(0, 3);
+      chord.scale[j] = static_cast<float>(task.scale[j]);
+      task.bound[j] = random.uniform(1, 9);
+      task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
+      chord.turn[j] = static_cast<float>(task.turn[j]);
+    }
+    chord.value = chord_value.data();
+    std::vector<std::vector<double>> best;
+    std::vector<std::vector<float>> chord_best;
+    for (const RelaxKernels* unit : units) {
+      best.emplace_back(static_cast<std::size_t>(n), kUnreachable);
+      chord_best.emplace_back(static_cast<std::size_t>(n), std::numeric_limits<float>::infinity());
+      task.best = best.back().data();
+      chord.best = chord_best.back().data();
+      unit->relax(task);
+      unit->chord(chord);
+      ASSERT_EQ(best.back(), best.front());
+      ASSERT_EQ(chord_best.back(), chord_best.front());
+      ++runs;
+    }
+    // A chord allows every step, so it is nowhere dearer, and single precision loses little.
+    for (std::size_t k = 0; k < best[0].size(); ++k) ASSERT_LE(chord_best[0][k], best[0][k] + 1e-4);
+  }
+  std::printf("%zu units, %d runs\n", units.size(), runs);
+}
+
+}  // namespace
+}  // namespace swivel
