@@ -313,12 +313,12 @@ void CostToGo::store(const Block& block) {
     }
 }
 
-void CostToGo::load(int layer, Block& block) {
+void CostToGo::load(int layer, const Marks& columns, Block& block) {
   clear(layer, block);
   const int n = lattice_->angles();
   for (int label = 0; label < lattice_->labels(); ++label)
     for (int chunk = 0; chunk < chunks(); ++chunk) {
-      const std::uint32_t cell = cell_[cell_index(layer, label, chunk)];
+      const std::uint32_t cell = columns[static_cast<std::size_t>(chunk)] ? cell_[cell_index(layer, label, chunk)] : 0;
       if (cell == 0) continue;
       want(*block.joints, lattice_->elbow_of(label), chunk);
       std::copy_n(cells_[cell].begin(), std::min(kChunk, n - chunk * kChunk),
@@ -370,7 +370,7 @@ void CostToGo::raise_limit() {
   if (chords_->row(0)) {
     const double least = chords_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
     const double passed = limit_ == kUnreachable ? -1 : limit_;
-    for (const double share : {0.01, 0.08, 0.4, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
+    for (const double share : {0.01, 0.2, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
       limit_ = least * (1 + share);
       if (limit_ > passed && (found == kUnreachable || found <= limit_)) return;
     }
@@ -480,21 +480,25 @@ bool CostToGo::repair(const std::function<bool()>& stop) {
   return make_exact(stop);
 }
 
-void CostToGo::mark_dependents(const Marks& changed, Block& block) const {
-  const int n = lattice_->angles(), window = lattice_->window(), count = chunks();
-  Marks columns(static_cast<std::size_t>(count), 0);  // whose window holds a changed chunk of any label
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int c = 0; c < count; ++c)
-      if (changed[mark(label, c)])
-        for (int j = c * kChunk - window; j < std::min(n, (c + 1) * kChunk) + window; ++j)
-          columns[static_cast<std::size_t>((j % n + n) % n / kChunk)] = 1;
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int c = 0; c < count; ++c) block.todo[mark(label, c)] = columns[static_cast<std::size_t>(c)] & block.live[mark(label, c)];
+CostToGo::Marks CostToGo::widened(const Marks& columns) const {
+  const int n = lattice_->angles(), window = lattice_->window();
+  Marks result(columns.size(), 0);
+  for (int c = 0; c < chunks(); ++c) {
+    if (!columns[static_cast<std::size_t>(c)]) continue;
+    const int first = c * kChunk - window, last = std::min(n, (c + 1) * kChunk) - 1 + window;
+    if (last - first + 1 >= n) return Marks(columns.size(), 1);
+    for (int j = first, next = 0; j <= last; j += next) {
+      const int angle = j < 0 ? j + n : j >= n ? j - n : j, column = angle / kChunk;
+      result[static_cast<std::size_t>(column)] = 1;
+      next = std::min(n, (column + 1) * kChunk) - angle;
+    }
+  }
+  return result;
 }
 
 void CostToGo::repair_once() {
   const int n = lattice_->angles();
-  Marks changed(mark(lattice_->labels(), 0), 0), here_changed(changed.size());
+  Marks changed(static_cast<std::size_t>(chunks()), 0), here_changed(changed.size());  // columns, of any label
   bool any = false;
   Block* next = block_[0].get();
   Block* here = block_[1].get();
@@ -506,15 +510,16 @@ void CostToGo::repair_once() {
       double& cell = cell_value(layer, slot);
       if (cell == value) return;
       cell = value;
-      here_changed[mark(lattice_->label_of(slot), lattice_->angle_of(slot) / kChunk)] = 1;
+      here_changed[static_cast<std::size_t>(lattice_->angle_of(slot) / kChunk)] = 1;
       here_any = true;
     };
     if (any && layer == 0 && lattice_->has_start()) {
       if (at(0, lattice_->start_slot()) != kUnreachable) set(lattice_->start_slot(), relax_one(0, lattice_->start_slot()));
     } else if (any) {
-      load(layer + 1, *next);
-      load(layer, *here);
-      mark_dependents(changed, *here);
+      const Marks dependent = widened(changed);
+      load(layer + 1, widened(dependent), *next);
+      load(layer, dependent, *here);
+      here->todo = here->live;
       relax(layer, *here, *next);
       bar(*here);
       relax_removed(*here);

@@ -107,7 +107,8 @@ class Search {
     };
     for (const auto& [layer, slot] : failed) suspect_neighbours(layer, slot);
     std::vector<NodeQuestion> questions;
-    for (int left = options_.grow; left > 0 && !suspects.empty() && !validity_.stopped();) {
+    const auto fineness = static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
+    for (int left = options_.grow + fineness; left > 0 && !suspects.empty() && !validity_.stopped();) {
       questions.clear();
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
         const auto [layer, slot] = suspects.front();

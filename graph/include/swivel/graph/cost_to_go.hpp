@@ -85,7 +85,7 @@ class CostToGo {
   /// A layer's values, ready to be relaxed against or being relaxed.
   struct Block;
   using Cell = std::array<double, kChunk>;
-  using Marks = std::vector<std::uint8_t>;  // [label][chunk]
+  using Marks = std::vector<std::uint8_t>;  // [label][chunk], or [chunk]: a column of all labels
 
   struct EdgeKey {
     std::int64_t node;
@@ -124,12 +124,13 @@ class CostToGo {
   [[nodiscard]] bool may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const;
   [[nodiscard]] bool elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const;
   void mark_reach(int step_layer, const Block& to, Block& from);
-  void mark_dependents(const Marks& changed, Block& block) const;
+  /// Chunks of the circle that lie in the windows of these.
+  [[nodiscard]] Marks widened(const Marks& columns) const;
   void bar(Block& block) const;
   void cut(Block& block) const;
   void settle(Block& block);
   void store(const Block& block);
-  void load(int layer, Block& block);
+  void load(int layer, const Marks& columns, Block& block);
   [[nodiscard]] double relax_one(int layer, int slot);
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Block& before);
   void relax_removed(Block& block);

@@ -24,7 +24,9 @@ struct SearchOutcome {
 
 struct PathFirstOptions {
   int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
-  int grow = 64;  ///< most questions about the neighbours of failed nodes before the next path is sought
+  /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
+  /// obstacle blocks more nodes of a finer lattice, and a round costs more.
+  int grow = 64, grow_one_in = 512;
 };
 
 struct SearchCounters {
