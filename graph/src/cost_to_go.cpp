@@ -427,9 +427,12 @@ bool CostToGo::sweep_once(const std::function<bool()>& stop) {
 void CostToGo::relax_removed(Block& block) {
   const auto removed = removed_edges_.find(block.layer);
   if (removed == removed_edges_.end()) return;
-  for (const auto& [a, b] : removed->second)
-    if (block.live[mark(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)])
-      block.row[static_cast<std::size_t>(a)] = relax_one(block.layer, a);
+  for (const auto& [a, edges] : removed->second.tails) {
+    if (!block.live[mark(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)]) continue;
+    double& value = block.row[static_cast<std::size_t>(a)];
+    const auto gives_value = [&](const HalfEdge& edge) { return edge.cost + at(block.layer + 1, edge.other) == value; };
+    if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(block.layer, a);
+  }
 }
 
 double CostToGo::best() const {
@@ -471,7 +474,9 @@ void CostToGo::keep_edge(int layer, int a, int b) {
 
 void CostToGo::remove_edge(int layer, int a, int b) {
   edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kRemoved;
-  removed_edges_[layer].emplace_back(a, b);
+  const double cost = lattice_->edge_cost(lattice_->delta(config(layer, a), config(layer + 1, b)));
+  removed_edges_[layer].tails[a].push_back({b, cost});
+  removed_edges_[layer].heads[b].push_back({a, cost});
   pending_[layer].tails.push_back(a);
 }
 
@@ -593,6 +598,11 @@ int CostToGo::deepest_reachable() {
       want(*here->joints, lattice_->elbow_of(lattice_->label_of(slot)), begin / kChunk);
       row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, *before);
     };
+    const auto reaches = [&](const HalfEdge& edge, double value) {
+      const int n_padded = n + 2 * lattice_->window(), label = lattice_->label_of(edge.other);
+      const int place = label * n_padded + lattice_->window() + lattice_->angle_of(edge.other);
+      return edge.cost + before->value[static_cast<std::size_t>(place)] == value;
+    };
     if (layer == 1 && lattice_->has_start()) {
       const Lattice::Run run = lattice_->successors(0, lattice_->start_slot());
       for (int label = 0; label < lattice_->labels(); ++label)
@@ -603,8 +613,11 @@ int CostToGo::deepest_reachable() {
       bar(*here);
       const auto removed = removed_edges_.find(layer - 1);
       if (removed != removed_edges_.end())
-        for (const auto& [a, b] : removed->second)
-          if (here->live[mark(lattice_->label_of(b), lattice_->angle_of(b) / kChunk)]) step_one(b);
+        for (const auto& [b, edges] : removed->second.heads)
+          if (here->live[mark(lattice_->label_of(b), lattice_->angle_of(b) / kChunk)] &&
+              std::any_of(edges.begin(), edges.end(),
+                          [&](const HalfEdge& edge) { return reaches(edge, here->row[static_cast<std::size_t>(b)]); }))
+            step_one(b);
     }
     settle(*here);
     if (here->labels.empty()) break;

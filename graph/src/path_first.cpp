@@ -57,7 +57,8 @@ class Search {
         nodes.push_back(question(i, path[static_cast<std::size_t>(i)]));
     fail_first_.order(nodes);
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
-      const std::vector<std::pair<int, int>> failed = ask(std::span(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
+      const std::vector<std::pair<int, int>> failed =
+          ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
       if (validity_.stopped()) return false;
       for (const auto& [layer, slot] : failed) fail_first_.failed(layer);
       if (!failed.empty()) {
@@ -72,24 +73,15 @@ class Search {
       if (togo_.edge_verdict(i, a, b) == Verdict::kUnknown) edges.push_back({i, a, b, question(i, a).q, question(i + 1, b).q});
     }
     fail_first_.order(edges);
-    std::vector<std::uint8_t> answers;
     for (std::size_t first = 0; first < edges.size(); first += batch()) {
-      const auto asked = std::span<const EdgeQuestion>(edges).subspan(first, std::min(batch(), edges.size() - first));
-      answers.assign(asked.size(), 0);
-      validity_.edges(asked, answers);
+      const std::vector<EdgeQuestion> failed =
+          ask(std::span<const EdgeQuestion>(edges).subspan(first, std::min(batch(), edges.size() - first)));
       if (validity_.stopped()) return false;
-      bool all = true;
-      for (std::size_t k = 0; k < asked.size(); ++k) {
-        const EdgeQuestion& x = asked[k];
-        if (answers[k]) {
-          togo_.keep_edge(x.layer, x.a, x.b);
-          continue;
-        }
-        togo_.remove_edge(x.layer, x.a, x.b);
-        fail_first_.failed(x.layer);
-        all = false;
+      for (const EdgeQuestion& edge : failed) fail_first_.failed(edge.layer);
+      if (!failed.empty()) {
+        grow(failed);
+        return false;
       }
-      if (!all) return false;
     }
     return true;
   }
@@ -107,8 +99,7 @@ class Search {
     };
     for (const auto& [layer, slot] : failed) suspect_neighbours(layer, slot);
     std::vector<NodeQuestion> questions;
-    const auto fineness = static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
-    for (int left = options_.grow + fineness; left > 0 && !suspects.empty() && !validity_.stopped();) {
+    for (int left = most_grown(); left > 0 && !suspects.empty() && !validity_.stopped();) {
       questions.clear();
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
         const auto [layer, slot] = suspects.front();
@@ -119,8 +110,52 @@ class Search {
           questions.push_back(question(layer, slot));
       }
       left -= static_cast<int>(questions.size());
-      for (const auto& [layer, slot] : ask(questions)) suspect_neighbours(layer, slot);
+      for (const auto& [layer, slot] : ask(std::span<const NodeQuestion>(questions))) suspect_neighbours(layer, slot);
     }
+  }
+
+  /// The same for edges: those beside a failing edge, and its continuations along the path, often fail as it does.
+  void grow(const std::vector<EdgeQuestion>& failed) {
+    struct Suspect {
+      int layer, a, b;
+      bool operator==(const Suspect&) const = default;
+    };
+    std::deque<Suspect> suspects;
+    const auto shifted = [&](int slot, int by) {
+      const int n = lattice_.angles();
+      return lattice_.label_of(slot) * n + (lattice_.angle_of(slot) + by + n) % n;
+    };
+    const auto suspect_neighbours = [&](const EdgeQuestion& x) {
+      constexpr std::pair<int, int> kShifts[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}};
+      for (const auto& [da, db] : kShifts) suspects.push_back({x.layer, shifted(x.a, da), shifted(x.b, db)});
+      if (x.layer > 0) suspects.push_back({x.layer - 1, x.a, x.b});
+      if (x.layer + 1 < togo_.goal_layer()) suspects.push_back({x.layer + 1, x.a, x.b});
+    };
+    for (const EdgeQuestion& edge : failed) suspect_neighbours(edge);
+    std::vector<Suspect> asked;
+    std::vector<EdgeQuestion> questions;
+    for (int left = most_grown(); left > 0 && !suspects.empty() && !validity_.stopped();) {
+      asked.clear();
+      questions.clear();
+      while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+        const Suspect x = suspects.front();
+        suspects.pop_front();
+        if (togo_.at(x.layer, x.a) == kUnreachable || togo_.at(x.layer + 1, x.b) == kUnreachable ||
+            togo_.node_verdict(x.layer, x.a) == Verdict::kRemoved || togo_.node_verdict(x.layer + 1, x.b) == Verdict::kRemoved ||
+            togo_.edge_verdict(x.layer, x.a, x.b) != Verdict::kUnknown || !lattice_.in_window(x.layer, x.a, x.b) ||
+            std::find(asked.begin(), asked.end(), x) != asked.end())
+          continue;
+        const EdgeQuestion edge{x.layer, x.a, x.b, togo_.config(x.layer, x.a), togo_.config(x.layer + 1, x.b)};
+        if (!lattice_.step_allowed(x.layer, lattice_.delta(edge.qa, edge.qb))) continue;
+        asked.push_back(x);
+        questions.push_back(edge);
+      }
+      left -= static_cast<int>(questions.size());
+      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions))) suspect_neighbours(edge);
+    }
+  }
+  [[nodiscard]] int most_grown() const {
+    return options_.grow + static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
   }
 
   /// Asks about nodes, keeps or removes them, returns those that failed.
@@ -140,6 +175,23 @@ class Search {
     return failed;
   }
 
+  std::vector<EdgeQuestion> ask(std::span<const EdgeQuestion> questions) {
+    std::vector<EdgeQuestion> failed;
+    edge_answers_.assign(questions.size(), 0);
+    validity_.edges(questions, edge_answers_);
+    if (validity_.stopped()) return failed;
+    for (std::size_t k = 0; k < questions.size(); ++k) {
+      const EdgeQuestion& x = questions[k];
+      if (edge_answers_[k]) {
+        togo_.keep_edge(x.layer, x.a, x.b);
+      } else {
+        togo_.remove_edge(x.layer, x.a, x.b);
+        failed.push_back(x);
+      }
+    }
+    return failed;
+  }
+
   NodeQuestion question(int layer, int slot) { return {layer, slot, togo_.config(layer, slot)}; }
   [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
 
@@ -149,6 +201,7 @@ class Search {
   PathFirstOptions options_;
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
+  std::vector<std::uint8_t> edge_answers_;
 };
 
 }  // namespace

@@ -99,6 +99,13 @@ class CostToGo {
       return h ^ (h >> 29);
     }
   };
+  struct HalfEdge {
+    int other;  // slot
+    double cost;
+  };
+  struct RemovedEdges {
+    std::map<int, std::vector<HalfEdge>> tails, heads;  // by slot
+  };
   struct Pending {
     std::vector<int> nodes;  // removed slots
     std::vector<int> tails;  // slots that lost an edge
@@ -148,7 +155,7 @@ class CostToGo {
   std::vector<Cell> cells_;
   std::vector<Verdict> verdict_;
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_verdict_;
-  std::map<int, std::vector<std::pair<int, int>>> removed_edges_;  // layer -> (a, b)
+  std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::map<int, Pending> pending_;
   std::vector<std::unique_ptr<Joints>> cache_;  // by layer; empty where joints are not kept
   std::array<std::unique_ptr<Block>, 2> block_;
