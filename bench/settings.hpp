@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace swivel::bench {
+
+struct Setting {
+  const char* name;
+  double ds, dphi;  ///< m, rad
+};
+/// The four resolutions of the paper's Table I, and two finer ones.
+inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},   {"#2", 0.005, 0.2},    {"#3", 0.02, 0.05},
+                                        {"#4", 0.005, 0.05}, {"fine", 0.002, 0.02}, {"finest", 0.001, 0.01}};
+inline constexpr int kPaperSettings = 4;
+
+}  // namespace swivel::bench
