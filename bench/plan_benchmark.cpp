@@ -47,10 +47,10 @@ struct EagerTimes {
 void run(benchmark::State& state, Problem problem, const Case& what, const bench::Setting& setting) {
   const PreparedRobot robot(problem);
   // FCL's trees of meshes belong to the robot and are built at its first question.
-  problem.resolution = {.ds = bench::kSettings[0].ds, .dphi = bench::kSettings[0].dphi};
+  bench::set_resolution(problem, bench::kSettings[0]);
   problem.limits.edges = EdgeMode::kNodes;
   static_cast<void>(plan(robot, problem, options_for(PlannerKind::kEagerDp, 1)));
-  problem.resolution = {.ds = setting.ds, .dphi = setting.dphi};
+  bench::set_resolution(problem, setting);
   problem.limits.edges = what.edges;
   EagerTimes eager;
   if (what.compare) eager.measure(robot, problem);
