@@ -66,6 +66,8 @@ struct Fixture {
       if (q && lattice.in_window(a.layer, a.slot, b) && lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
         edges.push_back({a, b, *q});
     }
+    World::Query query(world);  // FCL's trees of meshes are built at its first question
+    for (const Node& x : nodes) static_cast<void>(query.first_below(x.q, problem.limits.clearance));
   }
   Fixture(const Fixture&) = delete;
 
