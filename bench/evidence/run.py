@@ -56,7 +56,17 @@ def pieces(data, quick):
                   "--benchmark_filter=^(ik/layer|ik/single|sweep)", SWIVEL_FORCE_ISA=unit)
 
 
-STEPS = {step.__name__: step for step in (experiments, table1, plans, pieces)}
+def trace(data, quick):
+    """A plan whose path is found wanting several times."""
+    run([ROOT / "build/release/cli/swivel", "plan", ROOT / "data/problems/experiment_c.yaml", "--seed", "1", "--episode", "13", "--planner", "parallel", "--threads", "2",
+         "--trace", data / "trace.json"], data / "trace.log")
+    if all(shutil.which(program) for program in ("chromium", "npm")):
+        run([ROOT / "bench/evidence/trace_picture", data / "trace.json", data / "trace.png"], data / "trace_picture.log")
+    else:
+        print("trace: docs/figures/trace.png is left as it is: chromium and npm are needed to draw it")
+
+
+STEPS = {step.__name__: step for step in (experiments, table1, plans, pieces, trace)}
 
 
 def main():
@@ -79,6 +89,8 @@ def main():
         start = time.monotonic()
         STEPS[name](data, arguments.quick)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
+    if (data / "trace.png").exists():
+        shutil.copy(data / "trace.png", figures)
     written = plots.draw(data, figures, ROOT) + tables.fill(data, [documents / "README.md", documents / "docs/performance.md"])
     print(f"all: {time.monotonic() - begin:.0f} s; wrote {', '.join(str(file.relative_to(ROOT)) for file in written)}")
 
