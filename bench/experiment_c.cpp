@@ -12,6 +12,9 @@
 #include <string>
 
 #include "baselines.hpp"
+#ifdef SWIVEL_OMPL
+#include "constrained_sampling.hpp"
+#endif
 #include "context.hpp"
 #include "settings.hpp"
 #include "swivel/core/campaign.hpp"
@@ -23,6 +26,9 @@ using namespace swivel;
 using nlohmann::json;
 
 constexpr std::uint64_t kSeed = 1;
+// OMPL's planners use up their time on most episodes, so they get the first of them only.
+[[maybe_unused]] constexpr std::uint64_t kSampledEpisodes = 20;
+[[maybe_unused]] constexpr double kSampledSeconds = 2;
 
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -100,6 +106,20 @@ json track(const PreparedRobot& robot, const Problem& problem, bool possible, co
   return to_json(result, ms_since(begin), robot, problem, possible);
 }
 
+#ifdef SWIVEL_OMPL
+json sample(const PreparedRobot& robot, const Problem& problem, bool possible, baselines::Manifold manifold) {
+  if (!problem.start) return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
+  const baselines::ConstrainedResult result = baselines::plan_constrained(robot, problem, manifold, kSampledSeconds);
+  json answer{{"status", result.finished ? "solved" : "failed"},
+              {"ms", result.ms},
+              {"reason", result.reason},
+              {"connected", result.connected},
+              {"possible_from_start", possible}};
+  if (result.finished) answer["error_mm"] = result.error_mm, answer["error_max_mm"] = result.error_max_mm;
+  return answer;
+}
+#endif
+
 json run(const Problem& base, std::uint64_t episodes) {
   const PreparedRobot robot(base);
   std::vector<Method> planned;
@@ -115,6 +135,7 @@ json run(const Problem& base, std::uint64_t episodes) {
                        .threads = planner == PlannerKind::kParallel ? 2 : 1,
                        .edges = EdgeMode::kContinuous});
   Method jacobian{.name = "jacobian", .setting = ""}, null_space{.name = "null_space", .setting = ""};
+  Method projected{.name = "ompl_projected", .setting = ""}, tangent_bundle{.name = "ompl_tangent_bundle", .setting = ""};
   for (std::uint64_t k = 0; k < episodes; ++k) {
     const Problem problem = episode_problem(base, kSeed, k);
     for (Method& method : planned) {
@@ -131,11 +152,17 @@ json run(const Problem& base, std::uint64_t episodes) {
         track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_jacobian(r, p); }));
     null_space.episodes.push_back(
         track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_null_space(r, p); }));
+#ifdef SWIVEL_OMPL
+    if (k < kSampledEpisodes) {
+      projected.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kProjected));
+      tangent_bundle.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kTangentBundle));
+    }
+#endif
     std::fprintf(stderr, "\repisode %llu of %llu", static_cast<unsigned long long>(k + 1),
                  static_cast<unsigned long long>(episodes));
   }
   std::fprintf(stderr, "\n");
-  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space)});
+  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space), std::move(projected), std::move(tangent_bundle)});
   json rows = json::array();
   for (const Method& method : planned)
     rows.push_back({{"method", method.name},

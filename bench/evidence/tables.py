@@ -78,6 +78,8 @@ def table1(data):
         per_cent = lambda n: f"{100 * n / len(episodes):.0f}"
         paper = PAPER.get(method) or (PAPER.get(setting) if method == "eager" else None) or (None, None, None)
         local = method not in ("eager", "eager_dp", "lazy", "parallel")
+        if len(episodes) < len(feasible):
+            name += f", first {len(episodes)} poses"
         rows.append([name, RESOLUTION.get(setting, "–"), f"{number(mean(episodes, 'ms'))} ({number(median(episodes, 'ms'))})", number(mean(episodes, "error_mm")),
                      per_cent(counts["solved"]), per_cent(counts["infeasible"]), per_cent(counts["start"]) if local else "–", per_cent(counts["failed"]),
                      number(paper[0]), number(paper[1]), "–" if paper[2] is None else str(paper[2])])
@@ -102,6 +104,7 @@ def findings(data):
     nodes = {s: mean(eager[s], "nodes") for s in PAPER_SETTINGS}
     growth = slope([(nodes[s], mean(eager[s], "ms")) for s in PAPER_SETTINGS])
     paper = slope([(nodes[s], PAPER[s][0]) for s in PAPER_SETTINGS])
+    sampled = [(name, one.episodes(method)) for method, name in (("ompl_projected", "projected space"), ("ompl_tangent_bundle", "tangent bundle")) if one.episodes(method)]
     same = all([(e["status"], e["reason"]) for e in one.episodes(p, s)] == [(e["status"], e["reason"]) for e in eager[s]]
                for p in ("eager_dp", "lazy", "parallel") for s in PAPER_SETTINGS)
     reasons = {s: Counter(e["reason"] for e in one.episodes("lazy", s) if e["status"] != "solved") for s in SETTINGS}
@@ -114,8 +117,16 @@ def findings(data):
         f"- Time of `eager` grows with the nodes to the power {growth:.2f} over #1 to #4; the paper's figures, over the same nodes, to {paper:.2f}.",
         f"- `eager` over `lazy`, median of the episodes' own ratios: {', '.join(f'{s} {number(ratio(one, s), 2)}' for s in PAPER_SETTINGS)}.",
     ]
+    text += [f"- OMPL, {name}: connected start and goal in {sum(bool(e.get('connected')) for e in episodes)} of {len(episodes)} episodes; {why(episodes)}." for name, episodes in sampled]
+    text += [f"- {name}: {why(one.episodes(method))}." for method, name in (("jacobian", "Jacobian pseudo-inverse"), ("null_space", "Null-space projection"))]
     table = markdown(["what stops every path", *SETTINGS], [[reason.replace("arm_left_", ""), *(str(reasons[s][reason]) for s in SETTINGS)] for reason in names])
     return "\n".join(text) + ("\n\n" + table if names else "")
+
+
+def why(episodes):
+    """What ended a method, most frequent first."""
+    counts = Counter(e["reason"] or "solved" for e in episodes)
+    return ", ".join(f"{reason} {count}" for reason, count in counts.most_common())
 
 
 def ratio(one, setting, base="eager"):
@@ -174,6 +185,12 @@ def pieces(data):
     return "\n\n".join((vector, single, pair))
 
 
+def pgo(data):
+    result = load(data / "pgo.json")
+    return result and (f"Planning time of `pgo-use` over `release`: {result['median']:.3f} (95 % bounds {result['low']:.3f} to {result['high']:.3f}), median over {result['episodes']} door poses by `lazy`, "
+                       f"motions checked, each pose's least time of {result['rounds']} campaigns run in turn.")
+
+
 def headline(data):
     one = TableOne(data / "table1.json")
     if not one:
@@ -186,7 +203,7 @@ def headline(data):
     return markdown([f"{len(one.episodes('lazy', '#4'))} door poses, 5 mm / 0.05 rad", "ms", "tool-path error, mm", "success, %", "paper: ms", "mm", "%"], rows)
 
 
-BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, plans, scenes, pieces, headline)}
+BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, plans, scenes, pieces, pgo, headline)}
 
 
 def fill(data, documents):
