@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The paper's sampling-based relatives, through OMPL. They plan between two configurations on a constraint manifold; to follow a
 // tool path they are given the path parameter as an eighth coordinate: F(q, t) = pose of the tool at q against the path at t = 0,
-// from the start at t = 0 to valid nodes of the last layer at t = 1. They know no order along the path; motions that end before
-// they begin are refused to them, and what they find is checked afterwards.
+// from the start at t = 0 to valid nodes of the last layer at t = 1. They know no order along the path; motions that go back along
+// it are refused to them, and what they find is checked afterwards.
 #pragma once
 #include <string>
 
