@@ -179,14 +179,17 @@ void add_kinematics(Fixture& c) {
 
 void add_search(Fixture& c) {
   const std::string unit = std::string("/") + to_string(active_isa());
-  add("sweep/node" + unit, [&](benchmark::State& state) {
-    for (auto _ : state) {
-      CostToGo togo(c.lattice);
-      togo.sweep(c.lattice.layers() - 1);
-      benchmark::DoNotOptimize(togo.best());
-    }
-    state.SetItemsProcessed(state.iterations() * c.lattice.nodes());
-  });
+  for (const auto& [name, what] : {std::pair{"whole", CostToGo::Extent::kWhole}, {"bounded", CostToGo::Extent::kBounded}}) {
+    const auto extent = what;  // a structured binding cannot be captured
+    add(std::string("sweep/") + name + unit, [&c, extent](benchmark::State& state) {
+      for (auto _ : state) {
+        CostToGo togo(c.lattice, extent);
+        togo.sweep(c.lattice.layers() - 1);
+        benchmark::DoNotOptimize(togo.best());
+      }
+      state.SetItemsProcessed(state.iterations() * c.lattice.nodes());
+    });
+  }
   add("a_star/expansion", [&](benchmark::State& state) {
     CostToGo togo(c.lattice);
     togo.sweep(c.lattice.layers() - 1);

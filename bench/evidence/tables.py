@@ -173,7 +173,8 @@ def pieces(data):
     each = lambda name: number(1e9 / runs[name]["items_per_second"]) if name in runs else "–"
     units = [unit for unit in ("scalar", "avx2", "avx512") if f"ik/layer/{unit}" in runs]
     vector = markdown(["ns each", *units], [["IK, a node of a whole layer", *(each(f"ik/layer/{u}") for u in units)], ["IK, a node asked alone", *(each(f"ik/single_node/{u}") for u in units)],
-                                           ["cost-to-go, a node of the backward sweep (IK included)", *(each(f"sweep/node/{u}") for u in units)]])
+                                           ["cost-to-go, whole sweep, a node of the lattice (IK included)", *(each(f"sweep/whole/{u}") for u in units)],
+                                            ["cost-to-go, bounded sweep, a node of the lattice", *(each(f"sweep/bounded/{u}") for u in units)]])
     names = {"ik/closed_form_libm": "IK, closed form with libm", "forward_kinematics": "forward kinematics", "jacobian": "Jacobian", "manipulability": "manipulability", "step_error": "step error (one end)",
              "tool_path_error": "tool-path error of an edge", "a_star/expansion": "A*, an expansion", "posture/fcl": "posture: FCL", "posture/certificates": "posture: certificates, then FCL",
              "motion/fcl": "motion of an edge: FCL", "motion/certificates": "motion of an edge: certificates, then FCL"}
