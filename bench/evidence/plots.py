@@ -156,7 +156,7 @@ def success(data, root):
     reasons = Counter()
     for _, episodes in rows:
         reasons.update(e["reason"] for e in episodes if e["status"] != "solved")
-    colours = ["#D55E00", "#E69F00", "#CC79A7", "#56B4E9", "#F0E442", "#999999"]
+    colours = ["#D55E00", "#E69F00", "#CC79A7", "#56B4E9", "#F0E442", "#009E73", "#000000", "#999999"]
     names = [reason for reason, _ in reasons.most_common()]
     shown = names[: len(colours) - 1]
     figure, axis = plt.subplots(figsize=(9, 3.6))
