@@ -12,6 +12,7 @@
 #include "progress.hpp"
 #include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -20,7 +21,7 @@ namespace swivel::cli {
 namespace {
 
 struct PlanArguments {
-  std::string problem, out, json;
+  std::string problem, out, json, trace;
   std::optional<double> timeout;
   bool quiet = false;
   SearchOptions search;
@@ -74,7 +75,12 @@ void print_summary(const PlanResult& result) {
 int run(const PlanArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   PlanOptions options = arguments.search.plan_options();
-  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  std::optional<Timeline> timeline;
+  if (!arguments.trace.empty()) timeline.emplace();
+  Problem problem = [&] {
+    const Span span("load");
+    return arguments.episode.apply(io::load_problem(arguments.problem));
+  }();
   arguments.search.apply(problem);
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const double load = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -92,6 +98,7 @@ int run(const PlanArguments& arguments) {
     else
       std::filesystem::remove(arguments.out);
   }
+  if (timeline) io::write_file(arguments.trace, io::to_trace_json(*timeline) + "\n");
   if (arguments.json == "-")
     std::cout << io::to_json(result) << '\n';
   else if (!arguments.json.empty())
@@ -129,6 +136,8 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--timeout", arguments->timeout, "seconds");
   command->add_option("--out", arguments->out, "trajectory file (CSV)");
   command->add_option("--json", arguments->json, "result file, - for standard output");
+  command->add_option("--trace", arguments->trace,
+                      "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Experiments A and B of the paper: what the two local methods and the planner do from the same start.
-//   baseline_runs [--rows FOLDER]    FOLDER gets the joints of every tracker as CSV, for plots
+//   baseline_runs [--rows FOLDER]    FOLDER gets joints and clearance along the path as CSV, for plots
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <sstream>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "baselines.hpp"
 #include "swivel/io/io.hpp"
@@ -16,7 +19,7 @@ namespace {
 using namespace swivel;
 
 void print(const char* name, const baselines::TrackResult& result, double length) {
-  std::printf("  %-11s %-13s at %4.1f %% of the path", name, baselines::to_string(result.reason), 100 * result.s / length);
+  std::printf("  %-18s %-13s at %4.1f %% of the path", name, baselines::to_string(result.reason), 100 * result.s / length);
   if (!result.blocking.empty()) std::printf(", %s", result.blocking.c_str());
   if (result.reason != baselines::StopReason::kFinished && result.clearance)
     std::printf(", clearance %.2f mm", 1e3 * *result.clearance);
@@ -26,17 +29,47 @@ void print(const char* name, const baselines::TrackResult& result, double length
   std::printf("\n");
 }
 
-/// s and the joints of each row; rows are equal steps up to result.s.
-void write_rows(const std::filesystem::path& file, const PreparedRobot& robot, const baselines::TrackResult& result) {
+/// s, the clearance (m, empty when nothing is near) and the joints of each row.
+void write_rows(const std::filesystem::path& file, const PreparedRobot& robot, const Problem& problem,
+                const std::vector<std::pair<double, Config>>& rows) {
+  const World world(robot.world(), problem.scene);
+  World::Query query(world);
   std::ostringstream text;
   text.precision(17);
-  text << "s";
+  text << "s,clearance";
   for (const std::string& name : robot.arm().chain.joint_names) text << ',' << name;
-  for (std::size_t k = 0; k < result.rows.size(); ++k) {
-    text << '\n' << result.s * static_cast<double>(k) / static_cast<double>(std::max<std::size_t>(1, result.rows.size() - 1));
-    for (const double q : result.rows[k]) text << ',' << q;
+  for (const auto& [s, q] : rows) {
+    text << '\n' << s << ',';
+    if (const auto clearance = query.clearance(q)) text << clearance->distance;
+    for (const double joint : q) text << ',' << joint;
   }
   io::write_file(file, text.str() + "\n");
+}
+
+/// Rows of a tracker are equal steps up to result.s.
+std::vector<std::pair<double, Config>> rows_of(const baselines::TrackResult& result) {
+  std::vector<std::pair<double, Config>> rows;
+  const auto steps = static_cast<double>(std::max<std::size_t>(2, result.rows.size()) - 1);
+  for (const Config& q : result.rows) rows.emplace_back(result.s * static_cast<double>(rows.size()) / steps, q);
+  return rows;
+}
+
+void run_swivel(const char* name, const PreparedRobot& robot, const Problem& problem, double length,
+                const std::filesystem::path& rows) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const PlanResult planned = plan(robot, problem, options);
+  std::printf("  %-18s %s", name, to_string(planned.status));
+  if (planned.status == PlanStatus::kSolved) {
+    std::printf(", cost %.4f, least clearance %.2f mm", planned.cost, 1e3 * planned.min_clearance.value_or(0));
+    std::vector<std::pair<double, Config>> all;
+    for (const TrajectoryRow& row : planned.trajectory) all.emplace_back(row.s, row.q);
+    if (!rows.empty()) write_rows(rows, robot, problem, all);
+  } else if (planned.diagnosis.reached_s) {
+    std::printf(": no path goes past %.1f %% of the path: %s", 100 * *planned.diagnosis.reached_s / length,
+                planned.diagnosis.reason.c_str());
+  }
+  std::printf("\n");
 }
 
 void run(const char* title, const std::filesystem::path& file, const std::filesystem::path& rows) {
@@ -49,19 +82,14 @@ void run(const char* title, const std::filesystem::path& file, const std::filesy
   print("Jacobian", jacobian, length);
   print("null space", null_space, length);
   if (!rows.empty()) {
-    write_rows(rows / (file.stem().string() + "_jacobian.csv"), robot, jacobian);
-    write_rows(rows / (file.stem().string() + "_null_space.csv"), robot, null_space);
+    write_rows(rows / (file.stem().string() + "_jacobian.csv"), robot, problem, rows_of(jacobian));
+    write_rows(rows / (file.stem().string() + "_null_space.csv"), robot, problem, rows_of(null_space));
   }
-  PlanOptions options;
-  options.planner = PlannerKind::kLazy;
-  const PlanResult planned = plan(robot, problem, options);
-  std::printf("  %-11s %s", "Swivel", to_string(planned.status));
-  if (planned.status == PlanStatus::kSolved) {
-    std::printf(", cost %.4f, least clearance %.2f mm", planned.cost, 1e3 * planned.min_clearance.value_or(0));
-  } else if (planned.diagnosis.reached_s) {
-    std::printf(", reached %.1f %% of the path: %s", 100 * *planned.diagnosis.reached_s / length, planned.diagnosis.reason.c_str());
-  }
-  std::printf("\n");
+  const auto file_of = [&](const char* who) { return rows.empty() ? rows : rows / (file.stem().string() + who); };
+  run_swivel("Swivel, same start", robot, problem, length, file_of("_swivel.csv"));
+  Problem free = problem;
+  free.start.reset();
+  run_swivel("Swivel, free start", robot, free, length, file_of("_swivel_free.csv"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "certificate.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
@@ -50,6 +51,7 @@ struct World::Impl {
 
   Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene)
       : robot(std::move(robot_part)), meshes(std::move(store)), pairs(robot->pairs) {
+    const Span span("world");
     for (std::size_t i = 0; i < robot->bodies.size(); ++i)
       add(robot->bodies[i].name, {robot->shapes[i], robot->bodies[i].group, robot->bodies[i].pose});
     for (const SceneObject& object : scene) {

@@ -10,6 +10,7 @@
 #include "kernels/kernels.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
@@ -36,6 +37,7 @@ std::string gigabytes(double bytes) {
 
 Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem)
     : chain_(&chain), arm_(&arm), path_(&path), limits_(problem.limits), cost_(problem.cost) {
+  const Span span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
   for (int k = 0; k < kDof; ++k) {

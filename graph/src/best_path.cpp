@@ -3,6 +3,7 @@
 #include <boost/graph/astar_search.hpp>
 #include <unordered_map>
 
+#include "swivel/core/timeline.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
@@ -79,6 +80,7 @@ struct Visitor : boost::default_astar_visitor {
 }  // namespace
 
 SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
+  const Span span("best path");
   if (cost_to_go.best() == kUnreachable) return {};
   const ImplicitLattice graph(cost_to_go);
   Records records;

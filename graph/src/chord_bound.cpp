@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "kernels/relax.hpp"
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
@@ -213,6 +214,7 @@ class Chords {
 }  // namespace
 
 ChordBound::ChordBound(const Lattice& lattice) : last_(lattice.layers() - 1), width_(lattice.width()) {
+  const Span span("chord bound");
   Chords chords(lattice);
   if (!chords.fits()) return;
   const int coarse = (last_ + kStride - 1) / kStride + 1;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "kernels/relax.hpp"
+#include "swivel/core/timeline.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {
@@ -387,6 +388,7 @@ bool CostToGo::make_exact(const std::function<bool()>& stop) {
 }
 
 bool CostToGo::sweep_once(const std::function<bool()>& stop) {
+  const Span span("sweep");
   pending_.clear();
   std::fill(cell_.begin(), cell_.end(), 0U);
   cells_.resize(1);
@@ -502,6 +504,7 @@ CostToGo::Marks CostToGo::widened(const Marks& columns) const {
 }
 
 void CostToGo::repair_once() {
+  const Span span("repair");
   const int n = lattice_->angles();
   Marks changed(static_cast<std::size_t>(chunks()), 0), here_changed(changed.size());  // columns, of any label
   bool any = false;
@@ -573,6 +576,7 @@ double CostToGo::relax_one_forward(int layer, int slot, const Block& before) {
 }
 
 int CostToGo::deepest_reachable() {
+  const Span span("reach");
   const int n = lattice_->angles();
   Block* before = block_[0].get();
   Block* here = block_[1].get();

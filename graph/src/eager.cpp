@@ -6,6 +6,7 @@
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 
+#include "swivel/core/timeline.hpp"
 #include "valid_nodes.hpp"
 
 namespace swivel {
@@ -30,6 +31,7 @@ struct Built {
 };
 
 Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, EagerOutcome& outcome) {
+  const Span span("all edges");
   Built built;
   std::size_t vertices = 1;
   for (const auto& layer : valid.layers) {
@@ -99,6 +101,7 @@ struct AStarVisitor : boost::default_astar_visitor {
 };
 
 std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOutcome& outcome) {
+  const Span span("graph search");
   const Graph& graph = built.graph;
   std::vector<double> distance(num_vertices(graph), kUnreachable);
   const auto index = get(boost::vertex_index, graph);

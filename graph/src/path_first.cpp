@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
@@ -51,6 +52,7 @@ class Search {
  private:
   /// Asks what is not known of the path, failures first, and removes what fails.
   bool valid(const SlotPath& path) {
+    const Span span("candidate path");
     std::vector<NodeQuestion> nodes;
     for (int i = 0; i < static_cast<int>(path.size()); ++i)
       if (togo_.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown)

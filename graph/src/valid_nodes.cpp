@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "valid_nodes.hpp"
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
 ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
+  const Span span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
   LayerNodes nodes;

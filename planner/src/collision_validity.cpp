@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collision_validity.hpp"
 
+#include "swivel/core/timeline.hpp"
 namespace swivel {
 
 EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) {
@@ -23,9 +24,12 @@ void CollisionValidity::report() const {
 }
 
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
+  Span batch("nodes asked");
+  batch.count("nodes", static_cast<std::int64_t>(questions.size()));
   nodes_checked_ += static_cast<std::int64_t>(questions.size());
   report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
+    const Span span("node");
     const Config& q = questions[static_cast<std::size_t>(index)].q;
     World::Query& query = queries_[static_cast<std::size_t>(worker)];
     NodeAnswer answer;
@@ -54,9 +58,12 @@ std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q,
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+  Span batch("edges asked");
+  batch.count("edges", static_cast<std::int64_t>(questions.size()));
   edges_checked_ += static_cast<std::int64_t>(questions.size());
   report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
+    const Span span("edge");
     const EdgeQuestion& x = questions[static_cast<std::size_t>(index)];
     const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
     answers[static_cast<std::size_t>(index)] = lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&

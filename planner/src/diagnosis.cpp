@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
@@ -141,6 +142,7 @@ class Inspector {
 }  // namespace
 
 Diagnosis diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer) {
+  const Span span("diagnosis");
   Inspector inspector(lattice, world, rule);
   Diagnosis diagnosis;
   int hint = 0;

@@ -13,6 +13,7 @@
 #include "diagnosis.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/timeline.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {
@@ -119,6 +120,7 @@ void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& r
 }
 
 void fill_report(const PreparedRobot& robot, const Lattice& lattice, const World& world, PlanResult& result) {
+  const Span span("report");
   World::Query query(world);
   double sum = 0;
   std::int64_t samples = 0;
@@ -163,7 +165,10 @@ PreparedRobot::PreparedRobot(const Problem& problem)
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
   Stopwatch watch;
-  const PreparedRobot robot(problem);
+  const PreparedRobot robot = [&] {
+    const Span span("prepare");
+    return PreparedRobot(problem);
+  }();
   const double prepare = watch.lap();
   PlanResult result = plan(robot, problem, options);
   result.time_ms["prepare"] += prepare;
@@ -171,6 +176,7 @@ PlanResult plan(const Problem& problem, const PlanOptions& options) {
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
+  const Span span("plan");
   Stopwatch watch;
   PlanResult result;
   result.planner = to_string(options.planner);

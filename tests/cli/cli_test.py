@@ -110,6 +110,27 @@ class Files(WithFolder):
         for key in ("status", "cost", "planner", "threads", "lattice", "counters", "time_ms", "tool_path_error_mm", "min_clearance", "min_manipulability", "arm_angle", "diagnosis", "trajectory"):
             self.assertIn(key, result)
 
+    def test_trace(self):
+        trace = self.folder / "trace.json"
+        done, out, result = self.plan(PROBLEMS / "experiment_b.yaml", "--trace", trace, "--threads", "2", "--edges", "nodes")
+        self.assertEqual(done.returncode, 0)
+        events = json.loads(trace.read_text())["traceEvents"]
+        spans = [e for e in events if e["ph"] == "X"]
+        names = [e["name"] for e in spans]
+        for stage in ("load", "prepare", "plan", "lattice", "report"):
+            self.assertEqual(names.count(stage), 1, stage)
+        self.assertEqual(names.count("candidate path"), result["counters"]["iterations"])
+        self.assertEqual(names.count("node"), result["counters"]["nodes_checked"])
+        self.assertEqual(sum(e["args"]["nodes"] for e in spans if e["name"] == "nodes asked"), result["counters"]["nodes_checked"])
+        self.assertEqual({e["tid"] for e in spans}, {e["tid"] for e in events if e["ph"] == "M"})
+        planned = next(e for e in spans if e["name"] == "plan")
+        for e in spans:
+            self.assertGreaterEqual(e["dur"], 0)
+            if e["name"] == "node":
+                self.assertGreaterEqual(e["ts"], planned["ts"])
+                self.assertLessEqual(e["ts"] + e["dur"], planned["ts"] + planned["dur"] + 1)
+        self.assertEqual(self.plan(PROBLEMS / "experiment_b.yaml", "--edges", "nodes")[2]["cost"], result["cost"])
+
     def test_quiet(self):
         done = run("plan", PROBLEMS / "experiment_a.yaml", "--quiet", "--ds", "0.02", "--dphi", "0.2")
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))

@@ -12,6 +12,7 @@
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
+#include "swivel/core/timeline.hpp"
 
 namespace swivel::io {
 
@@ -41,6 +42,8 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 
 /// RESULT.json as text, design.md 4. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
+/// The timeline in Chrome's trace event format, which Perfetto and speedscope open.
+[[nodiscard]] std::string to_trace_json(const Timeline& timeline);
 /// Writes text beside the target and renames it over; a device or pipe is written to.
 void write_file(const std::filesystem::path& file, const std::string& text);
 

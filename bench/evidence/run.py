@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the experiments and benchmarks, then writes tables and figures; see bench/reproduce."""
+import argparse
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import time
+
+import plots
+import tables
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BENCH = ROOT / "build/release/bench"
+
+
+def run(command, log, **environment):
+    """Runs a program, its output into a file, which is shown where it fails."""
+    with open(log, "w") as out:
+        code = subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, env={**os.environ, **environment}).returncode
+    if code != 0:
+        sys.stderr.write(open(log).read())
+        sys.exit(f"reproduce: {' '.join(map(str, command))}: ended with {code}")
+
+
+def benchmark(program, out, repetitions, min_time, *arguments, **environment):
+    run([BENCH / program, f"--benchmark_out={out}", "--benchmark_out_format=json", f"--benchmark_repetitions={repetitions}",
+         f"--benchmark_min_time={min_time}", "--benchmark_enable_random_interleaving=true", *arguments], f"{out}.log", **environment)
+
+
+def vector_units():
+    """Those of this processor."""
+    flags = open("/proc/cpuinfo").read().split() if os.path.exists("/proc/cpuinfo") else []
+    return ["scalar"] + [unit for unit, flag in (("avx2", "avx2"), ("avx512", "avx512dq")) if flag in flags]
+
+
+def experiments(data, quick):
+    run([BENCH / "baselines/baseline_runs", "--rows", data], data / "experiments.txt")
+
+
+def table1(data, quick):
+    run([BENCH / "experiment_c", data / "table1.json", "5" if quick else "100"], data / "table1.log")
+
+
+def plans(data, quick):
+    benchmark("plan_benchmark", data / "plans.json", 1 if quick else 3, 0.01 if quick else 0.05,
+              *(["--benchmark_filter=^[bc]/.*#[1-4]"] if quick else []))
+
+
+def pieces(data, quick):
+    repetitions, min_time = (1, 0.005) if quick else (5, 0.05)
+    benchmark("micro_benchmark", data / "pieces.json", repetitions, min_time, "--benchmark_filter=-^(ik/layer|ik/single|sweep)")
+    for unit in vector_units():
+        benchmark("micro_benchmark", data / f"pieces_{unit}.json", repetitions, min_time,
+                  "--benchmark_filter=^(ik/layer|ik/single|sweep)", SWIVEL_FORCE_ISA=unit)
+
+
+def trace(data, quick):
+    """A plan whose path is found wanting several times."""
+    run([ROOT / "build/release/cli/swivel", "plan", ROOT / "data/problems/experiment_c.yaml", "--seed", "1", "--episode", "13", "--planner", "parallel", "--threads", "2",
+         "--trace", data / "trace.json"], data / "trace.log")
+    if all(shutil.which(program) for program in ("chromium", "npm")):
+        run([ROOT / "bench/evidence/trace_picture", data / "trace.json", data / "trace.png"], data / "trace_picture.log")
+    else:
+        print("trace: docs/figures/trace.png is left as it is: chromium and npm are needed to draw it")
+
+
+STEPS = {step.__name__: step for step in (experiments, table1, plans, pieces, trace)}
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench/reproduce", description="Regenerates every table and figure of the documents.")
+    parser.add_argument("--only", choices=STEPS, action="append", help="this step alone (may be given several times)")
+    parser.add_argument("--quick", action="store_true", help="few repetitions; leaves the documents of the repository alone")
+    parser.add_argument("--pgo", action="store_true", help="also measure profile-guided optimisation (bench/pgo, 8 minutes more)")
+    arguments = parser.parse_args()
+    data = ROOT / "build" / ("evidence-quick" if arguments.quick else "evidence")
+    data.mkdir(parents=True, exist_ok=True)
+    documents = ROOT
+    if arguments.quick:
+        documents = data
+        (data / "docs").mkdir(exist_ok=True)
+        shutil.copy(ROOT / "README.md", data)
+        shutil.copy(ROOT / "docs/performance.md", data / "docs")
+    figures = documents / "docs/figures"
+    figures.mkdir(exist_ok=True)
+    begin = time.monotonic()
+    for name in arguments.only or STEPS:
+        start = time.monotonic()
+        STEPS[name](data, arguments.quick)
+        print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
+    if arguments.pgo:
+        run([ROOT / "bench/pgo"], data / "pgo.log")
+    if (data / "trace.png").exists():
+        shutil.copy(data / "trace.png", figures)
+    written = plots.draw(data, figures, ROOT) + tables.fill(data, [documents / "README.md", documents / "docs/performance.md"])
+    print(f"all: {time.monotonic() - begin:.0f} s; wrote {', '.join(str(file.relative_to(ROOT)) for file in written)}")
+
+
+main()

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Experiment C of the paper: the door at random poses, by every method of Table I and by the planners that the paper has not.
+//   experiment_c OUT.json [EPISODES]    default 100; all methods in turn on each episode
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "baselines.hpp"
+#ifdef SWIVEL_OMPL
+#include "constrained_sampling.hpp"
+#endif
+#include "context.hpp"
+#include "settings.hpp"
+#include "swivel/core/campaign.hpp"
+#include "swivel/io/io.hpp"
+
+namespace {
+
+using namespace swivel;
+using nlohmann::json;
+
+constexpr std::uint64_t kSeed = 1;
+// OMPL's planners use up their time on most episodes, so they get the first of them only.
+[[maybe_unused]] constexpr std::uint64_t kSampledEpisodes = 20;
+[[maybe_unused]] constexpr double kSampledSeconds = 2;
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// One row of the table over all episodes.
+struct Method {
+  std::string name, setting;
+  int threads = 1;
+  EdgeMode edges = EdgeMode::kNodes;
+  json episodes = json::array();
+};
+
+json to_json(const PlanResult& result) {
+  const EpisodeRow row(0, result);
+  json answer{{"status", to_string(result.status)}, {"ms", row.plan_ms},
+              {"nodes", result.lattice.nodes},      {"reason", row.reason},
+              {"fcl_calls", row.fcl_calls},         {"nodes_checked", row.nodes_checked}};
+  if (row.tool_path_error_mm_mean) answer["error_mm"] = *row.tool_path_error_mm_mean;
+  if (row.tool_path_error_mm_max) answer["error_max_mm"] = *row.tool_path_error_mm_max;
+  return answer;
+}
+
+PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind planner, const bench::Setting& setting, EdgeMode edges,
+                   int threads) {
+  bench::set_resolution(problem, setting);
+  problem.limits.edges = edges;
+  PlanOptions options;
+  options.planner = planner;
+  options.threads = threads;
+  return plan(robot, problem, options);
+}
+
+/// The first valid node of layer 0 in (branch, j) order at #4; none where there is none.
+std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
+  bench::set_resolution(problem, bench::kSettings[3]);
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const World world(robot.world(), problem.scene);
+  World::Query query(world);
+  for (int slot = 0; slot < lattice.width(); ++slot) {
+    const auto q = lattice.node(0, slot);
+    if (q && lattice.manipulable(*q) && !query.first_below(*q, problem.limits.clearance)) return q;
+  }
+  return std::nullopt;
+}
+
+/// What a local method did; `possible`: a path from its start exists at #4.
+json to_json(const baselines::TrackResult& result, double ms, const PreparedRobot& robot, const Problem& problem, bool possible) {
+  json answer{{"status", result.finished ? "solved" : "failed"}, {"ms", ms}, {"s", result.s}, {"possible_from_start", possible}};
+  answer["reason"] = result.finished ? "" : std::string(baselines::to_string(result.reason));
+  answer["blocking"] = result.blocking;
+  if (!result.finished) return answer;
+  const baselines::TrackOptions options;
+  const ToolPath path(waypoints_in_base(problem), Resolution{.ds = options.step, .dalpha = options.turn_step}, problem.source);
+  double sum = 0, most = 0;
+  for (int i = 0; i + 1 < path.size(); ++i) {
+    const Config& q = result.rows[static_cast<std::size_t>(i)];
+    for (const double error :
+         path_deviation(robot.arm().chain, path, i, q, result.rows[static_cast<std::size_t>(i) + 1] - q).position) {
+      sum += 1e3 * error;
+      most = std::max(most, 1e3 * error);
+    }
+  }
+  answer["error_mm"] = sum / (3.0 * (path.size() - 1));
+  answer["error_max_mm"] = most;
+  return answer;
+}
+
+template <class Track>
+json track(const PreparedRobot& robot, const Problem& problem, bool possible, const Track& tracker) {
+  if (!problem.start) return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
+  const auto begin = std::chrono::steady_clock::now();
+  const baselines::TrackResult result = tracker(robot, problem);
+  return to_json(result, ms_since(begin), robot, problem, possible);
+}
+
+#ifdef SWIVEL_OMPL
+json sample(const PreparedRobot& robot, const Problem& problem, bool possible, baselines::Manifold manifold) {
+  if (!problem.start) return {{"status", "failed"}, {"reason", "no start"}, {"possible_from_start", false}};
+  const baselines::ConstrainedResult result = baselines::plan_constrained(robot, problem, manifold, kSampledSeconds);
+  json answer{{"status", result.finished ? "solved" : "failed"},
+              {"ms", result.ms},
+              {"reason", result.reason},
+              {"connected", result.connected},
+              {"possible_from_start", possible}};
+  if (result.finished) answer["error_mm"] = result.error_mm, answer["error_max_mm"] = result.error_max_mm;
+  return answer;
+}
+#endif
+
+json run(const Problem& base, std::uint64_t episodes) {
+  const PreparedRobot robot(base);
+  std::vector<Method> planned;
+  const bench::Setting* const settings = bench::kSettings;
+  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel})
+    for (std::size_t k = 0; k < std::size(bench::kSettings); ++k)
+      if (planner == PlannerKind::kLazy || k < bench::kPaperSettings)
+        planned.push_back(
+            {.name = to_string(planner), .setting = settings[k].name, .threads = planner == PlannerKind::kParallel ? 2 : 1});
+  for (const PlannerKind planner : {PlannerKind::kLazy, PlannerKind::kParallel})
+    planned.push_back({.name = to_string(planner),
+                       .setting = "#4",
+                       .threads = planner == PlannerKind::kParallel ? 2 : 1,
+                       .edges = EdgeMode::kContinuous});
+  Method jacobian{.name = "jacobian", .setting = ""}, null_space{.name = "null_space", .setting = ""};
+  Method projected{.name = "ompl_projected", .setting = ""}, tangent_bundle{.name = "ompl_tangent_bundle", .setting = ""};
+  for (std::uint64_t k = 0; k < episodes; ++k) {
+    const Problem problem = episode_problem(base, kSeed, k);
+    for (Method& method : planned) {
+      const auto* const setting = std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
+                                               [&](const bench::Setting& s) { return s.name == method.setting; });
+      method.episodes.push_back(
+          to_json(plan_at(robot, problem, planner_from_string(method.name), *setting, method.edges, method.threads)));
+    }
+    Problem started = problem;
+    started.start = first_start(robot, problem);
+    const bool possible = started.start && plan_at(robot, started, PlannerKind::kLazy, settings[3], EdgeMode::kNodes, 1).status ==
+                                               PlanStatus::kSolved;
+    jacobian.episodes.push_back(
+        track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_jacobian(r, p); }));
+    null_space.episodes.push_back(
+        track(robot, started, possible, [](const auto& r, const auto& p) { return baselines::track_null_space(r, p); }));
+#ifdef SWIVEL_OMPL
+    if (k < kSampledEpisodes) {
+      projected.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kProjected));
+      tangent_bundle.episodes.push_back(sample(robot, started, possible, baselines::Manifold::kTangentBundle));
+    }
+#endif
+    std::fprintf(stderr, "\repisode %llu of %llu", static_cast<unsigned long long>(k + 1),
+                 static_cast<unsigned long long>(episodes));
+  }
+  std::fprintf(stderr, "\n");
+  planned.insert(planned.begin(), {std::move(jacobian), std::move(null_space), std::move(projected), std::move(tangent_bundle)});
+  json rows = json::array();
+  for (const Method& method : planned)
+    rows.push_back({{"method", method.name},
+                    {"setting", method.setting},
+                    {"threads", method.threads},
+                    {"edges", method.edges == EdgeMode::kNodes ? "nodes" : "continuous"},
+                    {"episodes", method.episodes}});
+  return rows;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const long episodes = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 100;
+  if (argc < 2 || argc > 3 || episodes < 1) {
+    std::fprintf(stderr, "usage: experiment_c OUT.json [EPISODES]\n");
+    return 2;
+  }
+  try {
+    json out;
+    for (const auto& [key, value] : bench::context()) out["context"][key] = value;
+    out["seed"] = kSeed;
+    out["rows"] = run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"),
+                      static_cast<std::uint64_t>(episodes));
+    io::write_file(argv[1], out.dump(1) + "\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "experiment_c: %s\n", error.what());
+    return 2;
+  }
+  return 0;
+}

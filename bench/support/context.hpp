@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace swivel::bench {
+
+/// What a measured number depends on besides the source: commit, compiler, flags, build type, vector unit, processor, its threads.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> context();
+
+}  // namespace swivel::bench

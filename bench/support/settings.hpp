@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/core/problem.hpp"
+
+namespace swivel::bench {
+
+struct Setting {
+  const char* name;
+  double ds, dphi;  ///< m, rad
+};
+/// The four resolutions of the paper's Table I, and two finer ones.
+inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},   {"#2", 0.005, 0.2},    {"#3", 0.02, 0.05},
+                                        {"#4", 0.005, 0.05}, {"fine", 0.002, 0.02}, {"finest", 0.001, 0.01}};
+inline constexpr int kPaperSettings = 4;
+
+inline void set_resolution(Problem& problem, const Setting& setting) {
+  problem.resolution.ds = setting.ds;
+  problem.resolution.dphi = setting.dphi;
+}
+
+}  // namespace swivel::bench
