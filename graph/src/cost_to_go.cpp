@@ -483,6 +483,9 @@ void CostToGo::remove_edge(int layer, int a, int b) {
 }
 
 bool CostToGo::repair(const std::function<bool()>& stop) {
+  // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 25 bytes a node.
+  constexpr std::int64_t kMostKept = 1'000'000;
+  if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));
   repair_once();
   return make_exact(stop);
 }

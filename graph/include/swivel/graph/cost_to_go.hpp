@@ -29,7 +29,8 @@ enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 /// are.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, half a byte for the bounds. Joints are solved again where they
-/// are wanted again, but for polished arms, whose joints are costly and kept.
+/// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
+/// nodes: there they are kept, 25 bytes a node of the layers that were visited.
 class CostToGo {
  public:
   enum class Extent { kWhole, kBounded };
