@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -15,15 +17,16 @@
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/report/lattice_map.hpp"
 
 namespace swivel::cli {
 
 namespace {
 
 struct PlanArguments {
-  std::string problem, out, json, trace;
+  std::string problem, out, json, trace, map_svg;
   std::optional<double> timeout;
-  bool quiet = false;
+  bool quiet = false, map = false, full_map = false;
   SearchOptions search;
   EpisodeChoice episode;
 };
@@ -72,6 +75,17 @@ void print_summary(const PlanResult& result) {
   for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
+int terminal_columns() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  return 100;
+}
+/// https://no-color.org
+bool coloured() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  return isatty(STDOUT_FILENO) && (no_colour == nullptr || *no_colour == '\0');
+}
+
 int run(const PlanArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   PlanOptions options = arguments.search.plan_options();
@@ -88,7 +102,16 @@ int run(const PlanArguments& arguments) {
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
   options.progress = [&](const std::string& phrase) { progress.show(phrase); };
+  const bool draws = arguments.map || !arguments.map_svg.empty();
+  if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map or --map-svg");
+  if (arguments.map && arguments.json == "-")
+    throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
+  SearchRecord record;
+  if (draws) options.record = &record;
   PlanResult result = plan(problem, options);
+  std::optional<LatticeMap> map;
+  if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled)
+    map = make_map(PreparedRobot(problem), problem, record, arguments.full_map);
   progress.clear();
   result.time_ms["load"] = load;
 
@@ -98,12 +121,14 @@ int run(const PlanArguments& arguments) {
     else
       std::filesystem::remove(arguments.out);
   }
+  if (map && !arguments.map_svg.empty()) io::write_file(arguments.map_svg, to_svg(*map));
   if (timeline) io::write_file(arguments.trace, io::to_trace_json(*timeline) + "\n");
   if (arguments.json == "-")
     std::cout << io::to_json(result) << '\n';
   else if (!arguments.json.empty())
     io::write_file(arguments.json, io::to_json(result) + "\n");
   if (!arguments.quiet && arguments.json != "-") print_summary(result);
+  if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
   switch (result.status) {
     case PlanStatus::kSolved:
       return kOk;
@@ -138,6 +163,9 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--json", arguments->json, "result file, - for standard output");
   command->add_option("--trace", arguments->trace,
                       "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");
+  command->add_flag("--map", arguments->map, "print the (s, phi) map: what the search looked at, and the path");
+  command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
+  command->add_flag("--full-map", arguments->full_map, "ask about every node before the map is drawn");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -160,7 +160,7 @@ def scenes(data):
         values = [(plans.get(f"{scene}/lazy/{s}/nodes", "speed_up_over_eager"), plans.get(f"{scene}/lazy/{s}/nodes", "speed_up_over_eager_dp")) for s in PAPER_SETTINGS]
         if values[0][0]:
             rows.append([name, *(f"{number(a, 2)} / {number(b, 2)}" for a, b in values)])
-    return markdown(["`lazy` over `eager` / over `eager_dp`", *PAPER_SETTINGS], rows)
+    return markdown(["speed-up of `lazy` over `eager` / over `eager_dp`", *PAPER_SETTINGS], rows)
 
 
 def pieces(data):

@@ -53,6 +53,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   single.threads = 1;
   single.report = true;  // the tool-path error and the reason are columns
   single.progress = nullptr;
+  single.record = nullptr;
 
   Executor executor(options.plan.threads, options.plan.backend);
   InOrder in_order(options.skip, row_done);

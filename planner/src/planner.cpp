@@ -69,6 +69,7 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
     const EagerOutcome eager = options.planner == PlannerKind::kEager ? eager_search(lattice, validity, options.eager_search)
                                                                       : eager_dp(lattice, validity);
     found = {eager, eager.deepest};
+    if (options.record) options.record->path = eager.path;
     counters.ik_nodes = eager.ik_nodes;
     counters.edges = eager.edges;
     counters.expansions = eager.expansions;
@@ -89,6 +90,14 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
     found.outcome.stopped = !deepest.has_value();
     found.deepest = deepest.value_or(-1);
     result.time_ms["reach"] = watch.lap();
+  }
+  if (options.record) {
+    watch.lap();
+    options.record->nodes = togo.node_verdicts();
+    options.record->path = found.outcome.path;
+    std::int64_t expansions = 0;  // no part of the search
+    if (found.deepest >= 0) options.record->path = best_path(togo, expansions);
+    result.time_ms["record"] = watch.lap();
   }
   counters.ik_nodes = togo.ik_nodes();
   counters.edges = togo.edges();
@@ -200,7 +209,7 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
   CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, stop, options.progress);
   const Found found = search(lattice, validity, options, result);
-  result.time_ms["find"] = watch.lap();
+  result.time_ms["find"] = watch.lap() - (result.time_ms.contains("record") ? result.time_ms["record"] : 0);
   result.counters.nodes_checked = validity.nodes_checked();
   result.counters.edges_checked = validity.edges_checked();
   const CollisionCounters collision = validity.counters();

@@ -131,6 +131,26 @@ class Files(WithFolder):
                 self.assertLessEqual(e["ts"] + e["dur"], planned["ts"] + planned["dur"] + 1)
         self.assertEqual(self.plan(PROBLEMS / "experiment_b.yaml", "--edges", "nodes")[2]["cost"], result["cost"])
 
+    def test_map(self):
+        drawing = self.folder / "map.svg"
+        done, _, result = self.plan(PROBLEMS / "experiment_c.yaml", "--map", "--map-svg", drawing)
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("* the path", done.stdout)
+        self.assertIn("not looked at", done.stdout)
+        self.assertNotIn("\x1b", done.stdout)  # no terminal, no colours
+        self.assertIn("record", result["time_ms"]["stages"])
+        self.assertIn("<svg", drawing.read_text())
+        full = run("plan", PROBLEMS / "experiment_b.yaml", "--map", "--full-map").stdout
+        self.assertNotIn("not looked at", full)
+        self.assertIn("blocked by", full)
+        blocked = run("plan", PROBLEMS / "experiment_a_start.yaml", "--map")
+        self.assertEqual(blocked.returncode, 1)
+        self.assertIn("furthest layer", blocked.stdout)
+        for options in (["--full-map"], ["--map", "--json", "-"]):
+            done = run("plan", PROBLEMS / "experiment_a.yaml", *options)
+            self.assertEqual((done.returncode, done.stdout), (2, ""))
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+
     def test_quiet(self):
         done = run("plan", PROBLEMS / "experiment_a.yaml", "--quiet", "--ds", "0.02", "--dphi", "0.2")
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))

@@ -11,13 +11,11 @@
 
 #include "swivel/core/lattice.hpp"
 #include "swivel/graph/chord_bound.hpp"
+#include "swivel/graph/validity.hpp"
 
 namespace swivel {
 
 inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
-
-/// What is known of a node or edge beyond the closed form.
-enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
 /// The cost from the nodes to the goal layer over the lattice minus what has been removed from it: a backward layered dynamic
 /// program over closed-form nodes, windowed, all label pairs. Repaired, not recomputed, after removals; so it is always the perfect
@@ -52,6 +50,8 @@ class CostToGo {
 
   [[nodiscard]] Verdict node_verdict(int layer, int slot) const { return verdict_[index(layer, slot)]; }
   void keep_node(int layer, int slot) { verdict_[index(layer, slot)] = Verdict::kValid; }
+  /// Of every node, [layer][slot].
+  [[nodiscard]] std::vector<Verdict> node_verdicts() const { return verdict_; }
   void remove_node(int layer, int slot);
   /// Removes every node of the layer that agrees with `slot` in what `depends` (see Dependence) names.
   void remove_alike(int layer, int slot, std::uint8_t depends);

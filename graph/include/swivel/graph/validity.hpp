@@ -8,6 +8,9 @@
 
 namespace swivel {
 
+/// What is known of a node or edge beyond the closed form.
+enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
+
 struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;

@@ -12,6 +12,7 @@
 #include "swivel/core/problem.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/graph/eager.hpp"
+#include "swivel/graph/validity.hpp"
 #include "swivel/parallel/executor.hpp"
 
 namespace swivel {
@@ -27,6 +28,14 @@ enum class PlannerKind {
 /// Throws InputError for an unknown name.
 [[nodiscard]] PlannerKind planner_from_string(const std::string& name);
 
+/// What the search came to know, for those who draw it.
+struct SearchRecord {
+  /// Of every node, [layer][slot]; empty where the planner is eager: it asks about all of them.
+  std::vector<Verdict> nodes;
+  /// One slot in each layer: the answer; where there is none, a valid path to the furthest layer (not of eager planners).
+  std::vector<int> path;
+};
+
 struct PlanOptions {
   PlannerKind planner = PlannerKind::kParallel;
   int threads = 0;  ///< 0: all cores; kLazy always uses one
@@ -37,6 +46,7 @@ struct PlanOptions {
   /// lazy, parallel: FCL is asked about every pair as well; std::logic_error where a certificate contradicts it. For tests.
   bool compare_with_fcl = false;
   Executor::Backend backend = Executor::Backend::kTbb;
+  SearchRecord* record = nullptr;  ///< filled when given; not counted in the time of the plan
   /// Called now and then from the planning thread with one phrase on what is going on.
   std::function<void(const std::string&)> progress;
 };

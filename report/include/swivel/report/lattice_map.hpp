@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+
+/// What is known of a node of the (s, phi) lattice. The order is that of importance, least first: a drawn cell that stands for
+/// several nodes shows the last.
+enum class NodeState : std::uint8_t {
+  kNoIk,         ///< out of reach; in layer 0 also: not the given start
+  kSingular,     ///< a singular pose, or less manipulability than asked for
+  kJointLimit,   ///< cause: the joint, 0..6, the first that is outside
+  kNotLookedAt,  ///< exists in closed form; the search had no reason to ask about its clearance
+  kFree,         ///< asked, and found to keep the clearance
+  kBlocked,      ///< cause: index into LatticeMap::blockers
+};
+
+/// The task submanifold of the paper's Fig. 5, node by node.
+struct LatticeMap {
+  struct Node {
+    NodeState state = NodeState::kNoIk;
+    std::uint8_t cause = 0;
+  };
+  int layers = 0, angles = 0, windings = 1;
+  std::vector<double> s;              ///< m, of each layer
+  std::vector<Node> nodes;            ///< [layer][label][angle], label = branch * windings + winding
+  std::vector<std::string> blockers;  ///< "body - body", in the order of their names
+  std::array<std::string, kDof> joint_names;
+  std::vector<int> path;  ///< one slot in each layer: the answer, or a way to the furthest layer reached
+  bool complete = false;  ///< clearance was asked of every node, not only by the search
+
+  [[nodiscard]] int labels() const { return kBranches * windings; }
+  [[nodiscard]] const Node& at(int layer, int label, int angle) const {
+    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(labels()) + static_cast<std::size_t>(label)) *
+                     static_cast<std::size_t>(angles) +
+                 static_cast<std::size_t>(angle)];
+  }
+  /// Labels that have a node, or the path.
+  [[nodiscard]] std::vector<int> inhabited_labels() const;
+  /// "shoulder +, wrist -, elbow +", with the winding where there are several.
+  [[nodiscard]] std::string label_name(int label) const;
+};
+
+/// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
+/// search removed; with `full`, or where the record is an eager planner's, for every node.
+[[nodiscard]] LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full);
+
+/// The map in text, one panel per inhabited label: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for
+/// as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
+[[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
+
+/// The same as an SVG drawing for papers, with axes and a legend.
+[[nodiscard]] std::string to_svg(const LatticeMap& map);
+
+}  // namespace swivel

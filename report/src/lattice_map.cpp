@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/lattice_map.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <map>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+std::vector<int> LatticeMap::inhabited_labels() const {
+  std::vector<int> inhabited;
+  for (int label = 0; label < labels(); ++label) {
+    bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == label; });
+    for (int layer = 0; layer < layers && !any; ++layer)
+      for (int j = 0; j < angles && !any; ++j) any = at(layer, label, j).state >= NodeState::kNotLookedAt;
+    if (any) inhabited.push_back(label);
+  }
+  return inhabited;
+}
+
+std::string LatticeMap::label_name(int label) const {
+  const int branch = label / windings;
+  const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
+  std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
+  if (windings > 1) name += ", winding " + std::to_string(label % windings);
+  return name;
+}
+
+LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full) {
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const World world(robot.world(), problem.scene);
+  World::Query query(world, Certificates::kOn);
+
+  LatticeMap map;
+  map.layers = lattice.layers();
+  map.angles = lattice.angles();
+  map.windings = lattice.windings();
+  map.joint_names = robot.arm().chain.joint_names;
+  map.path = record.path;
+  map.complete = full || record.nodes.empty();
+  map.nodes.resize(static_cast<std::size_t>(lattice.nodes()));
+  std::vector<std::pair<std::size_t, std::string>> blocked;  // node, by what
+  LayerNodes nodes;
+  std::size_t k = 0;
+  for (int layer = 0; layer < map.layers; ++layer) {
+    map.s.push_back(path.layer(layer).s);
+    lattice.solve(layer, nodes);
+    for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
+      LatticeMap::Node& node = map.nodes[k];
+      if (!nodes.valid(lattice.label_of(slot), lattice.angle_of(slot))) {
+        const Lattice::NodeFault fault = lattice.fault(layer, slot);
+        if (fault.status == NodeStatus::kSingular) node.state = NodeState::kSingular;
+        if (fault.status == NodeStatus::kLimit)
+          node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
+        continue;
+      }
+      const Verdict verdict = record.nodes.empty() ? Verdict::kUnknown : record.nodes[k];
+      node.state = verdict == Verdict::kValid ? NodeState::kFree : NodeState::kNotLookedAt;
+      if (verdict == Verdict::kValid || (verdict == Verdict::kUnknown && !map.complete)) continue;
+      const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
+      if (!lattice.manipulable(q)) {
+        node.state = NodeState::kSingular;
+        continue;
+      }
+      const auto pair = query.first_below(q, problem.limits.clearance);
+      node.state = pair ? NodeState::kBlocked : NodeState::kFree;
+      if (pair)
+        blocked.emplace_back(k, world.body_names()[static_cast<std::size_t>(pair->a)] + " - " +
+                                    world.body_names()[static_cast<std::size_t>(pair->b)]);
+    }
+  }
+  std::map<std::string, std::uint8_t> index;
+  for (const auto& [node, name] : blocked) index.emplace(name, 0);
+  for (auto& [name, cause] : index) {
+    cause = static_cast<std::uint8_t>(std::min<std::size_t>(map.blockers.size(), 255));
+    map.blockers.push_back(name);
+  }
+  for (const auto& [node, name] : blocked) map.nodes[node].cause = index.at(name);
+  return map;
+}
+
+}  // namespace swivel

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <algorithm>
+
+#include "swivel/report/lattice_map.hpp"
+
+namespace swivel {
+
+/// A panel's cells, each standing for layers_each x angles_each nodes (fewer at the ends).
+class MapCells {
+ public:
+  MapCells(const LatticeMap& map, int most_columns, int most_rows)
+      : map_(map),
+        layers_each((map.layers + most_columns - 1) / most_columns),
+        angles_each((map.angles + most_rows - 1) / most_rows),
+        columns((map.layers + layers_each - 1) / layers_each),
+        rows((map.angles + angles_each - 1) / angles_each) {}
+
+  /// Row 0 holds the least arm angles.
+  [[nodiscard]] LatticeMap::Node node(int label, int column, int row) const {
+    LatticeMap::Node most = map_.at(column * layers_each, label, row * angles_each);
+    for (int i = column * layers_each; i < std::min(map_.layers, (column + 1) * layers_each); ++i)
+      for (int j = row * angles_each; j < std::min(map_.angles, (row + 1) * angles_each); ++j)
+        if (const LatticeMap::Node& node = map_.at(i, label, j); node.state > most.state) most = node;
+    return most;
+  }
+  [[nodiscard]] bool on_path(int label, int column, int row) const {
+    const int end = std::min(static_cast<int>(map_.path.size()), (column + 1) * layers_each);
+    for (int i = column * layers_each; i < end; ++i) {
+      const int slot = map_.path[static_cast<std::size_t>(i)];
+      if (slot / map_.angles == label && slot % map_.angles / angles_each == row) return true;
+    }
+    return false;
+  }
+
+ private:
+  const LatticeMap& map_;
+
+ public:
+  int layers_each, angles_each, columns, rows;
+};
+
+}  // namespace swivel

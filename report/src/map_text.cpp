@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+
+#include "map_cells.hpp"
+
+namespace swivel {
+
+namespace {
+
+struct Look {
+  char symbol;
+  int background;  // ANSI 256 colour
+};
+
+constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kOrange = 208, kMauve = 176;
+
+Look look_of(const LatticeMap::Node& node) {
+  switch (node.state) {
+    case NodeState::kNoIk:
+      return {' ', 231};
+    case NodeState::kSingular:
+      return {'s', kMauve};
+    case NodeState::kJointLimit:
+      return {static_cast<char>('1' + node.cause), kLightBlue};
+    case NodeState::kNotLookedAt:
+      return {'.', kGrey};
+    case NodeState::kFree:
+      return {'o', kGreen};
+    case NodeState::kBlocked:
+      return {static_cast<char>(node.cause < 26 ? 'a' + node.cause : '#'), kOrange};
+  }
+  return {'?', 231};
+}
+
+void put(std::string& text, const Look& look, bool coloured) {
+  if (coloured) {
+    text += "\x1b[48;5;" + std::to_string(look.background) + ";38;5;16m" + look.symbol + "\x1b[0m";
+  } else {
+    text += look.symbol;
+  }
+}
+
+}  // namespace
+
+std::string to_text(const LatticeMap& map, int columns, bool coloured) {
+  constexpr int kMargin = 8, kRows = 24;
+  const MapCells cells(map, std::max(10, columns - kMargin), kRows);
+  std::string text;
+  char number[32];
+  bool used[6] = {};
+  std::vector<bool> joints(kDof), blockers(map.blockers.size());
+  for (const int label : map.inhabited_labels()) {
+    text += map.label_name(label) + "\n";
+    for (int row = cells.rows - 1; row >= 0; --row) {
+      const double phi = -kPi + kTwoPi * row * cells.angles_each / map.angles;
+      std::snprintf(number, sizeof number, "%6.2f  ", phi);
+      text += row % 4 == 0 ? number : std::string(kMargin, ' ');
+      for (int column = 0; column < cells.columns; ++column) {
+        const LatticeMap::Node node = cells.node(label, column, row);
+        used[static_cast<std::size_t>(node.state)] = true;
+        if (node.state == NodeState::kJointLimit) joints[node.cause] = true;
+        if (node.state == NodeState::kBlocked) blockers[node.cause] = true;
+        Look look = look_of(node);
+        if (cells.on_path(label, column, row)) look = {'*', 231};
+        put(text, look, coloured);
+      }
+      text += '\n';
+    }
+    std::snprintf(number, sizeof number, "s = 0 to %.3f m", map.s.back());
+    text += std::string(kMargin, ' ') + number + "\n\n";
+  }
+  const auto legend = [&](const Look& look, const std::string& meaning) {
+    put(text, look, coloured);
+    text += " " + meaning + "\n";
+  };
+  legend({'*', 231},
+         static_cast<int>(map.path.size()) == map.layers ? "the path" : "a path to the furthest layer that any reaches");
+  if (used[static_cast<std::size_t>(NodeState::kFree)]) legend(look_of({NodeState::kFree, 0}), "asked, free");
+  if (used[static_cast<std::size_t>(NodeState::kNotLookedAt)])
+    legend(look_of({NodeState::kNotLookedAt, 0}), "not looked at: its clearance did not matter");
+  for (std::uint8_t k = 0; k < map.blockers.size(); ++k)
+    if (blockers[k]) legend(look_of({NodeState::kBlocked, k}), "blocked by " + map.blockers[k]);
+  for (std::uint8_t k = 0; k < kDof; ++k)
+    if (joints[k]) legend(look_of({NodeState::kJointLimit, k}), "limit of " + map.joint_names[k]);
+  if (used[static_cast<std::size_t>(NodeState::kSingular)]) legend(look_of({NodeState::kSingular, 0}), "singular");
+  if (cells.layers_each * cells.angles_each > 1)
+    text += "Rows are arm angles, rad. A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
+            std::to_string(cells.angles_each) +
+            " arm angles and shows a blocked node before a free one, and that before the others.\n";
+  else
+    text += "Rows are arm angles, rad.\n";
+  return text;
+}
+
+}  // namespace swivel

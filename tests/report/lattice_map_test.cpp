@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/lattice_map.hpp"
+
+#include <gtest/gtest.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <sstream>
+
+#include "robots.hpp"
+#include "swivel/collision/world.hpp"
+#include "swivel/core/lattice.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+struct Drawn {
+  Problem problem;
+  PlanResult result;
+  SearchRecord record;
+  LatticeMap map;
+};
+
+Drawn draw(const std::string& name, PlannerKind planner, bool full) {
+  Drawn drawn;
+  drawn.problem = io::load_problem(data_dir() / "problems" / (name + ".yaml"));
+  drawn.problem.resolution.ds = 0.02;
+  drawn.problem.resolution.dphi = 0.1;
+  drawn.problem.limits.edges = EdgeMode::kNodes;
+  PlanOptions options;
+  options.planner = planner;
+  options.record = &drawn.record;
+  const PreparedRobot robot(drawn.problem);
+  drawn.result = plan(robot, drawn.problem, options);
+  drawn.map = make_map(robot, drawn.problem, drawn.record, full);
+  return drawn;
+}
+
+class Maps : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Experiments, Maps,
+                         ::testing::Values("experiment_a", "experiment_a_start", "experiment_b", "experiment_c"));
+
+TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
+  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false), full = draw(GetParam(), PlannerKind::kLazy, true);
+  const Drawn eager = draw(GetParam(), PlannerKind::kEagerDp, false);
+  EXPECT_FALSE(lazy.map.complete);
+  EXPECT_TRUE(full.map.complete);
+  EXPECT_TRUE(eager.map.complete);
+
+  const PreparedRobot robot(lazy.problem);
+  const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
+  const World world(robot.world(), lazy.problem.scene);
+  World::Query query(world);
+  ASSERT_EQ(lazy.map.nodes.size(), static_cast<std::size_t>(lattice.nodes()));
+  std::map<NodeState, int> count;
+  std::size_t k = 0;
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
+      const LatticeMap::Node seen = lazy.map.nodes[k], known = full.map.nodes[k];
+      ++count[seen.state];
+      ASSERT_EQ(known.state, eager.map.nodes[k].state);
+      if (seen.state != NodeState::kNotLookedAt) {
+        ASSERT_EQ(seen.state, known.state);
+      }
+      const auto q = lattice.node(layer, slot);
+      ASSERT_EQ(q.has_value(), known.state >= NodeState::kNotLookedAt);
+      if (!q) {
+        const Lattice::NodeFault fault = lattice.fault(layer, slot);
+        ASSERT_EQ(known.state == NodeState::kJointLimit, fault.status == NodeStatus::kLimit);
+        if (fault.status == NodeStatus::kLimit) {
+          ASSERT_TRUE(fault.joints >> known.cause & 1);
+        }
+        continue;
+      }
+      const auto pair = query.first_below(*q, lazy.problem.limits.clearance);
+      ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
+      if (pair) {
+        const auto& names = world.body_names();
+        ASSERT_EQ(full.map.blockers[known.cause],
+                  names[static_cast<std::size_t>(pair->a)] + " - " + names[static_cast<std::size_t>(pair->b)]);
+      }
+    }
+  std::printf("%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d out of reach\n", GetParam(),
+              k, count[NodeState::kNotLookedAt], count[NodeState::kFree], count[NodeState::kBlocked], count[NodeState::kJointLimit],
+              count[NodeState::kSingular], count[NodeState::kNoIk]);
+  EXPECT_GT(count[NodeState::kNotLookedAt], count[NodeState::kFree]);  // or the search was not lazy
+  EXPECT_GT(count[NodeState::kJointLimit], 0);
+  for (std::size_t i = 0; i < lazy.map.path.size(); ++i)
+    EXPECT_EQ(lazy.map.nodes[i * static_cast<std::size_t>(lattice.width()) + static_cast<std::size_t>(lazy.map.path[i])].state,
+              NodeState::kFree);
+  if (lazy.result.status == PlanStatus::kSolved) {
+    EXPECT_EQ(static_cast<int>(lazy.map.path.size()), lattice.layers());
+    EXPECT_EQ(lazy.map.path, eager.map.path);
+  } else {
+    EXPECT_EQ(static_cast<int>(lazy.map.path.size()), lazy.result.diagnosis.reached_layer.value_or(-1) + 1);
+  }
+}
+
+TEST_P(Maps, TextFitsTheTerminalAndTellsThePath) {
+  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false);
+  for (const int columns : {40, 80, 200}) {
+    const std::string plain = to_text(lazy.map, columns, false);
+    std::istringstream lines(plain);
+    int stars = 0;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.find("stands for") == std::string::npos && line.find(" of ") == std::string::npos &&
+          line.find(" by ") == std::string::npos && line.find("path") == std::string::npos &&
+          line.find("looked") == std::string::npos && line.find("shoulder") == std::string::npos) {
+        EXPECT_LE(static_cast<int>(line.size()), columns) << line;
+      }
+      stars += static_cast<int>(std::count(line.begin(), line.end(), '*'));
+    }
+    EXPECT_GE(stars, std::min(columns - 8, static_cast<int>(lazy.map.path.size())) / 2);
+    EXPECT_EQ(plain.find('\x1b'), std::string::npos);
+    // Colour changes nothing else.
+    std::string coloured = to_text(lazy.map, columns, true), stripped;
+    EXPECT_NE(coloured.find('\x1b'), std::string::npos);
+    for (std::size_t k = 0; k < coloured.size(); ++k) {
+      if (coloured[k] == '\x1b')
+        k = coloured.find('m', k);
+      else
+        stripped += coloured[k];
+    }
+    EXPECT_EQ(stripped, plain);
+  }
+}
+
+TEST_P(Maps, SvgIsWellFormedAndCoversEveryPanel) {
+  const Drawn lazy = draw(GetParam(), PlannerKind::kLazy, false);
+  const std::string svg = to_svg(lazy.map);
+  tinyxml2::XMLDocument document;
+  ASSERT_EQ(document.Parse(svg.c_str()), tinyxml2::XML_SUCCESS);
+  int lines = 0;
+  for (auto* line = document.RootElement()->FirstChildElement("polyline"); line; line = line->NextSiblingElement("polyline"))
+    ++lines;
+  EXPECT_EQ(lines > 0, lazy.map.path.size() > 1);
+  for (const int label : lazy.map.inhabited_labels()) EXPECT_NE(svg.find(lazy.map.label_name(label)), std::string::npos);
+  EXPECT_LT(svg.size(), 2'000'000U);
+}
+
+TEST(Maps, RecordingChangesNothingOfThePlan) {
+  const Drawn with = draw("experiment_c", PlannerKind::kLazy, false);
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const PlanResult without = plan(with.problem, options);
+  EXPECT_EQ(with.result.cost, without.cost);
+  EXPECT_EQ(with.result.counters.nodes_checked, without.counters.nodes_checked);
+  EXPECT_EQ(with.result.counters.expansions, without.counters.expansions);
+  EXPECT_EQ(with.result.counters.ik_nodes, without.counters.ik_nodes);
+}
+
+}  // namespace
+}  // namespace swivel
