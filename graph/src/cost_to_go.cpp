@@ -387,22 +387,26 @@ bool CostToGo::make_exact(const std::function<bool()>& stop) {
   return true;
 }
 
+void CostToGo::start_from(int layer, Block& block) {
+  const int n = lattice_->angles();
+  clear(layer, block);
+  for (int label = 0; label < lattice_->labels(); ++label)
+    for (int chunk = 0; block.nodes().alive(label) && chunk < chunks(); ++chunk) {
+      want(*block.joints, lattice_->elbow_of(label), chunk);
+      block.live[mark(label, chunk)] = 1;
+      std::fill_n(block.row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
+    }
+  bar(block);
+}
+
 bool CostToGo::sweep_once(const std::function<bool()>& stop) {
   const Span span("sweep");
   pending_.clear();
   std::fill(cell_.begin(), cell_.end(), 0U);
   cells_.resize(1);
-  const int n = lattice_->angles();
   Block* next = block_[0].get();
   Block* here = block_[1].get();
-  clear(goal_, *next);
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int chunk = 0; next->nodes().alive(label) && chunk < chunks(); ++chunk) {
-      want(*next->joints, lattice_->elbow_of(label), chunk);
-      next->live[mark(label, chunk)] = 1;
-      std::fill_n(next->row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
-    }
-  bar(*next);
+  start_from(goal_, *next);
   cut(*next);
   settle(*next);
   store(*next);
@@ -583,14 +587,7 @@ int CostToGo::deepest_reachable() {
   const int n = lattice_->angles();
   Block* before = block_[0].get();
   Block* here = block_[1].get();
-  clear(0, *before);
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int chunk = 0; before->nodes().alive(label) && chunk < chunks(); ++chunk) {
-      want(*before->joints, lattice_->elbow_of(label), chunk);
-      before->live[mark(label, chunk)] = 1;
-      std::fill_n(before->row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
-    }
-  bar(*before);
+  start_from(0, *before);
   settle(*before);
   if (before->labels.empty()) return -1;
   int layer = 1;

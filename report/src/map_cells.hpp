@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "swivel/report/lattice_map.hpp"
 
@@ -38,6 +42,47 @@ class MapCells {
 
  public:
   int layers_each, angles_each, columns, rows;
+};
+
+/// The states that a drawing shows, each with its meaning.
+class MapLegend {
+ public:
+  explicit MapLegend(const LatticeMap& map) : map_(map) {}
+  void see(const LatticeMap::Node& node) { seen_.insert({-static_cast<int>(node.state), node.cause}); }
+  /// Most important first.
+  [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
+    std::vector<std::pair<LatticeMap::Node, std::string>> result;
+    for (const auto& [state, cause] : seen_) {
+      const LatticeMap::Node node{static_cast<NodeState>(-state), cause};
+      result.emplace_back(node, meaning(node));
+    }
+    return result;
+  }
+  [[nodiscard]] std::string path_meaning() const {
+    return static_cast<int>(map_.path.size()) == map_.layers ? "the path" : "a path to the furthest layer that any reaches";
+  }
+
+ private:
+  [[nodiscard]] std::string meaning(const LatticeMap::Node& node) const {
+    switch (node.state) {
+      case NodeState::kNoIk:
+        return "no node: out of reach, or beside the given start";
+      case NodeState::kSingular:
+        return "singular";
+      case NodeState::kJointLimit:
+        return "limit of " + map_.joint_names[node.cause];
+      case NodeState::kNotLookedAt:
+        return "not looked at: its clearance did not matter";
+      case NodeState::kFree:
+        return "asked, free";
+      case NodeState::kBlocked:
+        return "blocked by " + map_.blockers[node.cause];
+    }
+    return "?";
+  }
+
+  const LatticeMap& map_;
+  std::set<std::pair<int, std::uint8_t>> seen_;  // (minus the state, cause)
 };
 
 }  // namespace swivel

@@ -104,8 +104,7 @@ std::string to_svg(const LatticeMap& map) {
   drawing.rectangle(0, 0, width, kTop + static_cast<double>(labels.size()) * (kPanelHeight + kGap) + height_of_legend, "#ffffff");
   // A node stands for the stretch halfway to its neighbours, so the first and last layer are half as wide.
   const auto x_of = [&](double layer) { return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1); };
-  bool used[6] = {};
-  std::vector<bool> joints(kDof), blockers(map.blockers.size());
+  MapLegend seen(map);
   double top = kTop;
   for (const int label : labels) {
     const auto y_of = [&](double angle) { return top + kPanelHeight * (1 - angle / map.angles); };
@@ -113,9 +112,7 @@ std::string to_svg(const LatticeMap& map) {
       const double low = row * cells.angles_each, high = std::min(map.angles, (row + 1) * cells.angles_each);
       for (int column = 0; column < cells.columns;) {
         const LatticeMap::Node node = cells.node(label, column, row);
-        used[static_cast<std::size_t>(node.state)] = true;
-        if (node.state == NodeState::kJointLimit) joints[node.cause] = true;
-        if (node.state == NodeState::kBlocked) blockers[node.cause] = true;
+        seen.see(node);
         int end = column + 1;  // cells alike are one rectangle
         for (; end < cells.columns; ++end) {
           const LatticeMap::Node other = cells.node(label, end, row);
@@ -166,18 +163,8 @@ std::string to_svg(const LatticeMap& map) {
     drawing.text(kLeft + 22, top, "start", meaning);
     top += 18;
   };
-  if (!map.path.empty())
-    legend("#000000", static_cast<int>(map.path.size()) == map.layers ? "the path; dots: change of branch"
-                                                                      : "a path to the furthest layer that any reaches");
-  if (used[static_cast<std::size_t>(NodeState::kFree)]) legend(colour_of({NodeState::kFree, 0}), "asked, free");
-  if (used[static_cast<std::size_t>(NodeState::kNotLookedAt)])
-    legend(colour_of({NodeState::kNotLookedAt, 0}), "not looked at: its clearance did not matter");
-  for (std::uint8_t k = 0; k < map.blockers.size(); ++k)
-    if (blockers[k]) legend(colour_of({NodeState::kBlocked, k}), "blocked by " + map.blockers[k]);
-  for (std::uint8_t k = 0; k < kDof; ++k)
-    if (joints[k]) legend(colour_of({NodeState::kJointLimit, k}), "limit of " + map.joint_names[k]);
-  if (used[static_cast<std::size_t>(NodeState::kSingular)]) legend(colour_of({NodeState::kSingular, 0}), "singular");
-  if (used[static_cast<std::size_t>(NodeState::kNoIk)]) legend("#ffffff", "no node: out of reach, or beside the given start");
+  if (!map.path.empty()) legend("#000000", seen.path_meaning() + "; dots: change of branch");
+  for (const auto& [node, meaning] : seen.entries()) legend(colour_of(node), meaning);
   if (cells.layers_each * cells.angles_each > 1) {
     drawing.text(kLeft, top, "start",
                  "A cell stands for up to " + std::to_string(cells.layers_each) + " x " + std::to_string(cells.angles_each) +

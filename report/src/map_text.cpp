@@ -47,8 +47,7 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   const MapCells cells(map, std::max(10, columns - kMargin), kRows);
   std::string text;
   char number[32];
-  bool used[6] = {};
-  std::vector<bool> joints(kDof), blockers(map.blockers.size());
+  MapLegend seen(map);
   for (const int label : map.inhabited_labels()) {
     text += map.label_name(label) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
@@ -57,9 +56,7 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
       text += row % 4 == 0 ? number : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(label, column, row);
-        used[static_cast<std::size_t>(node.state)] = true;
-        if (node.state == NodeState::kJointLimit) joints[node.cause] = true;
-        if (node.state == NodeState::kBlocked) blockers[node.cause] = true;
+        seen.see(node);
         Look look = look_of(node);
         if (cells.on_path(label, column, row)) look = {'*', 231};
         put(text, look, coloured);
@@ -73,16 +70,8 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
     put(text, look, coloured);
     text += " " + meaning + "\n";
   };
-  legend({'*', 231},
-         static_cast<int>(map.path.size()) == map.layers ? "the path" : "a path to the furthest layer that any reaches");
-  if (used[static_cast<std::size_t>(NodeState::kFree)]) legend(look_of({NodeState::kFree, 0}), "asked, free");
-  if (used[static_cast<std::size_t>(NodeState::kNotLookedAt)])
-    legend(look_of({NodeState::kNotLookedAt, 0}), "not looked at: its clearance did not matter");
-  for (std::uint8_t k = 0; k < map.blockers.size(); ++k)
-    if (blockers[k]) legend(look_of({NodeState::kBlocked, k}), "blocked by " + map.blockers[k]);
-  for (std::uint8_t k = 0; k < kDof; ++k)
-    if (joints[k]) legend(look_of({NodeState::kJointLimit, k}), "limit of " + map.joint_names[k]);
-  if (used[static_cast<std::size_t>(NodeState::kSingular)]) legend(look_of({NodeState::kSingular, 0}), "singular");
+  if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
+  for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);
   if (cells.layers_each * cells.angles_each > 1)
     text += "Rows are arm angles, rad. A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
             std::to_string(cells.angles_each) +

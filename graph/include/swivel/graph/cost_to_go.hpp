@@ -127,6 +127,7 @@ class CostToGo {
   Joints& joints(int layer, Block& block);
   void want(Joints& joints, int elbow, int chunk);
   void clear(int layer, Block& block);
+  void start_from(int layer, Block& block);  // every node at cost 0
   void relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other, double* best);
   void relax(int step_layer, Block& from, const Block& to);
   [[nodiscard]] bool may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const;
