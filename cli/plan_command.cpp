@@ -18,13 +18,14 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
+#include "swivel/report/page.hpp"
 
 namespace swivel::cli {
 
 namespace {
 
 struct PlanArguments {
-  std::string problem, out, json, trace, map_svg;
+  std::string problem, out, json, trace, map_svg, report;
   std::optional<double> timeout;
   bool quiet = false, map = false, full_map = false;
   SearchOptions search;
@@ -102,16 +103,21 @@ int run(const PlanArguments& arguments) {
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
   options.progress = [&](const std::string& phrase) { progress.show(phrase); };
-  const bool draws = arguments.map || !arguments.map_svg.empty();
-  if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map or --map-svg");
+  const bool draws = arguments.map || !arguments.map_svg.empty() || !arguments.report.empty();
+  if (!arguments.report.empty() && !page_available())
+    throw InputError("--report: this program was built without reports: allowed is a build with SWIVEL_REPORT=ON");
+  if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
   if (arguments.map && arguments.json == "-")
     throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
   SearchRecord record;
   if (draws) options.record = &record;
   PlanResult result = plan(problem, options);
+  std::optional<PreparedRobot> robot;
   std::optional<LatticeMap> map;
-  if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled)
-    map = make_map(PreparedRobot(problem), problem, record, arguments.full_map);
+  if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
+    robot.emplace(problem);
+    map = make_map(*robot, problem, record, arguments.full_map);
+  }
   progress.clear();
   result.time_ms["load"] = load;
 
@@ -120,6 +126,12 @@ int run(const PlanArguments& arguments) {
       io::write_trajectory(arguments.out, result);
     else
       std::filesystem::remove(arguments.out);
+  }
+  if (!arguments.report.empty()) {
+    if (map)
+      io::write_file(arguments.report, to_page(*robot, problem, record, *map, io::to_json(result)));
+    else
+      std::filesystem::remove(arguments.report);
   }
   if (map && !arguments.map_svg.empty()) io::write_file(arguments.map_svg, to_svg(*map));
   if (timeline) io::write_file(arguments.trace, io::to_trace_json(*timeline) + "\n");
@@ -165,6 +177,7 @@ void add_plan(CLI::App& app, int& exit_code) {
                       "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");
   command->add_flag("--map", arguments->map, "print the (s, phi) map: what the search looked at, and the path");
   command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
+  command->add_option("--report", arguments->report, "the plan as one HTML file: playback, map, plots, summary");
   command->add_flag("--full-map", arguments->full_map, "ask about every node before the map is drawn");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

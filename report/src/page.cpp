@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/page.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "map_cells.hpp"
+#include "page_template.hpp"
+#include "swivel/collision/world.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// RFC 4648, of the bytes of an array in the machine's order; the page reads little-endian.
+template <class T>
+std::string base64(const std::vector<T>& values) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<unsigned char> bytes(values.size() * sizeof(T));
+  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  std::string text;
+  text.reserve(4 * (bytes.size() / 3 + 1));
+  for (std::size_t k = 0; k < bytes.size(); k += 3) {
+    const std::size_t rest = std::min<std::size_t>(3, bytes.size() - k);
+    unsigned word = 0;
+    for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < rest ? bytes[k + j] : 0u);
+    for (std::size_t j = 0; j < 4; ++j) text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+Json vector_json(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+/// The upper three rows, row by row.
+Json pose_json(const Pose& pose) {
+  Json json = Json::array();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) json.push_back(pose.matrix()(r, c));
+  return json;
+}
+
+/// Meshes are written once, however many bodies share one.
+class Bodies {
+ public:
+  void add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose) {
+    Json body = {{"name", name}, {"kind", kind}, {"group", group}, {"pose", pose_json(pose)}};
+    if (const auto* sphere = std::get_if<Sphere>(&shape)) body["sphere"] = sphere->radius;
+    if (const auto* box = std::get_if<Box>(&shape)) body["box"] = vector_json(box->size);
+    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) body["cylinder"] = {cylinder->radius, cylinder->length};
+    if (const auto* capsule = std::get_if<Capsule>(&shape)) body["capsule"] = {capsule->radius, capsule->length};
+    if (const auto* mesh = std::get_if<MeshPtr>(&shape)) body["mesh"] = index_of(**mesh);
+    bodies.push_back(std::move(body));
+  }
+  Json bodies = Json::array(), meshes = Json::array();
+
+ private:
+  std::size_t index_of(const TriangleMesh& mesh) {
+    const auto [at, fresh] = index_.emplace(&mesh, index_.size());
+    if (fresh) {
+      std::vector<float> points;
+      for (const Vector3d& v : mesh.vertices)
+        for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(v[k]));
+      std::vector<std::uint32_t> corners;
+      for (const auto& triangle : mesh.triangles)
+        for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
+      meshes.push_back({{"vertices", base64(points)}, {"triangles", base64(corners)}});
+    }
+    return at->second;
+  }
+  std::map<const TriangleMesh*, std::size_t> index_;
+};
+
+/// The chain as the page's forward kinematics needs it (core/arm.hpp).
+Json chain_json(const Chain& chain) {
+  Json joints = Json::array();
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    joints.push_back({{"name", chain.joint_names[j]},
+                      {"axis", vector_json(chain.axis[j])},
+                      {"point", vector_json(chain.point[j])},
+                      {"lower", limit.continuous ? Json(nullptr) : Json(limit.lower)},
+                      {"upper", limit.continuous ? Json(nullptr) : Json(limit.upper)}});
+  }
+  return {{"joints", std::move(joints)}, {"home", pose_json(chain.home)}};
+}
+
+/// The answer layer by layer, or the way to the furthest layer.
+Json rows_json(const PreparedRobot& robot, const Problem& problem, const Lattice& lattice, const std::vector<int>& slots) {
+  const World world(robot.world(), problem.scene);
+  World::Query query(world);
+  Json rows = Json::array();
+  Config previous = Config::Zero();
+  for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
+    const int slot = slots[static_cast<std::size_t>(layer)];
+    LayerNodes nodes;
+    lattice.solve(layer, lattice.angle_of(slot), 1, nodes);
+    Config q = nodes.config(lattice.label_of(slot), 0);
+    Json error = nullptr;
+    if (layer > 0) {
+      const Config step = lattice.delta(previous, q);
+      q = previous + step;  // unwraps continuous joints, as the trajectory does
+      const PathDeviation deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, step);
+      error = 1e3 * *std::max_element(deviation.position.begin(), deviation.position.end());
+    }
+    previous = q;
+    Json row = {{"layer", layer},
+                {"s", lattice.path().layer(layer).s},
+                {"phi", lattice.phi(layer, slot)},
+                {"label", lattice.label_of(slot)},
+                {"angle", lattice.angle_of(slot)},
+                {"q", std::vector<double>(q.begin(), q.end())},
+                {"error_mm", std::move(error)}};
+    if (const auto clearance = query.clearance(q)) {
+      row["clearance_mm"] = 1e3 * clearance->distance;
+      row["pair"] = {world.body_names()[static_cast<std::size_t>(clearance->pair.a)],
+                     world.body_names()[static_cast<std::size_t>(clearance->pair.b)]};
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Joints of one node for each shown cell, in 16 bits: for drawing.
+Json map_json(const LatticeMap& map, const Lattice& lattice) {
+  constexpr std::size_t kMostCells = 200'000;
+  const std::vector<int> labels = map.inhabited_labels();
+  const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
+  const MapCells cells(map, std::max(100, most_columns), 252);
+  const double reach = 4 * kTwoPi;  // rad, for 16 bits; no arm's joint turns further
+  std::vector<std::uint8_t> states, causes;
+  std::vector<std::int16_t> joints;
+  LayerNodes nodes;
+  Json panels = Json::array();
+  for (const int label : labels) panels.push_back({{"label", label}, {"name", map.label_name(label)}});
+  for (int column = 0; column < cells.columns; ++column) {
+    const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
+    std::vector<Config> shown(labels.size() * static_cast<std::size_t>(cells.rows), Config::Constant(2 * reach));
+    for (int layer = first; layer < last; ++layer) {
+      lattice.solve(layer, nodes);
+      std::size_t k = 0;
+      for (const int label : labels)
+        for (int row = 0; row < cells.rows; ++row, ++k) {
+          const LatticeMap::Node cell = cells.node(label, column, row);
+          for (int j = row * cells.angles_each; j < std::min(map.angles, (row + 1) * cells.angles_each); ++j) {
+            const LatticeMap::Node& node = map.at(layer, label, j);
+            if (shown[k][0] < 2 * reach || node.state != cell.state || node.cause != cell.cause || !nodes.valid(label, j)) continue;
+            shown[k] = nodes.config(label, j);
+          }
+        }
+    }
+    std::size_t k = 0;
+    for (const int label : labels)
+      for (int row = 0; row < cells.rows; ++row, ++k) {
+        const LatticeMap::Node cell = cells.node(label, column, row);
+        const bool posed = shown[k][0] < 2 * reach;
+        states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (posed ? 128u : 0u)));
+        causes.push_back(cell.cause);
+        if (!posed) continue;
+        for (int j = 0; j < kDof; ++j)
+          joints.push_back(static_cast<std::int16_t>(std::lround(std::clamp(shown[k][j] / reach, -1.0, 1.0) * 32767)));
+      }
+  }
+  return {{"layers", map.layers},         {"angles", map.angles},
+          {"columns", cells.columns},     {"rows", cells.rows},
+          {"layers_each", cells.layers_each}, {"angles_each", cells.angles_each},
+          {"panels", std::move(panels)},  {"states", base64(states)},
+          {"causes", base64(causes)},     {"joints", base64(joints)},
+          {"joint_unit", reach / 32767},  {"blockers", map.blockers},
+          {"complete", map.complete},     {"s", map.s}};
+}
+
+}  // namespace
+
+bool page_available() {
+  return !page_template().empty();
+}
+
+std::string to_page(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, const LatticeMap& map,
+                    const std::string& result_json) {
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  Bodies bodies;
+  for (const RobotBody& body : robot.world().bodies())
+    bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
+  for (const SceneObject& object : problem.scene) bodies.add(object.name, "scene", 0, object.shape, object.pose);
+  Json tool_path = Json::array();
+  for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
+
+  const Json data = {{"problem", std::filesystem::path(problem.source).filename().string()},
+                     {"result", Json::parse(result_json)},
+                     {"settings",
+                      {{"ds", problem.resolution.ds},
+                       {"dphi", problem.resolution.dphi},
+                       {"clearance_mm", 1e3 * problem.limits.clearance},
+                       {"joint_step", problem.limits.joint_step},
+                       {"edges", problem.limits.edges == EdgeMode::kContinuous ? "continuous" : "nodes"}}},
+                     {"chain", chain_json(lattice.chain())},
+                     {"bodies", std::move(bodies.bodies)},
+                     {"meshes", std::move(bodies.meshes)},
+                     {"tool_path", std::move(tool_path)},
+                     {"rows", rows_json(robot, problem, lattice, record.path)},
+                     {"map", map_json(map, lattice)}};
+  std::string text = data.dump();
+  // "</script" must not end the element that holds the data.
+  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
+  const std::string_view frame = page_template();
+  constexpr std::string_view kMark = "@@DATA@@";
+  const std::size_t mark = frame.find(kMark);
+  if (mark == std::string_view::npos) throw std::logic_error("the page has no place for its data");
+  std::string page(frame.substr(0, mark));
+  page += text;
+  page += frame.substr(mark + kMark.size());
+  return page;
+}
+
+}  // namespace swivel

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Forward kinematics as a product of exponentials; the chain is that of core/arm.hpp.
+import { Matrix4, Vector3 } from 'three';
+
+export const vector = (v) => new Vector3(v[0], v[1], v[2]);
+export const matrix = (p) => new Matrix4().set(...p, 0, 0, 0, 1);
+
+/** G_0 ... G_7: the displacement of a body of each group from its pose at q = 0, base frame. */
+export function displacements(chain, q) {
+  const g = [new Matrix4()];
+  chain.joints.forEach((joint, k) => {
+    const point = vector(joint.point);
+    const turn = new Matrix4().makeRotationAxis(vector(joint.axis), q[k]);
+    turn.setPosition(point.clone().sub(point.clone().applyMatrix4(turn)));
+    g.push(g[k].clone().multiply(turn));
+  });
+  return g;
+}
+
+/** Yoshikawa's sqrt(det(J J^T)), J the 6 x 7 geometric Jacobian at the base origin (the value does not depend on the point). */
+export function manipulability(chain, q) {
+  const g = displacements(chain, q);
+  const columns = chain.joints.map((joint, k) => {
+    const axis = vector(joint.axis).transformDirection(g[k]);
+    const point = vector(joint.point).applyMatrix4(g[k]);
+    const linear = point.cross(axis);
+    return [linear.x, linear.y, linear.z, axis.x, axis.y, axis.z];
+  });
+  const a = Array.from({ length: 6 }, (_, r) => Array.from({ length: 6 }, (_, c) => columns.reduce((sum, column) => sum + column[r] * column[c], 0)));
+  let det = 1;
+  for (let k = 0; k < 6; ++k) {  // symmetric and not negative: elimination needs no pivots
+    if (a[k][k] <= 1e-15) return 0;
+    det *= a[k][k];
+    for (let r = k + 1; r < 6; ++r) {
+      const f = a[r][k] / a[k][k];
+      for (let c = k; c < 6; ++c) a[r][c] -= f * a[k][c];
+    }
+  }
+  return Math.sqrt(Math.max(0, det));
+}
