@@ -168,13 +168,20 @@ Json map_json(const LatticeMap& map, const Lattice& lattice) {
           joints.push_back(static_cast<std::int16_t>(std::lround(std::clamp(shown[k][j] / reach, -1.0, 1.0) * 32767)));
       }
   }
-  return {{"layers", map.layers},         {"angles", map.angles},
-          {"columns", cells.columns},     {"rows", cells.rows},
-          {"layers_each", cells.layers_each}, {"angles_each", cells.angles_each},
-          {"panels", std::move(panels)},  {"states", base64(states)},
-          {"causes", base64(causes)},     {"joints", base64(joints)},
-          {"joint_unit", reach / 32767},  {"blockers", map.blockers},
-          {"complete", map.complete},     {"s", map.s}};
+  return {{"layers", map.layers},
+          {"angles", map.angles},
+          {"columns", cells.columns},
+          {"rows", cells.rows},
+          {"layers_each", cells.layers_each},
+          {"angles_each", cells.angles_each},
+          {"panels", std::move(panels)},
+          {"states", base64(states)},
+          {"causes", base64(causes)},
+          {"joints", base64(joints)},
+          {"joint_unit", reach / 32767},
+          {"blockers", map.blockers},
+          {"complete", map.complete},
+          {"s", map.s}};
 }
 
 }  // namespace

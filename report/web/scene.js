@@ -62,7 +62,7 @@ export class View {
     this.arm = this.posed((part) => this.materials[part.body.kind], () => true);
     this.ghosts = new THREE.Group();
     this.scene.add(this.ghosts);
-    const ghost = (color) => new THREE.MeshLambertMaterial({ color, transparent: true, opacity: 0.2, depthWrite: false });
+    const ghost = (color) => new THREE.MeshLambertMaterial({ color, transparent: true, opacity: 0.2, depthWrite: false, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     if (data.rows.length > 1) {
       for (const [row, color] of [[data.rows[0], 0x0072b2], [data.rows.at(-1), 0x009e73]]) {
         const material = ghost(color), meshes = this.posed(() => material, (part) => part.body.group > 0, this.ghosts);
@@ -74,7 +74,7 @@ export class View {
     this.scene.add(this.line);
     const box = new THREE.Box3().setFromPoints(points);
     const target = box.getCenter(new THREE.Vector3()).multiplyScalar(0.6).add(new THREE.Vector3(0, 0, 0.35));
-    this.camera.position.copy(target).add(new THREE.Vector3(-0.8, -1.9, 1.1).normalize().multiplyScalar(2.7));
+    this.camera.position.copy(target).add(new THREE.Vector3(-0.8, -1.9, 1.1).normalize().multiplyScalar(2.3));
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.target.copy(target);
     this.orbit.update();
