@@ -18,10 +18,6 @@ constexpr int kRun = 16;  // angles relaxed at once
 
 struct Interval {
   float low = kNever, high = -kNever;
-  void add(float x) {
-    low = x < low ? x : low;
-    high = x > high ? x : high;
-  }
   void add(const Interval& other) {
     low = std::min(low, other.low);
     high = std::max(high, other.high);
@@ -31,7 +27,10 @@ struct Interval {
 
 constexpr std::array<std::size_t, 3> kMiddle{1, 3, 5};  // a branch flips only through the zero of one of these
 
-/// What is known of the nodes of a run.
+using Lanes = Eigen::Array<float, kRun, 1>;
+using Track = Eigen::Map<const Eigen::ArrayXd>;
+
+/// What is known of some nodes of a label.
 struct Summary {
   float least = kNever;                        // value
   std::array<Interval, kMiddle.size()> joint;  // kMiddle
@@ -41,12 +40,28 @@ struct Summary {
   }
 };
 
-/// One label of one layer, from -window to angles + window around the circle.
+/// One label of one layer, from -window to angles + window around the circle, and on to whole runs.
 struct Circle {
   bool alive = false;
   std::vector<float> q[kDof];
-  std::vector<float> value;      // bound; kNever where no node is
-  std::vector<Summary> summary;  // of each kRun padded positions
+  std::vector<float> value;   // bound; kNever where no node is
+  std::vector<Summary> near;  // of each run of angles: what lies in its windows
+
+  [[nodiscard]] Eigen::Map<const Lanes> lanes(const std::vector<float>& padded, int at) const {
+    return Eigen::Map<const Lanes>(padded.data() + at);
+  }
+  /// Of the kRun padded positions from `at`.
+  [[nodiscard]] Summary summary(int at) const {
+    const auto values = lanes(value, at);
+    Summary sum;
+    sum.least = values.minCoeff();
+    if (sum.least == kNever) return sum;
+    for (std::size_t m = 0; m < kMiddle.size(); ++m) {
+      const auto joint = lanes(q[kMiddle[m]], at);
+      sum.joint[m] = {(values < kNever).select(joint, kNever).minCoeff(), (values < kNever).select(joint, -kNever).maxCoeff()};
+    }
+    return sum;
+  }
 };
 
 class Chords {
@@ -86,20 +101,17 @@ class Chords {
       if (!here.alive) continue;
       float* best = row + static_cast<std::ptrdiff_t>(label) * n_;
       if (first) std::fill_n(best, n_, 0.0F);
-      for (int k = 0; !first && k < n_; k += kRun) {
-        const int begin = std::max(0, std::min(k, n_ - kRun));  // whole vectors: the last two runs may overlap
-        relax(label, begin, std::min(kRun, n_), best + begin);
+      for (int run = 0; !first && run < runs(); ++run) {
+        const Lanes relaxed = relax(label, run);
+        std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
       }
-      here.alive = false;
-      for (int j = 0; j < n_; ++j) {
-        const float kept = first ? 0 : (best[j] - static_cast<float>(lost_)) * (1 - 0x1p-20F);
-        best[j] = here.value[static_cast<std::size_t>(window_ + j)] == 0 ? std::max(0.0F, kept) : kNever;
-        here.alive |= best[j] != kNever;
-      }
+      Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
+      if (!first) bounds = ((bounds - static_cast<float>(lost_)) * (1 - 0x1p-20F)).max(0);
+      bounds = values = (values == 0).select(bounds, kNever);
+      here.alive = bounds.minCoeff() < kNever;
       any |= here.alive;
-      std::copy_n(best, n_, here.value.begin() + window_);
       wrap(here.value);
-      summarize(here);
+      look_around(here);
     }
     return any;
   }
@@ -118,70 +130,60 @@ class Chords {
       Circle& to = circle(0, label);
       to.alive = false;
       if (!nodes_.alive(label)) continue;
-      const auto length = static_cast<std::size_t>(n_ + 2 * window_), start = static_cast<std::size_t>(window_);
-      const double *shoulder = nodes_.shoulder_bar(label), *wrist = nodes_.wrist_bar(label);
-      to.value.resize(length);
-      float least = kNever;
-      for (int j = 0; j < n_; ++j) {
-        const auto bar = static_cast<float>(shoulder[j] + wrist[j]);
-        to.value[start + static_cast<std::size_t>(j)] = bar;
-        least = bar < least ? bar : least;
-      }
-      to.alive = least == 0;
+      const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
+      to.value.resize(length, kNever);
+      Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
+      value = (Track(nodes_.shoulder_bar(label), n_) + Track(nodes_.wrist_bar(label), n_)).cast<float>();
+      to.alive = value.minCoeff() == 0;
       if (!to.alive) continue;
       for (int k = 0; k < kDof; ++k) {
         std::vector<float>& q = to.q[k];
         q.resize(length);
-        const double* from = nodes_.q(label, k);
-        std::transform(from, from + n_, q.begin() + window_, [](double x) { return static_cast<float>(x); });
+        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes_.q(label, k), n_).cast<float>();
         wrap(q);
       }
     }
   }
 
-  void summarize(Circle& circle) const {
-    const std::size_t length = circle.value.size(), run = kRun;
-    circle.summary.assign((length + run - 1) / run, {});
-    for (std::size_t k = 0; k < length; ++k) {
-      if (circle.value[k] == kNever) continue;
-      Summary& summary = circle.summary[k / run];
-      summary.least = circle.value[k] < summary.least ? circle.value[k] : summary.least;
-      for (std::size_t m = 0; m < kMiddle.size(); ++m) summary.joint[m].add(circle.q[kMiddle[m]][k]);
+  [[nodiscard]] int runs() const { return (n_ + kRun - 1) / kRun; }
+  /// First angle of a run: whole vectors, so the last two may overlap.
+  [[nodiscard]] int begin(int run) const { return std::max(0, std::min(run * kRun, n_ - kRun)); }
+
+  /// What lies in the windows of every run, up to a run more on both sides.
+  void look_around(Circle& circle) {
+    const int length = n_ + 2 * window_;
+    parts_.clear();
+    for (int at = 0; at < length; at += kRun) parts_.push_back(circle.summary(at));
+    circle.near.assign(static_cast<std::size_t>(runs()), {});
+    for (int run = 0; run < runs(); ++run) {
+      const int last = std::min(length, begin(run) + kRun + 2 * window_) - 1;
+      for (int part = begin(run) / kRun; part <= last / kRun; ++part)
+        circle.near[static_cast<std::size_t>(run)].add(parts_[static_cast<std::size_t>(part)]);
     }
-  }
-  /// Of padded positions begin ... end - 1 and up to a run more on both sides.
-  static Summary summary_of(const Circle& circle, int begin, int end) {
-    Summary sum;
-    for (int s = begin / kRun; s <= (end - 1) / kRun; ++s) sum.add(circle.summary[static_cast<std::size_t>(s)]);
-    return sum;
   }
 
-  void relax(int label, int begin, int count, float* best) {
+  /// The bounds of a run's nodes before rounding is taken off.
+  Lanes relax(int label, int run) {
     const Circle& here = circle(0, label);
-    Summary own;
-    for (int k = 0; k < count; ++k) {
-      const auto at = static_cast<std::size_t>(window_ + begin + k);
-      if (here.value[at] == kNever) continue;
-      own.least = 0;
-      for (std::size_t m = 0; m < kMiddle.size(); ++m) own.joint[m].add(here.q[kMiddle[m]][at]);
-    }
-    if (own.least == kNever) return;
-    relax_with(here, begin, count, circle(1, label), best);
+    const int at = window_ + begin(run), count = std::min(kRun, n_);
+    Lanes best = Lanes::Constant(kNever);
+    const Summary own = here.summary(at);
+    if (own.least == kNever) return best;
+    const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
+    relax_with(here, begin(run), count, circle(1, label), best.data());
+    float worst = worst_of_all();
     for (int other = 0; other < lattice_.labels(); ++other) {
       const Circle& before = circle(1, other);
       if (other == label || !before.alive) continue;
-      float worst = 0;
-      for (int k = 0; k < count; ++k) {
-        const float given = here.value[static_cast<std::size_t>(window_ + begin + k)] + best[k];
-        worst = given < kNever || here.value[static_cast<std::size_t>(window_ + begin + k)] == 0 ? std::max(worst, best[k]) : worst;
-      }
-      const Summary near = summary_of(before, begin, begin + count + 2 * window_);
+      const Summary& near = before.near[static_cast<std::size_t>(run)];
       float norm = 0;
       for (std::size_t m = 0; m < kMiddle.size(); ++m)
         if (task_.turn[kMiddle[m]] == 0) norm = std::max(norm, task_.scale[kMiddle[m]] * own.joint[m].gap(near.joint[m]));
       if (near.least == kNever || near.least + norm >= worst) continue;
-      relax_with(here, begin, count, before, best);
+      relax_with(here, begin(run), count, before, best.data());
+      worst = worst_of_all();
     }
+    return best;
   }
 
   void relax_with(const Circle& here, int begin, int count, const Circle& before, float* best) {
@@ -208,6 +210,7 @@ class Chords {
   double lost_ = 0;
   bool fits_ = true;
   std::array<std::vector<Circle>, 2> circles_;  // [here, before][label]
+  std::vector<Summary> parts_;                  // scratch of look_around
   LayerNodes nodes_;
 };
 
