@@ -35,8 +35,9 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
         if (const auto pair = query.first_below(q, rule.d_edge + rule.h)) return pair;
         continue;
       }
-      if (!query.first_below(q, rule.d_edge + rule.h + half_bound)) continue;
-      if (const auto pair = query.first_below(q, rule.d_edge)) return pair;
+      const auto near = query.first_below(q, rule.d_edge + rule.h + half_bound);
+      if (!near) continue;
+      if (const auto pair = query.first_below(q, rule.d_edge, near)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }

@@ -175,14 +175,17 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::first_below(const Config& q, double d) {
+std::optional<BodyPair> World::Query::first_below(const Config& q, double d, const std::optional<BodyPair>& suspect) {
   impl_->move_to(q);
   impl_->certain = impl_->certificates != Certificates::kOff;
+  const auto is_below = [&](const BodyPair& p) {
+    if (!impl_->below(p, d)) return false;
+    impl_->own.certified_colliding += impl_->certain;
+    return true;
+  };
+  if (suspect && is_below(*suspect)) return suspect;
   for (const BodyPair& p : impl_->world->pairs)
-    if (impl_->below(p, d)) {
-      impl_->own.certified_colliding += impl_->certain;
-      return p;
-    }
+    if (p != suspect && is_below(p)) return p;
   impl_->own.certified_free += impl_->certain;
   return std::nullopt;
 }

@@ -50,19 +50,27 @@ class Search {
   }
 
  private:
+  struct Failure {
+    int layer, slot;
+    Fault fault;
+  };
+
   /// Asks what is not known of the path, failures first, and removes what fails.
   bool valid(const SlotPath& path) {
     const Span span("candidate path");
+    const int layers = static_cast<int>(path.size());
+    std::vector<Config> joints;
+    for (int i = 0; i < layers; ++i) joints.push_back(togo_.config(i, path[static_cast<std::size_t>(i)]));
+    const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     std::vector<NodeQuestion> nodes;
-    for (int i = 0; i < static_cast<int>(path.size()); ++i)
-      if (togo_.node_verdict(i, path[static_cast<std::size_t>(i)]) == Verdict::kUnknown)
-        nodes.push_back(question(i, path[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < layers; ++i)
+      if (togo_.node_verdict(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
     fail_first_.order(nodes);
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
-      const std::vector<std::pair<int, int>> failed =
+      const std::vector<Failure> failed =
           ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
       if (validity_.stopped()) return false;
-      for (const auto& [layer, slot] : failed) fail_first_.failed(layer);
+      for (const Failure& node : failed) fail_first_.failed(node.layer);
       if (!failed.empty()) {
         grow(failed);
         return false;
@@ -70,10 +78,9 @@ class Search {
     }
     if (!validity_.asks_edges()) return true;
     std::vector<EdgeQuestion> edges;
-    for (int i = 0; i + 1 < static_cast<int>(path.size()); ++i) {
-      const int a = path[static_cast<std::size_t>(i)], b = path[static_cast<std::size_t>(i) + 1];
-      if (togo_.edge_verdict(i, a, b) == Verdict::kUnknown) edges.push_back({i, a, b, question(i, a).q, question(i + 1, b).q});
-    }
+    for (int i = 0; i + 1 < layers; ++i)
+      if (togo_.edge_verdict(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
+        edges.push_back({i, path[at(i)], path[at(i + 1)], joints[at(i)], joints[at(i + 1)]});
     fail_first_.order(edges);
     for (std::size_t first = 0; first < edges.size(); first += batch()) {
       const std::vector<EdgeQuestion> failed =
@@ -90,29 +97,29 @@ class Search {
 
   /// The region of failing nodes around those just found, breadth first along the path and the arm angle: an obstacle blocks many
   /// neighbours, and each found now saves a round.
-  void grow(const std::vector<std::pair<int, int>>& failed) {
-    std::deque<std::pair<int, int>> suspects;
-    const auto suspect_neighbours = [&](int layer, int slot) {
-      const int n = lattice_.angles(), label = lattice_.label_of(slot), j = lattice_.angle_of(slot);
-      if (layer > 0) suspects.emplace_back(layer - 1, slot);
-      if (layer < togo_.goal_layer()) suspects.emplace_back(layer + 1, slot);
-      suspects.emplace_back(layer, label * n + (j + 1) % n);
-      suspects.emplace_back(layer, label * n + (j + n - 1) % n);
+  void grow(const std::vector<Failure>& failed) {
+    std::deque<Failure> suspects;
+    const auto suspect_neighbours = [&](const Failure& x) {
+      const int n = lattice_.angles(), label = lattice_.label_of(x.slot), j = lattice_.angle_of(x.slot);
+      if (x.layer > 0) suspects.push_back({x.layer - 1, x.slot, x.fault});
+      if (x.layer < togo_.goal_layer()) suspects.push_back({x.layer + 1, x.slot, x.fault});
+      suspects.push_back({x.layer, label * n + (j + 1) % n, x.fault});
+      suspects.push_back({x.layer, label * n + (j + n - 1) % n, x.fault});
     };
-    for (const auto& [layer, slot] : failed) suspect_neighbours(layer, slot);
+    for (const Failure& node : failed) suspect_neighbours(node);
     std::vector<NodeQuestion> questions;
     for (int left = most_grown(); left > 0 && !suspects.empty() && !validity_.stopped();) {
       questions.clear();
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
-        const auto [layer, slot] = suspects.front();
+        const auto [layer, slot, fault] = suspects.front();
         suspects.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
-                                       [&](const NodeQuestion& x) { return x.layer == layer && x.slot == slot; });
+                                       [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
         if (!again && togo_.node_verdict(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable)
-          questions.push_back(question(layer, slot));
+          questions.push_back({layer, slot, togo_.config(layer, slot), fault});
       }
       left -= static_cast<int>(questions.size());
-      for (const auto& [layer, slot] : ask(std::span<const NodeQuestion>(questions))) suspect_neighbours(layer, slot);
+      for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) suspect_neighbours(node);
     }
   }
 
@@ -161,8 +168,8 @@ class Search {
   }
 
   /// Asks about nodes, keeps or removes them, returns those that failed.
-  std::vector<std::pair<int, int>> ask(std::span<const NodeQuestion> questions) {
-    std::vector<std::pair<int, int>> failed;
+  std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
+    std::vector<Failure> failed;
     answers_.assign(questions.size(), {});
     validity_.nodes(questions, answers_);
     for (std::size_t k = 0; k < questions.size(); ++k) {
@@ -171,7 +178,7 @@ class Search {
         togo_.keep_node(x.layer, x.slot);
       } else {
         togo_.remove_alike(x.layer, x.slot, answers_[k].depends);
-        failed.emplace_back(x.layer, x.slot);
+        failed.push_back({x.layer, x.slot, answers_[k].fault});
       }
     }
     return failed;
@@ -194,7 +201,6 @@ class Search {
     return failed;
   }
 
-  NodeQuestion question(int layer, int slot) { return {layer, slot, togo_.config(layer, slot)}; }
   [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
 
   CostToGo& togo_;

@@ -30,12 +30,16 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const Span span("node");
-    const Config& q = questions[static_cast<std::size_t>(index)].q;
+    const auto& [layer, slot, q, suspect] = questions[static_cast<std::size_t>(index)];
     World::Query& query = queries_[static_cast<std::size_t>(worker)];
     NodeAnswer answer;
     if (lattice_->manipulable(q)) {
-      const auto pair = query.first_below(q, lattice_->limits().clearance);
-      answer = {!pair, pair ? dependence(query, q, *pair) : std::uint8_t{kOnNodeAlone}};
+      const int bodies = static_cast<int>(world_->body_names().size());
+      std::optional<BodyPair> suspected;
+      if (suspect != kNoFault) suspected = {suspect / bodies, suspect % bodies};
+      const auto pair = query.first_below(q, lattice_->limits().clearance, suspected);
+      answer.valid = !pair;
+      if (pair) answer = {false, dependence(query, q, *pair), pair->a * bodies + pair->b};
     }
     answers[static_cast<std::size_t>(index)] = answer;
   });

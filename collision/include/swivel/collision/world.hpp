@@ -16,6 +16,7 @@ namespace swivel {
 /// Two bodies that must keep clear of each other.
 struct BodyPair {
   int a = 0, b = 0;  ///< indices into World::body_names(), a < b
+  bool operator==(const BodyPair&) const = default;
 };
 
 /// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. design.md 1.
@@ -80,8 +81,10 @@ class World {
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
 
-    /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A function of (q, d) alone.
-    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d);
+    /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A pair suspected is asked
+    /// before the others. A function of the arguments alone.
+    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d,
+                                                      const std::optional<BodyPair>& suspect = {});
     /// The same of one pair. False for d < 0.
     [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, double d);
     /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.

@@ -11,9 +11,14 @@ namespace swivel {
 /// What is known of a node or edge beyond the closed form.
 enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
+/// What a node fails by, numbered as the Validity likes: a hint for questions about nodes nearby, which often fail by the same.
+using Fault = int;
+inline constexpr Fault kNoFault = -1;
+
 struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
+  Fault suspect = kNoFault;
 };
 struct EdgeQuestion {
   int layer = 0;  ///< of a; b lies in the next layer
@@ -35,6 +40,7 @@ enum Dependence : std::uint8_t {
 struct NodeAnswer {
   bool valid = false;
   std::uint8_t depends = kOnNodeAlone;  ///< of a failure
+  Fault fault = kNoFault;               ///< of a failure
 };
 
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once.
