@@ -26,7 +26,7 @@ struct PathFirstOptions {
   int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
   /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
   /// obstacle blocks more nodes of a finer lattice, and a round costs more.
-  int grow = 64, grow_one_in = 512;
+  int grow = 64, grow_one_in = 64;
 };
 
 struct SearchCounters {
