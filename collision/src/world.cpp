@@ -49,13 +49,15 @@ struct World::Impl {
   std::vector<BodyPair> pairs;
   std::vector<std::string> warnings;
 
-  Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene)
+  Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene,
+       const Impl* like = nullptr)
       : robot(std::move(robot_part)), meshes(std::move(store)), pairs(robot->pairs) {
     const Span span("world");
     for (std::size_t i = 0; i < robot->bodies.size(); ++i)
       add(robot->bodies[i].name, {robot->shapes[i], robot->bodies[i].group, robot->bodies[i].pose});
     for (const SceneObject& object : scene) {
-      add(object.name, {make_fcl_shape(object.shape, *meshes), 0, object.pose});
+      const Body* known = like ? like->scene_body(object.shape) : nullptr;
+      add(object.name, {known ? known->shape : make_fcl_shape(object.shape, *meshes), 0, object.pose});
       const int index = static_cast<int>(bodies.size()) - 1;
       for (std::size_t i = 0; i < robot->bodies.size(); ++i) {
         const RobotBody& body = robot->bodies[i];
@@ -72,6 +74,13 @@ struct World::Impl {
       warnings.push_back(name + ": mesh " + (*mesh)->source + " is not closed: it is treated as a surface, with nothing inside");
     bodies.push_back(std::move(body));
     names.push_back(name);
+  }
+
+  /// A scene object of this shape; null if there is none.
+  const Body* scene_body(const Shape& shape) const {
+    const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(robot->bodies.size());
+    const auto found = std::find_if(first, bodies.end(), [&](const Body& body) { return body.shape.shape == shape; });
+    return found == bodies.end() ? nullptr : &*found;
   }
 
   const Body& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
@@ -103,7 +112,7 @@ World::World(const RobotModel& robot, const ArmModel& arm, const Problem& proble
   impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene);
 }
 World::World(const World& like, const std::vector<SceneObject>& scene)
-    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene)) {}
+    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_.get())) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

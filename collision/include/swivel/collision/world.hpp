@@ -56,8 +56,8 @@ class World {
   /// touch; without an SRDF, and for attached bodies, also not below max(d_safe, d_edge + h) in all of many seeded samples. Throws
   /// InputError for a mesh without triangles.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem);
-  /// The robot of `like` in front of another scene: shares its robot pairs and the trees of every mesh that a world of this family
-  /// has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
+  /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that a
+  /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
   World(const World& like, const std::vector<SceneObject>& scene);
   ~World();
   World(World&&) noexcept;

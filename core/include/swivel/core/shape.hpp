@@ -13,17 +13,21 @@ namespace swivel {
 /// Collision shapes; lengths in metres, each centred on its own frame, axes of revolution along z.
 struct Sphere {
   double radius = 0;
+  bool operator==(const Sphere&) const = default;
 };
 struct Box {
   Vector3d size = Vector3d::Zero();  ///< full edge lengths
+  bool operator==(const Box&) const = default;
 };
 struct Cylinder {
   double radius = 0;
   double length = 0;
+  bool operator==(const Cylinder&) const = default;
 };
 struct Capsule {
   double radius = 0;
   double length = 0;  ///< of the cylindrical part, without the caps
+  bool operator==(const Capsule&) const = default;
 };
 
 /// A triangle soup with shared vertices, metres, scale and mirror already applied (a mirror flips the winding back).
