@@ -94,6 +94,36 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
   EXPECT_EQ(query.counters().fcl_failures, 0);
 }
 
+/// A suspect changes who is named, not whether.
+TEST(World, ASuspectIsAskedFirst) {
+  const RobotModel robot = mixed_arm();
+  Problem problem = problem_for(robot);
+  problem.scene = mixed_scene();
+  const World world(robot, arm_of(robot), problem);
+  World::Query query(world, Certificates::kOn);
+  Random random(34);
+  int named = 0, others = 0, none = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Config q = random.config(2.5);
+    const BodyPair suspect = world.pairs()[static_cast<std::size_t>(random.index(static_cast<int>(world.pairs().size())))];
+    const bool guilty = query.pair_below(q, suspect, 0.005);
+    const auto plain = query.first_below(q, 0.005), found = query.first_below(q, 0.005, suspect);
+    ASSERT_EQ(plain.has_value(), found.has_value());
+    if (!found) {
+      ++none;
+    } else if (guilty) {
+      ASSERT_EQ(*found, suspect);
+      ++named;
+    } else {
+      ASSERT_EQ(*found, *plain);
+      ++others;
+    }
+  }
+  EXPECT_GT(named, 30);
+  EXPECT_GT(others, 300);
+  EXPECT_GT(none, 300);
+}
+
 TEST(World, NothingToTouch) {
   RobotModel robot = capsule_arm();
   for (Link& link : robot.links) link.collision.clear();
