@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/lattice.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include "kernels/kernels.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -72,11 +71,10 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
 
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
-  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  if (width > 1e8 || needed > 0.8 * memory)
+  if (width > 1e8 || !fits_in_memory(needed))
     throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " +
                      std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) + ", this machine has " +
-                     gigabytes(memory) + ": allowed are larger ds or dphi");
+                     gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
   angles_ = static_cast<int>(wanted);
   window_ = static_cast<int>(
       std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));

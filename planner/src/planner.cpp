@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/planner.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "diagnosis.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/graph/path_first.hpp"
 
@@ -51,12 +50,11 @@ Certificates certificates_of(const PlanOptions& options) {
   return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
 }
 
-/// The explicit graph keeps about 64 bytes a node and 56 an edge; beyond the machine's memory it would be killed, not refused.
+/// The explicit graph keeps about 64 bytes a node and 56 an edge.
 void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
-  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-  if (needed > 0.8 * memory)
+  if (!fits_in_memory(needed))
     throw InputError(source + ": --planner eager: its graph would need about " +
                      std::to_string(static_cast<long long>(needed / 1e9)) +
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");

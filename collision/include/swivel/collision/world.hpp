@@ -57,7 +57,8 @@ class World {
   /// InputError for a mesh without triangles.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem);
   /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that a
-  /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
+  /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on
+  /// one `like`.
   World(const World& like, const std::vector<SceneObject>& scene);
   ~World();
   World(World&&) noexcept;
@@ -83,8 +84,7 @@ class World {
 
     /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A pair suspected is asked
     /// before the others. A function of the arguments alone.
-    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d,
-                                                      const std::optional<BodyPair>& suspect = {});
+    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d, const std::optional<BodyPair>& suspect = {});
     /// The same of one pair. False for d < 0.
     [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, double d);
     /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.
