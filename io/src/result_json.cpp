@@ -103,6 +103,7 @@ std::string to_json(const PlanResult& result) {
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["warnings"] = result.warnings;
+  json["joint_names"] = result.joint_names;
   // File and joint names need not be UTF-8: replace what is not, rather than fail.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

@@ -34,6 +34,7 @@ PlanResult solved() {
   row.q << 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 1e-17;
   result.trajectory = {row, row};
   result.warnings = {"open mesh"};
+  result.joint_names = {"a", "b", "c", "d", "e", "f", "g"};
   return result;
 }
 
@@ -41,7 +42,7 @@ TEST(Result, KeysInOrder) {
   const Json json = Json::parse(to_json(solved()));
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
                                                      "tool_path_error_mm", "min_clearance", "min_manipulability", "arm_angle",
-                                                     "diagnosis", "trajectory", "warnings"}));
+                                                     "diagnosis", "trajectory", "warnings", "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
             (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints"}));
   EXPECT_EQ(keys_of(json["counters"]),
@@ -69,6 +70,7 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["trajectory"][0]["phi"].get<double>(), kPi);
   for (int k = 0; k < kDof; ++k) EXPECT_EQ(json["trajectory"][0]["joints"][k].get<double>(), result.trajectory[0].q[k]);
   EXPECT_EQ(json["warnings"], Json({"open mesh"}));
+  EXPECT_EQ(json["joint_names"], Json({"a", "b", "c", "d", "e", "f", "g"}));
 }
 
 TEST(Result, Infeasible) {
