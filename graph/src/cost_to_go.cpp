@@ -2,6 +2,7 @@
 #include "swivel/graph/cost_to_go.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "kernels/relax.hpp"
 #include "swivel/core/timeline.hpp"
@@ -10,6 +11,15 @@
 namespace swivel {
 
 namespace {
+
+/// f(0) ... f(count - 1), count <= whole; a loop of known length is unrolled into vectors.
+template <int whole, class F>
+void each(int count, const F& f) {
+  if (count == whole)
+    for (int k = 0; k < whole; ++k) f(k);
+  else
+    for (int k = 0; k < count; ++k) f(k);
+}
 
 struct Interval {
   double low = kUnreachable, high = -kUnreachable;
@@ -159,7 +169,6 @@ void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
 }
 
 bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
-  if (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other))) return false;
   const Config& bound = lattice_->step_bound(step_layer);
   const Block::Near& near = to.near[mark(other, chunk)];
   const int begin = lattice_->window() + chunk * kChunk, end = std::min(lattice_->window() + lattice_->angles(), begin + kChunk);
@@ -203,13 +212,16 @@ void CostToGo::relax(int step_layer, Block& from, const Block& to) {
     double* row = from.row.data() + static_cast<std::ptrdiff_t>(label) * n;
     std::uint8_t* todo = from.todo.data() + mark(label, 0);
     std::uint8_t* live = from.live.data() + mark(label, 0);
-    if (std::find(todo, todo + count, 1) == todo + count) continue;
-    for (int chunk = 0; chunk < count; ++chunk)
+    int low = 0, high = count;  // todo lies in between
+    while (low < high && !todo[low]) ++low;
+    while (low < high && !todo[high - 1]) --high;
+    for (int chunk = low; chunk < high; ++chunk)
       if (todo[chunk]) std::fill(row + chunk * kChunk, row + std::min(n, (chunk + 1) * kChunk), kUnreachable);
     for (const int other : to.labels) {
-      int begin = 0;  // of a run of chunks
-      for (int chunk = 0; chunk <= count; ++chunk) {
-        if (chunk < count && todo[chunk] && to.near[mark(other, chunk)].last >= 0 &&
+      if (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other))) continue;
+      int begin = low;  // of a run of chunks
+      for (int chunk = low; chunk <= high; ++chunk) {
+        if (chunk < high && todo[chunk] && to.near[mark(other, chunk)].last >= 0 &&
             (label == other || may_connect(step_layer, from, label, chunk, to, other))) {
           live[chunk] = 1;
           continue;
@@ -231,9 +243,15 @@ void CostToGo::bar(Block& block) const {
     const double* shoulder = block.nodes().shoulder_bar(label) + window;
     const double* wrist = block.nodes().wrist_bar(label) + window;
     const Verdict* verdict = &verdict_[index(block.layer, label * n)];
-    for (int chunk = 0; chunk < chunks(); ++chunk)
-      for (int j = chunk * kChunk, end = std::min(n, j + kChunk); live[chunk] && j < end; ++j)
-        row[j] = verdict[j] == Verdict::kRemoved ? kUnreachable : row[j] + (shoulder[j] + wrist[j]);
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      if (!live[chunk]) continue;
+      const int begin = chunk * kChunk, count = std::min(kChunk, n - begin);
+      each<kChunk>(count, [&](int k) { row[begin + k] += shoulder[begin + k] + wrist[begin + k]; });
+      if (std::memchr(verdict + begin, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
+        each<kChunk>(count, [&](int k) {
+          if (verdict[begin + k] == Verdict::kRemoved) row[begin + k] = kUnreachable;
+        });
+    }
   }
 }
 
@@ -245,9 +263,15 @@ void CostToGo::cut(Block& block) const {
     const std::uint8_t* live = block.live.data() + mark(label, 0);
     double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
     const float* before = bound ? bound + static_cast<std::ptrdiff_t>(label) * n : nullptr;
-    for (int chunk = 0; chunk < chunks(); ++chunk)
-      for (int j = chunk * kChunk, end = std::min(n, j + kChunk); live[chunk] && j < end; ++j)
-        if (row[j] + (before ? before[j] : 0) > limit_) row[j] = kUnreachable;
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      if (!live[chunk]) continue;
+      const int begin = chunk * kChunk, count = std::min(kChunk, n - begin);
+      double* const values = row + begin;
+      if (before)
+        each<kChunk>(count, [&](int k) { values[k] = values[k] + before[begin + k] > limit_ ? kUnreachable : values[k]; });
+      else
+        each<kChunk>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
+    }
   }
 }
 
