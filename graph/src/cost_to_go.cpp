@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <mutex>
 
 #include "kernels/relax.hpp"
 #include "swivel/core/timeline.hpp"
@@ -24,10 +25,16 @@ void each(int count, const F& f) {
 struct Interval {
   double low = kUnreachable, high = -kUnreachable;
   Interval(const double* q, int begin, int end) {
-    for (int k = begin; k < end; ++k) {
-      low = q[k] < low ? q[k] : low;
-      high = q[k] > high ? q[k] : high;
-    }
+    for (int k = begin; k < end; ++k) add(q[k]);
+  }
+  /// Of those that have a value; the others need not have been solved.
+  Interval(const double* q, const double* value, int begin, int end) {
+    for (int k = begin; k < end; ++k)
+      if (value[k] != kUnreachable) add(q[k]);
+  }
+  void add(double q) {
+    low = q < low ? q : low;
+    high = q > high ? q : high;
   }
   [[nodiscard]] double gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
 };
@@ -38,6 +45,36 @@ struct CostToGo::Joints {
   int layer = -1;
   LayerNodes nodes;
   std::array<std::vector<std::uint8_t>, 2> solved;  // [elbow][chunk]
+};
+
+/// Joints that a search had kept, for the next one: pages fresh from the system took a quarter of a plan that meets obstacles.
+class CostToGo::Spare {
+ public:
+  static Spare& of_process() {
+    static Spare spare;
+    return spare;
+  }
+  std::unique_ptr<Joints> take() {
+    const std::lock_guard lock(mutex_);
+    if (joints_.empty()) return std::make_unique<Joints>();
+    std::unique_ptr<Joints> joints = std::move(joints_.back());
+    joints_.pop_back();
+    bytes_ -= joints->nodes.bytes();
+    return joints;
+  }
+  void give(std::unique_ptr<Joints> joints) {
+    constexpr std::size_t kMost = 64 << 20;
+    const std::lock_guard lock(mutex_);
+    if (bytes_ + joints->nodes.bytes() > kMost) return;
+    bytes_ += joints->nodes.bytes();
+    joints->layer = -1;
+    joints_.push_back(std::move(joints));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Joints>> joints_;
+  std::size_t bytes_ = 0;
 };
 
 struct CostToGo::Block {
@@ -74,7 +111,10 @@ CostToGo::CostToGo(const Lattice& lattice, Extent extent)
   }
 }
 
-CostToGo::~CostToGo() = default;
+CostToGo::~CostToGo() {
+  for (auto& joints : cache_)
+    if (joints) Spare::of_process().give(std::move(joints));
+}
 
 // --- joints
 
@@ -82,7 +122,7 @@ CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
   Joints* joints = &block.own;
   if (!cache_.empty()) {
     auto& kept = cache_[static_cast<std::size_t>(layer)];
-    if (!kept) kept = std::make_unique<Joints>();
+    if (!kept) kept = Spare::of_process().take();
     joints = kept.get();
   }
   if (joints->layer != layer) {
@@ -171,13 +211,14 @@ void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
 bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
   const Config& bound = lattice_->step_bound(step_layer);
   const Block::Near& near = to.near[mark(other, chunk)];
+  const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
   const int begin = lattice_->window() + chunk * kChunk, end = std::min(lattice_->window() + lattice_->angles(), begin + kChunk);
   // A branch flips only through the zero of a middle angle, so those tell branches apart; near a singular pose the outer joints of
   // the triple must meet as well. Joints of several turns tell windings apart. Continuous joints have no plain interval.
   for (const int joint : {1, 5, 3, 0, 2, 4, 6}) {
     if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const Interval own(from.nodes().q(label, joint), begin, end);
-    if (own.gap(Interval(to.nodes().q(other, joint), near.first, near.last + 1)) > bound[joint]) return false;
+    if (own.gap(Interval(to.nodes().q(other, joint), value, near.first, near.last + 1)) > bound[joint]) return false;
   }
   return true;
 }
@@ -511,7 +552,7 @@ void CostToGo::remove_edge(int layer, int a, int b) {
 }
 
 bool CostToGo::repair(const std::function<bool()>& stop) {
-  // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 25 bytes a node.
+  // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 40 bytes a node.
   constexpr std::int64_t kMostKept = 1'000'000;
   if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));
   repair_once();

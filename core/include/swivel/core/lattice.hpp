@@ -28,6 +28,7 @@ class LayerNodes {
   /// False where no node of the label exists, whatever the arm angle.
   [[nodiscard]] bool alive(int label) const { return at(label).alive; }
   [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(data_.size()) * sizeof(double); }
   /// Copies `count` entries of every array from one place of the run to another.
   void repeat(int from, int to, int count);
   [[nodiscard]] Config config(int label, int k) const {

@@ -28,7 +28,8 @@ inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, half a byte for the bounds. Joints are solved again where they
 /// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
-/// nodes: there they are kept, 25 bytes a node of the layers that were visited.
+/// nodes: there they are kept, 40 bytes a node of the layers that were visited; up to 64 MB of that stays with the process for the
+/// next search.
 class CostToGo {
  public:
   enum class Extent { kWhole, kBounded };
@@ -83,6 +84,7 @@ class CostToGo {
 
   /// The joints of one layer, from -window to angles + window around the circle, solved by chunks as they are wanted.
   struct Joints;
+  class Spare;
   /// A layer's values, ready to be relaxed against or being relaxed.
   struct Block;
   using Cell = std::array<double, kChunk>;
