@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include "commands.hpp"
 #include "progress.hpp"
@@ -80,6 +81,22 @@ void print_summary(const CampaignSummary& summary) {
               summary.fcl_calls.median);
 }
 
+/// Rows do not say of which seed and settings they are, so the last one is planned again before others join it.
+void require_same_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
+                           const std::vector<EpisodeRow>& rows, const std::string& out) {
+  if (rows.empty()) return;
+  const EpisodeRow& row = rows.back();
+  PlanOptions single = options.plan;
+  single.threads = 1;
+  const PlanResult result = plan(robot, episode_problem(problem, options.seed, row.episode), single);
+  if (result.status != PlanStatus::kSolved && result.status != PlanStatus::kInfeasible) return;  // timed out or cancelled
+  const EpisodeRow again(row.episode, result);
+  if (std::tie(again.status, again.cost, again.failed_s, again.reason) != std::tie(row.status, row.cost, row.failed_s, row.reason))
+    throw InputError(
+        out + ".part:" + std::to_string(rows.size() + 1) + ": episode " + std::to_string(row.episode) +
+        " comes out differently now: allowed are rows of the same problem, seed and settings; remove the file to start anew");
+}
+
 int run(const CampaignArguments& arguments) {
   CampaignOptions options;
   options.plan = arguments.search.plan_options();
@@ -112,6 +129,7 @@ int run(const CampaignArguments& arguments) {
     rows = file->rows();
   }
   options.skip = rows.size();
+  require_same_campaign(robot, problem, options, rows, arguments.out);
 
   catch_interrupts();
   ProgressLine progress(isatty(STDERR_FILENO) != 0);

@@ -369,6 +369,16 @@ class Campaign(WithFolder):
         self.campaign("r.csv", "--trajectories", folder)
         self.assertEqual(len(list(folder.iterdir())), sum(row["status"] == "solved" for row in whole))
 
+    def test_a_part_of_another_seed_or_setting_is_left_alone(self):
+        lines = self.campaign("r.csv")[1].read_text().splitlines(keepends=True)
+        part = self.folder / "r.csv.part"
+        part.write_text("".join(lines[:4]))
+        for other in (("--seed", "6"), ("--planner", "lazy", "--seed", "7")):
+            done, _ = self.campaign("r.csv", *other, code=2)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("r.csv.part:4: episode 2 comes out differently now: allowed", done.stderr)
+            self.assertEqual(part.read_text(), "".join(lines[:4]))
+
     def test_a_part_of_something_else_is_left_alone(self):
         lines = self.campaign("r.csv")[1].read_text().splitlines(keepends=True)
         part = self.folder / "r.csv.part"
