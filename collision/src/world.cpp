@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "certificate.hpp"
+#include "nearest_points.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
 #include "swivel/core/timeline.hpp"
@@ -225,6 +226,12 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   }
   if (where == pairs.size()) return std::nullopt;
   return Clearance{least, pairs[where]};
+}
+
+std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const BodyPair& pair) {
+  impl_->move_to(q);
+  const PlacedShapeRef a = impl_->placed(pair.a), b = impl_->placed(pair.b);
+  return swivel::nearest_points(a, b, impl_->test.clearance(a, b));
 }
 
 CollisionCounters World::Query::counters() const {

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "nearest_points.hpp"
+
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/narrowphase/distance.h>
+
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+
+namespace swivel {
+
+namespace {
+
+constexpr double kTolerance = 1e-4;  // m
+
+/// What FCL is asked about: of round bodies the centre or the core segment, for the reasons of PairTest::core_distance.
+struct Core {
+  explicit Core(const PlacedShapeRef& body) : pose(*body.pose) {
+    if (const auto* sphere = std::get_if<Sphere>(&body.shape->shape)) {
+      own = std::make_unique<fcl::Sphered>(0);
+      radius = sphere->radius;
+    } else if (const auto* capsule = std::get_if<Capsule>(&body.shape->shape)) {
+      own = std::make_unique<fcl::Capsuled>(0, capsule->length);
+      radius = capsule->radius;
+    }
+    if (own)
+      geometry = own.get();
+    else if (body.shape->mesh)
+      geometry = &body.shape->mesh->distance_tree();
+    else
+      geometry = body.shape->geometry.get();
+  }
+  Pose pose;
+  std::unique_ptr<fcl::CollisionGeometryd> own;
+  const fcl::CollisionGeometryd* geometry = nullptr;
+  double radius = 0;
+};
+
+fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b,
+                              const Pose& X_b) {
+  const fcl::DistanceRequestd request(true, false, 0.0, 0.0, 1e-10, fcl::GST_LIBCCD);
+  fcl::DistanceResultd result;
+  try {
+    fcl::distance<double>(&a, X_a, &b, X_b, request, result);
+  } catch (const std::exception&) {
+    result.min_distance = std::numeric_limits<double>::infinity();
+  }
+  return result;
+}
+
+/// Not further than the tolerance outside the body. A point inside says yes: if the other one is of its body as well, the two can
+/// only be as near as the bodies are when both lie on the surfaces.
+bool belongs(const Vector3d& point, const Core& core) {
+  const Pose at(Eigen::Translation3d{point});
+  return distance(fcl::Sphered(0), at, *core.geometry, core.pose).min_distance <= core.radius + kTolerance;
+}
+
+}  // namespace
+
+std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, const PlacedShapeRef& b, double clearance) {
+  if (!(clearance > 0)) return std::nullopt;
+  if (b.shape->mesh &&
+      !a.shape->mesh) {  // FCL leaves the points of a sphere before a mesh unset, not those of a mesh before a sphere
+    const auto swapped = nearest_points(b, a, clearance);
+    return swapped ? std::optional(std::array{(*swapped)[1], (*swapped)[0]}) : std::nullopt;
+  }
+  const Core core_a(a), core_b(b);
+  // FCL gives the points in the base frame for most kinds of pairs, in the frames of their bodies for others. Neither is believed
+  // unless it passes.
+  const fcl::DistanceResultd found = distance(*core_a.geometry, core_a.pose, *core_b.geometry, core_b.pose);
+  const Vector3d p = found.nearest_points[0], q = found.nearest_points[1];
+  const std::array<std::array<Vector3d, 2>, 2> readings{{{p, q}, {core_a.pose * p, core_b.pose * q}}};
+  for (const auto& [from, to] : readings) {
+    const double cores_apart = (to - from).norm();
+    if (!(std::abs(cores_apart - core_a.radius - core_b.radius - clearance) <= kTolerance)) continue;
+    const Vector3d along = (to - from) / cores_apart;
+    const Vector3d on_a = from + core_a.radius * along, on_b = to - core_b.radius * along;
+    if (belongs(on_a, core_a) && belongs(on_b, core_b)) return std::array{on_a, on_b};
+  }
+  return std::nullopt;
+}
+
+}  // namespace swivel

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nearest points of every pair of kinds, against clearances that share nothing with FCL.
+#include "nearest_points.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "pair_test.hpp"
+#include "reference.hpp"
+#include "support.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace swivel::testing;
+
+const std::vector<std::string> kKinds{"sphere", "capsule", "box", "cylinder", "closed mesh", "open mesh"};
+
+Shape random_shape(int kind, Random& random) {
+  const double r = random.uniform(0.02, 0.12);
+  switch (kind) {
+    case 0:
+      return Sphere{r};
+    case 1:
+      return Capsule{r, random.uniform(0.02, 0.3)};
+    case 2:
+      return Box{random.vector(0.03, 0.3)};
+    case 3:
+      return Cylinder{r, random.uniform(0.02, 0.3)};
+    case 4:
+      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5), "closed");
+    default:
+      return as_mesh(tube_mesh(r, random.uniform(0.1, 0.3), 12), "open");
+  }
+}
+
+struct Tally {
+  int apart = 0, answered = 0;
+};
+
+TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
+  Random random(61);
+  PairTest test;
+  MeshStore store;
+  std::map<std::pair<int, int>, Tally> tally;
+  int touching = 0;
+  const int kinds = static_cast<int>(kKinds.size());
+  for (int ka = 0; ka < kinds; ++ka)
+    for (int kb = 0; kb < kinds; ++kb)
+      for (int k = 0; k < 12; ++k) {
+        const Shape a = random_shape(ka, random), b = random_shape(kb, random);
+        const Pose X_a = random.pose(0.05), X_b = random.pose(0.4);
+        const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
+        const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
+        const auto points = nearest_points(pa, pb, test.clearance(pa, pb));
+        const double truth = reference_clearance(a, X_a, b, X_b);
+        const std::string what = kKinds[static_cast<std::size_t>(ka)] + " / " + kKinds[static_cast<std::size_t>(kb)] +
+                                 ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        if (truth == 0) {
+          ++touching;
+          EXPECT_FALSE(points) << what;
+          continue;
+        }
+        Tally& t = tally[{ka, kb}];
+        ++t.apart;
+        if (!points) continue;
+        ++t.answered;
+        constexpr double kSlack = 1.2e-4;  // the function's tolerance and the reference's error
+        EXPECT_NEAR(((*points)[1] - (*points)[0]).norm(), truth, kSlack) << what;
+        const Sphere dot{1e-6};
+        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[0])), a, X_a), kSlack) << what;
+        EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[1])), b, X_b), kSlack) << what;
+      }
+  EXPECT_GT(touching, 15);
+  int apart = 0, answered = 0;
+  for (const auto& [pair, t] : tally) {
+    std::printf("%s / %s: %d of %d have points\n", kKinds[static_cast<std::size_t>(pair.first)].c_str(),
+                kKinds[static_cast<std::size_t>(pair.second)].c_str(), t.answered, t.apart);
+    apart += t.apart;
+    answered += t.answered;
+  }
+  EXPECT_GT(apart, 350);
+  EXPECT_GT(answered, apart * 95 / 100);
+}
+
+}  // namespace
+}  // namespace swivel
