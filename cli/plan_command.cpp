@@ -104,8 +104,7 @@ int run(const PlanArguments& arguments) {
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
   options.progress = [&](const std::string& phrase) { progress.show(phrase); };
   const bool draws = arguments.map || !arguments.map_svg.empty() || !arguments.report.empty();
-  if (!arguments.report.empty() && !page_available())
-    throw InputError("--report: this program was built without reports: allowed is a build with SWIVEL_REPORT=ON");
+  if (!arguments.report.empty()) require_pages();
   if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
   if (arguments.map && arguments.json == "-")
     throw InputError("--map: standard output is taken by --json -: allowed is one of the two");

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search_options.hpp"
 
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <csignal>
 
 #include "swivel/core/input_error.hpp"
+#include "swivel/report/page.hpp"
 
 namespace swivel::cli {
 
@@ -36,6 +39,24 @@ void SearchOptions::apply(Problem& problem) const {
       throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
     problem.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   }
+}
+
+std::string SearchOptions::words() const {
+  std::string words = " --planner " + planner;
+  const auto add = [&](const char* option, const std::optional<double>& value) {
+    if (!value) return;
+    std::array<char, 32> digits{};  // the shortest that read back as the same number
+    words += option + std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), *value).ptr);
+  };
+  add(" --ds ", ds);
+  add(" --dphi ", dphi);
+  if (!edges.empty()) words += " --edges " + edges;
+  return words;
+}
+
+void require_pages() {
+  if (!page_available())
+    throw InputError("--report: this program was built without reports: allowed is a build with SWIVEL_REPORT=ON");
 }
 
 double positive(double value, const char* option) {

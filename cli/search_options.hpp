@@ -20,7 +20,12 @@ struct SearchOptions {
   [[nodiscard]] PlanOptions plan_options() const;
   /// What the command line says instead of the problem file.
   void apply(Problem& problem) const;
+  /// The options that change answers, as words of a command line, with a space before each; the planner always.
+  [[nodiscard]] std::string words() const;
 };
+
+/// Throws InputError where this program was built without the pages of --report.
+void require_pages();
 
 /// Throws InputError in the name of the option.
 double positive(double value, const char* option);

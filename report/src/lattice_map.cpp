@@ -59,14 +59,17 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
         continue;
       }
       const Verdict verdict = record.nodes.empty() ? Verdict::kUnknown : record.nodes[k];
-      node.state = verdict == Verdict::kValid ? NodeState::kFree : NodeState::kNotLookedAt;
-      if (verdict == Verdict::kValid || (verdict == Verdict::kUnknown && !map.complete)) continue;
+      node.state = NodeState::kNotLookedAt;
+      if (verdict == Verdict::kUnknown && !map.complete) continue;
       const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
       if (!lattice.manipulable(q)) {
         node.state = NodeState::kSingular;
         continue;
       }
+      const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
+      const std::int64_t before = decided(query.counters());
       const auto pair = query.first_below(q, problem.limits.clearance);
+      node.certified = decided(query.counters()) > before;
       node.state = pair ? NodeState::kBlocked : NodeState::kFree;
       if (pair)
         blocked.emplace_back(k, world.body_names()[static_cast<std::size_t>(pair->a)] + " - " +

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,7 @@ class MapCells {
     LatticeMap::Node most = map_.at(column * layers_each, label, row * angles_each);
     for (int i = column * layers_each; i < std::min(map_.layers, (column + 1) * layers_each); ++i)
       for (int j = row * angles_each; j < std::min(map_.angles, (row + 1) * angles_each); ++j)
-        if (const LatticeMap::Node& node = map_.at(i, label, j); node.state > most.state) most = node;
+        if (const LatticeMap::Node& node = map_.at(i, label, j); importance(node) > importance(most)) most = node;
     return most;
   }
   [[nodiscard]] bool on_path(int label, int column, int row) const {
@@ -38,6 +39,9 @@ class MapCells {
   }
 
  private:
+  /// What took FCL to find is told before what a certificate proves.
+  static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) { return {node.state, !node.certified}; }
+
   const LatticeMap& map_;
 
  public:
@@ -48,12 +52,14 @@ class MapCells {
 class MapLegend {
  public:
   explicit MapLegend(const LatticeMap& map) : map_(map) {}
-  void see(const LatticeMap::Node& node) { seen_.insert({-static_cast<int>(node.state), node.cause}); }
+  void see(const LatticeMap::Node& node) {
+    seen_.insert({-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.certified});
+  }
   /// Most important first.
   [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
     std::vector<std::pair<LatticeMap::Node, std::string>> result;
-    for (const auto& [state, cause] : seen_) {
-      const LatticeMap::Node node{static_cast<NodeState>(-state), cause};
+    for (const auto& [state, cause, certified] : seen_) {
+      const LatticeMap::Node node{static_cast<NodeState>(-state), cause, certified};
       result.emplace_back(node, meaning(node));
     }
     return result;
@@ -74,7 +80,7 @@ class MapLegend {
       case NodeState::kNotLookedAt:
         return "not looked at: its clearance did not matter";
       case NodeState::kFree:
-        return "asked, free";
+        return node.certified ? "free, proved by a certificate" : "free, found by FCL";
       case NodeState::kBlocked:
         return "blocked by " + map_.blockers[node.cause];
     }
@@ -82,7 +88,7 @@ class MapLegend {
   }
 
   const LatticeMap& map_;
-  std::set<std::pair<int, std::uint8_t>> seen_;  // (minus the state, cause)
+  std::set<std::tuple<int, std::uint8_t, bool>> seen_;  // minus the state, cause, certified (of free ones)
 };
 
 }  // namespace swivel

@@ -23,7 +23,7 @@ std::string colour_of(const LatticeMap::Node& node) {
     case NodeState::kNotLookedAt:
       return "#dcdcdc";
     case NodeState::kFree:
-      return "#009e73";
+      return node.certified ? "#7ed0b4" : "#00795a";
     case NodeState::kBlocked:
       return kBlockerColour[node.cause % kBlockerColour.size()];
   }
@@ -99,7 +99,7 @@ std::string to_svg(const LatticeMap& map) {
   const MapCells cells(map, 620, 252);
   Drawing drawing;
   const std::vector<int> labels = map.inhabited_labels();
-  const double height_of_legend = 18.0 * static_cast<double>(4 + kDof + map.blockers.size());
+  const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map.blockers.size());
   const double width = kLeft + kPanelWidth + kRight;
   drawing.rectangle(0, 0, width, kTop + static_cast<double>(labels.size()) * (kPanelHeight + kGap) + height_of_legend, "#ffffff");
   // A node stands for the stretch halfway to its neighbours, so the first and last layer are half as wide.
@@ -116,7 +116,7 @@ std::string to_svg(const LatticeMap& map) {
         int end = column + 1;  // cells alike are one rectangle
         for (; end < cells.columns; ++end) {
           const LatticeMap::Node other = cells.node(label, end, row);
-          if (other.state != node.state || other.cause != node.cause) break;
+          if (other != node) break;
         }
         const double from = x_of(column * cells.layers_each - 0.5), to = x_of(end * cells.layers_each - 0.5);
         if (node.state != NodeState::kNoIk) drawing.rectangle(from, y_of(high), to - from, y_of(low) - y_of(high), colour_of(node));

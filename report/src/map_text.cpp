@@ -12,7 +12,7 @@ struct Look {
   int background;  // ANSI 256 colour
 };
 
-constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kOrange = 208, kMauve = 176;
+constexpr int kLightBlue = 153, kGrey = 252, kGreen = 72, kPaleGreen = 115, kOrange = 208, kMauve = 176;
 
 Look look_of(const LatticeMap::Node& node) {
   switch (node.state) {
@@ -25,7 +25,7 @@ Look look_of(const LatticeMap::Node& node) {
     case NodeState::kNotLookedAt:
       return {'.', kGrey};
     case NodeState::kFree:
-      return {'o', kGreen};
+      return node.certified ? Look{'+', kPaleGreen} : Look{'o', kGreen};
     case NodeState::kBlocked:
       return {static_cast<char>(node.cause < 26 ? 'a' + node.cause : '#'), kOrange};
   }

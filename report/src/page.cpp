@@ -2,10 +2,12 @@
 #include "swivel/report/page.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "map_cells.hpp"
 #include "page_template.hpp"
@@ -93,8 +95,7 @@ Json chain_json(const Chain& chain) {
 }
 
 /// The answer layer by layer, or the way to the furthest layer.
-Json rows_json(const PreparedRobot& robot, const Problem& problem, const Lattice& lattice, const std::vector<int>& slots) {
-  const World world(robot.world(), problem.scene);
+Json rows_json(const World& world, const Lattice& lattice, const std::vector<int>& slots) {
   World::Query query(world);
   Json rows = Json::array();
   Config previous = Config::Zero();
@@ -122,14 +123,97 @@ Json rows_json(const PreparedRobot& robot, const Problem& problem, const Lattice
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[static_cast<std::size_t>(clearance->pair.a)],
                      world.body_names()[static_cast<std::size_t>(clearance->pair.b)]};
+      if (const auto points = query.nearest_points(q, clearance->pair)) {
+        row["nearest"] = vector_json((*points)[0]);
+        for (const double x : (*points)[1]) row["nearest"].push_back(x);
+      } else {
+        row["nearest"] = nullptr;
+      }
     }
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
+/// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
+/// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
+Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& reason) {
+  const int layer = static_cast<int>(map.path.size());
+  if (layer >= map.layers) return nullptr;
+  const int from = map.path.empty() ? 0 : map.path.back();
+  LayerNodes nodes;
+  lattice.solve(layer, nodes);
+  int best = -1, least = 0;
+  for (const bool by_bodies : {true, false}) {
+    for (int slot = 0; slot < lattice.width(); ++slot) {
+      const int label = lattice.label_of(slot), angle = lattice.angle_of(slot);
+      const LatticeMap::Node& node = map.at(layer, label, angle);
+      const bool blocked = node.state == NodeState::kBlocked && reason == map.blockers[node.cause];
+      if (!nodes.valid(label, angle) || blocked != by_bodies) continue;
+      const int away = std::abs(angle - lattice.angle_of(from));
+      const int far = std::min(away, map.angles - away) + (label == lattice.label_of(from) ? 0 : map.angles);
+      if (best < 0 || far < least) best = slot, least = far;
+    }
+    if (best >= 0) break;
+  }
+  if (best < 0) return nullptr;
+  const int label = lattice.label_of(best), angle = lattice.angle_of(best);
+  const LatticeMap::Node& node = map.at(layer, label, angle);
+  const Config q = nodes.config(label, angle);
+  std::string what = "no valid pose here: " + reason, bodies;
+  constexpr std::string_view kBetween = " between layers";
+  if (node.state == NodeState::kBlocked) {
+    bodies = map.blockers[node.cause];
+    what = "the next pose is blocked by " + bodies;
+  } else if (reason.ends_with(kBetween)) {
+    bodies = reason.substr(0, reason.size() - kBetween.size());
+    what = "the way to the next pose is blocked by " + bodies;
+  } else if (!map.path.empty()) {
+    what = "the next pose cannot be moved to: " + reason;
+    if (reason == "joint step") {
+      LayerNodes before;
+      lattice.solve(layer - 1, lattice.angle_of(from), 1, before);
+      const Config step = lattice.delta(before.config(lattice.label_of(from), 0), q);
+      Eigen::Index joint = 0;
+      const double most = step.cwiseAbs().maxCoeff(&joint);
+      char text[32];
+      std::snprintf(text, sizeof text, " by %.2f rad", most);
+      what += ", " + map.joint_names[static_cast<std::size_t>(joint)] + text;
+    }
+  }
+  Json pair = nullptr;
+  if (const std::size_t dash = bodies.find(" - "); dash != std::string::npos)
+    pair = {bodies.substr(0, dash), bodies.substr(dash + 3)};
+  return {{"layer", layer},
+          {"s", lattice.path().layer(layer).s},
+          {"phi", lattice.phi(layer, best)},
+          {"q", std::vector<double>(q.begin(), q.end())},
+          {"pair", std::move(pair)},
+          {"what", std::move(what)}};
+}
+
+/// Clearances of cells, in tenths of a millimetre and 16 bits; `kUnknown` where nothing is near or nobody asked.
+class Clearances {
+ public:
+  Clearances(const World& world, std::size_t cells) : query_(world), each_(cells / kMost + 1) {}
+  void add(const Config& q) {
+    values.push_back(kUnknown);
+    if (asked_++ % each_ != 0) return;
+    if (const auto clearance = query_.clearance(q))
+      values.back() = static_cast<std::uint16_t>(std::min(1e4 * clearance->distance, kUnknown - 1.0));
+  }
+  void skip() { values.push_back(kUnknown); }
+  std::vector<std::uint16_t> values;
+
+ private:
+  static constexpr std::uint16_t kUnknown = 65535;
+  static constexpr std::size_t kMost = 2000;  // a question costs up to a millisecond
+  World::Query query_;
+  std::size_t each_, asked_ = 0;  // one cell in so many is asked about
+};
+
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
-Json map_json(const LatticeMap& map, const Lattice& lattice) {
+Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> labels = map.inhabited_labels();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
@@ -137,6 +221,12 @@ Json map_json(const LatticeMap& map, const Lattice& lattice) {
   const double reach = 4 * kTwoPi;  // rad, for 16 bits; no arm's joint turns further
   std::vector<std::uint8_t> states, causes;
   std::vector<std::int16_t> joints;
+  const auto looked_at = [](const LatticeMap::Node& node) { return node.state >= NodeState::kFree; };
+  std::size_t asked = 0;
+  for (const int label : labels)
+    for (int column = 0; column < cells.columns; ++column)
+      for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(label, column, row));
+  Clearances clearances(world, asked);
   LayerNodes nodes;
   Json panels = Json::array();
   for (const int label : labels) panels.push_back({{"label", label}, {"name", map.label_name(label)}});
@@ -151,7 +241,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice) {
           const LatticeMap::Node cell = cells.node(label, column, row);
           for (int j = row * cells.angles_each; j < std::min(map.angles, (row + 1) * cells.angles_each); ++j) {
             const LatticeMap::Node& node = map.at(layer, label, j);
-            if (shown[k][0] < 2 * reach || node.state != cell.state || node.cause != cell.cause || !nodes.valid(label, j)) continue;
+            if (shown[k][0] < 2 * reach || node != cell || !nodes.valid(label, j)) continue;
             shown[k] = nodes.config(label, j);
           }
         }
@@ -161,9 +251,14 @@ Json map_json(const LatticeMap& map, const Lattice& lattice) {
       for (int row = 0; row < cells.rows; ++row, ++k) {
         const LatticeMap::Node cell = cells.node(label, column, row);
         const bool posed = shown[k][0] < 2 * reach;
-        states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (posed ? 128u : 0u)));
+        states.push_back(
+            static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
         causes.push_back(cell.cause);
         if (!posed) continue;
+        if (looked_at(cell))
+          clearances.add(shown[k]);
+        else
+          clearances.skip();
         for (int j = 0; j < kDof; ++j)
           joints.push_back(static_cast<std::int16_t>(std::lround(std::clamp(shown[k][j] / reach, -1.0, 1.0) * 32767)));
       }
@@ -178,6 +273,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice) {
           {"states", base64(states)},
           {"causes", base64(causes)},
           {"joints", base64(joints)},
+          {"clearances", base64(clearances.values)},
           {"joint_unit", reach / 32767},
           {"blockers", map.blockers},
           {"complete", map.complete},
@@ -194,6 +290,10 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                     const std::string& result_json) {
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const World world(robot.world(), problem.scene);
+  Json result = Json::parse(result_json);
+  const Json& diagnosis = result["diagnosis"];
+  const std::string reason = diagnosis.is_object() ? diagnosis.value("reason", "") : "";
   Bodies bodies;
   for (const RobotBody& body : robot.world().bodies())
     bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
@@ -202,7 +302,7 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
   const Json data = {{"problem", std::filesystem::path(problem.source).filename().string()},
-                     {"result", Json::parse(result_json)},
+                     {"result", result},
                      {"settings",
                       {{"ds", problem.resolution.ds},
                        {"dphi", problem.resolution.dphi},
@@ -213,19 +313,10 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                      {"bodies", std::move(bodies.bodies)},
                      {"meshes", std::move(bodies.meshes)},
                      {"tool_path", std::move(tool_path)},
-                     {"rows", rows_json(robot, problem, lattice, record.path)},
-                     {"map", map_json(map, lattice)}};
-  std::string text = data.dump();
-  // "</script" must not end the element that holds the data.
-  for (std::size_t at = 0; (at = text.find("</", at)) != std::string::npos; at += 3) text.replace(at, 2, "<\\/");
-  const std::string_view frame = page_template();
-  constexpr std::string_view kMark = "@@DATA@@";
-  const std::size_t mark = frame.find(kMark);
-  if (mark == std::string_view::npos) throw std::logic_error("the page has no place for its data");
-  std::string page(frame.substr(0, mark));
-  page += text;
-  page += frame.substr(mark + kMark.size());
-  return page;
+                     {"rows", rows_json(world, lattice, record.path)},
+                     {"cut", cut_json(map, lattice, reason)},
+                     {"map", map_json(map, lattice, world)}};
+  return fill(page_template(), data.dump());
 }
 
 }  // namespace swivel

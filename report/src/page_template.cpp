@@ -1,27 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "page_template.hpp"
 
-#ifdef SWIVEL_PAGE_TEMPLATE
+#include <stdexcept>
+
+#ifdef SWIVEL_PAGES
 // GCC's and Clang's way to a file as bytes; C++20 has no #embed.
-asm(".section .rodata\n"
-    "swivel_page_begin:\n"
-    ".incbin \"" SWIVEL_PAGE_TEMPLATE
-    "\"\n"
-    "swivel_page_end:\n"
-    ".byte 0\n"
-    ".previous\n");
-extern "C" const char swivel_page_begin[];
-extern "C" const char swivel_page_end[];
+#define SWIVEL_EMBED(name)               \
+  asm(".section .rodata\n"               \
+      "swivel_" name                     \
+      "_begin:\n"                        \
+      ".incbin \"" SWIVEL_PAGES "/" name \
+      ".html\"\n"                        \
+      "swivel_" name                     \
+      "_end:\n"                          \
+      ".byte 0\n"                        \
+      ".previous\n")
+SWIVEL_EMBED("report");
+SWIVEL_EMBED("overview");
+extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[], swivel_overview_end[];
 #endif
 
 namespace swivel {
 
 std::string_view page_template() {
-#ifdef SWIVEL_PAGE_TEMPLATE
-  return {swivel_page_begin, static_cast<std::size_t>(swivel_page_end - swivel_page_begin)};
+#ifdef SWIVEL_PAGES
+  return {swivel_report_begin, static_cast<std::size_t>(swivel_report_end - swivel_report_begin)};
 #else
   return {};
 #endif
+}
+
+std::string_view overview_template() {
+#ifdef SWIVEL_PAGES
+  return {swivel_overview_begin, static_cast<std::size_t>(swivel_overview_end - swivel_overview_begin)};
+#else
+  return {};
+#endif
+}
+
+std::string fill(std::string_view page, std::string json) {
+  // "</script" must not end the element that holds the data.
+  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
+  constexpr std::string_view kMark = "@@DATA@@";
+  const std::size_t mark = page.find(kMark);
+  if (mark == std::string_view::npos) throw std::logic_error("the page has no place for its data");
+  std::string filled(page.substr(0, mark));
+  filled += json;
+  filled += page.substr(mark + kMark.size());
+  return filled;
 }
 
 }  // namespace swivel

@@ -56,7 +56,8 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
   const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
   const Lattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
   const World world(robot.world(), lazy.problem.scene);
-  World::Query query(world);
+  World::Query query(world), quick(world, Certificates::kOn);
+  int certified = 0;
   ASSERT_EQ(lazy.map.nodes.size(), static_cast<std::size_t>(lattice.nodes()));
   std::map<NodeState, int> count;
   std::size_t k = 0;
@@ -78,6 +79,13 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
         }
         continue;
       }
+      const std::int64_t asked = quick.counters().fcl_calls;
+      (void)quick.first_below(*q, lazy.problem.limits.clearance);
+      ASSERT_EQ(known.certified, quick.counters().fcl_calls == asked);  // it took no FCL
+      certified += known.certified;
+      if (seen.state != NodeState::kNotLookedAt) {
+        ASSERT_EQ(seen.certified, known.certified);
+      }
       const auto pair = query.first_below(*q, lazy.problem.limits.clearance);
       ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
       if (pair) {
@@ -91,6 +99,10 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
               count[NodeState::kSingular], count[NodeState::kNoIk]);
   EXPECT_GT(count[NodeState::kNotLookedAt], count[NodeState::kFree]);  // or the search was not lazy
   EXPECT_GT(count[NodeState::kJointLimit], 0);
+  const int exist = static_cast<int>(
+      std::count_if(full.map.nodes.begin(), full.map.nodes.end(), [](const auto& node) { return node.state >= NodeState::kFree; }));
+  std::printf("%d of %d nodes certified\n", certified, exist);
+  EXPECT_GT(certified, exist / 2);
   for (std::size_t i = 0; i < lazy.map.path.size(); ++i)
     EXPECT_EQ(lazy.map.nodes[i * static_cast<std::size_t>(lattice.width()) + static_cast<std::size_t>(lazy.map.path[i])].state,
               NodeState::kFree);

@@ -3,55 +3,119 @@
 // folder whose node_modules has playwright-core, and optionally a folder for screenshots.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync, statSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
+import { existsSync, readFileSync, statSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { assertFits, elements, saved, withBrowser } from './browser.mjs';
 
-const [swivel, problems, packages, shots] = process.argv.slice(2);
-const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
-const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
-if (!existsSync(browserFile)) {
-  console.log(`no browser at ${browserFile}`);
-  process.exit(process.env.CI ? 1 : 77);  // 77: skipped
-}
-const folder = mkdtempSync(join(tmpdir(), 'swivel-page-'));
-const browser = await chromium.launch({ executablePath: browserFile, args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic',
-  '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
+const wide = { width: 1280, height: 800 }, phone = { width: 390, height: 844 };
 
-function plan(name, ...options) {
+function plan(folder, name, ...options) {
   const html = join(folder, `${name}.html`), csv = join(folder, `${name}.csv`);
-  const done = spawnSync(swivel, ['plan', join(problems, `experiment_${name}.yaml`), '--quiet', '--report', html, '--out', csv, ...options]);
+  const done = spawnSync(swivel, ['plan', join(problems, `experiment_${name}.yaml`), '--quiet', '--planner', 'lazy', '--report', html, '--out', csv, ...options]);
+  assert.ok(existsSync(html), String(done.stderr));
   const rows = existsSync(csv) ? readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(',').slice(3).map(Number)) : null;
-  return { html, rows, status: done.status, bytes: statSync(html).size };
+  const data = JSON.parse(readFileSync(html, 'utf8').match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]);
+  return { html, rows, data, status: done.status, bytes: statSync(html).size };
 }
-async function open(html, options) {
-  const page = await browser.newPage(options), troubles = [];
-  page.on('pageerror', (error) => troubles.push(String(error)));
-  page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
-  page.on('request', (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`));
-  const begin = performance.now();
-  await page.goto(`file://${html}`);
-  await page.waitForFunction(() => window.swivel?.frames > 0);
-  return { page, troubles, ms: performance.now() - begin };
-}
+const drawn = (page) => page.waitForFunction(() => window.swivel?.frames > 0);
 const joints = (page) => page.evaluate(() => window.swivel.joints);
 const slide = (page, row) => page.evaluate((value) => {
   const slider = document.getElementById('slider');
   slider.value = value;
   slider.dispatchEvent(new Event('input'));
 }, row);
-const shoot = async (page, name) => shots && (await page.screenshot({ path: join(shots, name) }));
+const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
+const dark = (page) => page.evaluate(() => document.documentElement.dataset.theme === 'dark');
 
-try {
+/** Milliseconds from the start of loading to the first picture of the arm. */
+async function openings(open, html, count) {
+  const times = [];
+  for (let k = 0; k < count; ++k) {
+    const { page, close } = await open(html, { viewport: wide });
+    await drawn(page);
+    times.push(await page.evaluate(() => performance.getEntriesByName('first picture')[0].startTime));
+    await close();
+  }
+  return times;
+}
+
+/** Frames a second while the arm moves, once the page has found how many pixels this machine can draw. */
+async function playback(page) {
+  await page.keyboard.press('Home');
+  await page.selectOption('#speed', '0.5');
+  await page.keyboard.press('Tab');
+  await page.click('#play');
+  await page.waitForTimeout(1500);
+  const begin = await page.evaluate(() => [window.swivel.frames, performance.now()]);
+  await page.waitForTimeout(2000);
+  const end = await page.evaluate(() => [window.swivel.frames, performance.now()]);
+  assert.ok(Number(await page.inputValue('#slider')) > 0);
+  await page.click('#play');
+  return (1000 * (end[0] - begin[0])) / (end[1] - begin[1]);
+}
+
+/** Every row's line is as long as its clearance and stands on the page; at most a few rows have none. */
+async function checkNearest(page, data) {
+  let lines = 0;
+  data.rows.forEach(({ nearest, clearance_mm }, k) => {
+    if (clearance_mm === undefined) return;
+    assert.notEqual(nearest, undefined);
+    if (nearest === null) return;
+    ++lines;
+    const [ax, ay, az, bx, by, bz] = nearest;
+    assert.ok(Math.abs(1e3 * Math.hypot(bx - ax, by - ay, bz - az) - clearance_mm) <= 0.1, `row ${k}`);
+  });
+  assert.ok(lines >= 0.9 * data.rows.length, `${lines} of ${data.rows.length} rows have a line between their nearest bodies`);
+  const k = data.rows.findIndex(({ nearest }) => nearest);
+  await slide(page, k);
+  assert.deepEqual((await page.evaluate(() => window.swivel.line)).points, data.rows[k].nearest);
+  assert.equal(parseFloat(await page.textContent('#gap')), Number(data.rows[k].clearance_mm.toPrecision(3)));
+}
+
+async function checkExports(page, name, panels) {
+  for (const [section, least] of [['map', panels], ['plots', 9]]) {
+    const buttons = page.locator(`#${section}-section h2 button`);
+    const png = await saved(page, buttons.filter({ hasText: 'PNG' })), svg = await saved(page, buttons.filter({ hasText: 'SVG' }));
+    assert.deepEqual([png.name, svg.name], [`experiment_${name}_${section}.png`, `experiment_${name}_${section}.svg`]);
+    assert.equal(png.bytes.subarray(1, 4).toString(), 'PNG');
+    assert.equal(png.bytes.readUInt32BE(16), 3 * 640);
+    const count = await elements(page, svg.bytes.toString());
+    assert.ok(count.svg > least && count.path >= least && !count.image, JSON.stringify(count));  // vectors, no pictures
+    if (section === 'map') assert.ok(count.rect > 100);
+  }
+}
+
+/** Some cell of the middle column has joints: hovering shows them and moves the arm, a click keeps them. The path's tell clearance. */
+async function checkHover(page) {
+  const dot = await page.locator('.dot:visible').boundingBox();
+  await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
+  assert.match(await page.textContent('#tip'), /free, (proved by a certificate|found by FCL)\n[^]*clearance [\d.]+ mm$/);
+  const rest = await joints(page), box = await page.locator('.panel .chart').first().boundingBox();
+  let moved = false;
+  for (let k = 1; k < 20 && !moved; ++k) {
+    await page.mouse.move(box.x + box.width * 0.4, box.y + (box.height * k) / 21);
+    assert.ok(await page.isVisible('#tip'));
+    moved = JSON.stringify(await joints(page)) !== JSON.stringify(rest);
+  }
+  assert.ok(moved, 'no cell of the path\'s branch moves the arm');
+  const hovered = await joints(page);
+  await page.mouse.down();
+  await page.mouse.up();
+  await page.mouse.move(5, 5);
+  assert.deepEqual(await joints(page), hovered, 'a click keeps the pose');
+}
+
+await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   for (const name of ['a', 'b', 'c']) {
-    const { html, rows, status, bytes } = plan(name);
+    const { html, rows, data, status, bytes } = plan(folder, name);
     assert.equal(status, 0);
     assert.ok(bytes <= 5e6, `${bytes} bytes`);
-    const { page, troubles, ms } = await open(html, { viewport: { width: 1280, height: 800 }, colorScheme: name === 'b' ? 'dark' : 'light' });
-    console.log(`experiment ${name}: ${(bytes / 1e6).toFixed(2)} MB, first picture after ${ms.toFixed(0)} ms`);
+    const { page, close } = await open(html, { viewport: wide, colorScheme: name === 'b' ? 'dark' : 'light' });
+    await drawn(page);
     assert.match(await page.textContent('#verdict'), /^Solved/);
-    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), name === 'b' ? 'dark' : 'light');
+    assert.equal(await dark(page), name === 'b');
+    await assertFits(page, wide.width);
     for (const k of [0, Math.floor(rows.length / 2), rows.length - 1]) {
       await slide(page, k);
       const shown = await joints(page);
@@ -60,47 +124,55 @@ try {
     await page.keyboard.press('Home');
     await page.keyboard.press('ArrowRight');
     assert.deepEqual((await joints(page)).map((v) => v.toFixed(9)), rows[1].map((v) => v.toFixed(9)));
-    await page.keyboard.press('Home');
-    const before = await page.evaluate(() => window.swivel.frames), from = performance.now();
-    await page.keyboard.press(' ');
-    await page.waitForTimeout(2000);
-    const frames = (await page.evaluate(() => window.swivel.frames)) - before;
-    console.log(`experiment ${name}: ${((1000 * frames) / (performance.now() - from)).toFixed(0)} frames a second, software rendering`);
-    await page.keyboard.press(' ');
-    assert.ok(frames > 4 && Number(await page.inputValue('#slider')) > 0);
+    await checkNearest(page, data);
     await slide(page, Math.floor(rows.length / 2));
+    await page.waitForTimeout(800);  // at rest it is drawn with more pixels
     await shoot(page, `report_${name}.png`);
-
-    // Over every panel's middle row of cells: some cell has joints, and hovering shows them and moves the arm.
-    const rest = await joints(page), box = await page.locator('.panel canvas').first().boundingBox();
-    let moved = false;
-    for (let k = 1; k < 20 && !moved; ++k) {
-      await page.mouse.move(box.x + box.width * 0.5, box.y + (box.height * k) / 20);
-      assert.ok(await page.isVisible('#tip'));
-      moved = JSON.stringify(await joints(page)) !== JSON.stringify(rest);
-    }
-    assert.ok(moved, 'no cell of the path\'s branch moves the arm');
-    const hovered = await joints(page);
-    await page.mouse.down();
-    await page.mouse.up();
-    await page.mouse.move(5, 5);
-    assert.deepEqual(await joints(page), hovered, 'a click keeps the pose');
+    await checkHover(page);
+    await checkExports(page, name, data.map.panels.length);
     await page.keyboard.press('t');
-    assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), name === 'b' ? 'light' : 'dark');
-    assert.deepEqual(troubles, []);
-    await page.close();
+    assert.equal(await dark(page), name !== 'b');
+    const rate = await playback(page);
+    assert.ok(rate > 5, `${rate} frames a second`);
+    await close();
+    const narrow = await open(html, { viewport: phone, colorScheme: 'dark' });
+    await drawn(narrow.page);
+    await assertFits(narrow.page, phone.width);
+    await narrow.close();
+    const times = await openings(open, html, name === 'c' ? 5 : 1);
+    assert.ok(median(times) < 10_000);
+    console.log(`experiment ${name}: ${(bytes / 1e6).toFixed(2)} MB, first picture after ${median(times).toFixed(0)} ms (median of ${times.length}), ${rate.toFixed(0)} frames a second`);
   }
-  const stuck = plan('a_start');
-  assert.equal(stuck.status, 1);
-  assert.equal(stuck.rows, null);
-  const { page, troubles } = await open(stuck.html, { viewport: { width: 390, height: 844 }, colorScheme: 'light' });
-  assert.match(await page.textContent('#verdict'), /^No path at this resolution: every one ends by layer \d+ of \d+/);
-  assert.equal(await page.inputValue('#slider'), await page.getAttribute('#slider', 'max'));  // shows where it got stuck
-  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390, 'wider than a phone');
-  assert.match(await page.textContent('#tables'), /What removed the nodes/);
-  await shoot(page, 'report_phone.png');
-  assert.deepEqual(troubles, []);
-} finally {
-  await browser.close();
-  rmSync(folder, { recursive: true });
-}
+
+  // Where there is no path: the furthest layer, why, and the pose past it. By the joints, by a body, and in the first layer.
+  for (const [name, reason, reached, ...options] of [
+    ['a_start', /^the next pose cannot be moved to: joint step, arm_left_joint_\w+ by \d\.\d\d rad$/, true],
+    ['c', /^the next pose is blocked by arm_left_link_5_r - post$/, true, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '258'],
+    ['c', /^the next pose is blocked by arm_left_link_6_b - post$/, false, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '33'],
+  ]) {
+    const { html, rows, data, status } = plan(folder, name, ...options);
+    assert.equal(status, 1);
+    assert.equal(rows, null);
+    const viewport = name === 'a_start' ? phone : wide;
+    const { page, close } = await open(html, { viewport, colorScheme: 'light' });
+    await drawn(page);
+    assert.match(await page.textContent('#verdict'), reached ? /^No path at this resolution: every one ends by layer \d+ of \d+/ : /^No path at this resolution: the first layer has no valid node/);
+    assert.match(data.cut.what, reason);
+    assert.equal((await page.textContent('#readout')).split('\n').at(-1), data.cut.what);
+    assert.deepEqual(await joints(page), data.cut.q);
+    assert.equal(data.cut.layer, data.rows.length);
+    if (reached) {
+      assert.equal(await page.inputValue('#slider'), await page.getAttribute('#slider', 'max'));
+      assert.match(await page.textContent('#map-note'), /The dashed line is where every path has ended/);
+      assert.match(await page.textContent('#tables'), /Removed past the furthest layer/);
+      await page.keyboard.press('Home');
+      assert.deepEqual(await joints(page), data.rows[0].q);
+      await page.click('#blocked');
+      assert.deepEqual(await joints(page), data.cut.q);
+    }
+    await assertFits(page, viewport.width);
+    await page.waitForTimeout(800);
+    await shoot(page, { a_start: 'report_phone.png', c: reached ? 'report_blocked.png' : 'report_first_layer.png' }[name]);
+    await close();
+  }
+});

@@ -25,6 +25,8 @@ struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
     std::uint8_t cause = 0;
+    bool certified = false;  ///< of free and blocked nodes: a certificate alone proves it, FCL need not be asked
+    bool operator==(const Node&) const = default;
   };
   int layers = 0, angles = 0, windings = 1;
   std::vector<double> s;              ///< m, of each layer
@@ -47,7 +49,7 @@ struct LatticeMap {
 };
 
 /// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
-/// search removed; with `full`, or where the record is an eager planner's, for every node.
+/// search asked about; with `full`, or where the record is an eager planner's, for every node.
 [[nodiscard]] LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full);
 
 /// The map in text, one panel per inhabited label: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/report/overview.hpp"
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "page_template.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json or_null(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts& facts) {
+  Json episodes = Json::array();
+  for (const EpisodeRow& row : rows)
+    episodes.push_back({{"episode", row.episode},
+                        {"status", to_string(row.status)},
+                        {"cost", or_null(row.cost)},
+                        {"plan_ms", row.plan_ms},
+                        {"nodes_checked", row.nodes_checked},
+                        {"fcl_calls", row.fcl_calls},
+                        {"error_mm", or_null(row.tool_path_error_mm_max)},
+                        {"failed_s", or_null(row.failed_s)},
+                        {"reason", row.reason}});
+  const Json data = {{"problem", facts.problem},
+                     {"episodes", facts.episodes},
+                     {"seed", facts.seed},
+                     {"shard", {facts.shard.index, facts.shard.count}},
+                     {"asked", facts.shard.size(facts.episodes)},
+                     {"planner", facts.planner},
+                     {"plan_command", facts.plan_command},
+                     {"rows", std::move(episodes)}};
+  return fill(overview_template(), data.dump());
+}
+
+}  // namespace swivel

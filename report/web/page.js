@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What both pages share: their data, numbers, light and dark, tables.
+export const data = JSON.parse(document.getElementById('data').textContent);
+export const $ = (id) => document.getElementById(id);
+export const number = (v, digits = 4) => (v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString());
+export const isDark = () => document.documentElement.dataset.theme === 'dark';
+export const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Follows the system at first; the button and the key t change it. */
+export function themes(changed) {
+  const set = (dark) => {
+    document.documentElement.dataset.theme = dark ? 'dark' : 'light';
+    changed();
+  };
+  const turn = () => set(!isDark());
+  $('theme').addEventListener('click', turn);
+  set(matchMedia('(prefers-color-scheme: dark)').matches);
+  return turn;
+}
+
+/** Calls back when the window's width has changed and come to rest. */
+export function whenResized(changed) {
+  let width = innerWidth, timer;
+  addEventListener('resize', () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => {
+      if (innerWidth !== width) changed();
+      width = innerWidth;
+    }, 100);
+  });
+}
+
+export function table(host, caption, entries) {
+  const table = document.createElement('table');
+  table.createCaption().textContent = caption;
+  for (const [name, value] of entries) {
+    const row = table.insertRow();
+    row.insertCell().textContent = name;
+    row.insertCell().textContent = value;
+  }
+  host.append(table);
+}

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The (s, phi) map drawn: a panel for each branch, the cells, the path above.
+import * as Plot from '@observablehq/plot';
+import { alongPath } from './axis.js';
+import { PAPER, sheet } from './figure.js';
+import { style } from './page.js';
+
+const kAngles = [[-Math.PI, '−π'], [-Math.PI / 2, '−π/2'], [0, '0'], [Math.PI / 2, 'π/2'], [Math.PI, 'π']];
+
+export class Panels {
+  /** cells: Cells; rows: of the path; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
+  constructor(host, cells, rows, cut, hover, pick) {
+    Object.assign(this, { cells, rows, cut, cursor: 0 });
+    this.panels = cells.panels.map((panel, index) => {
+      const box = document.createElement('div');
+      box.className = 'panel';
+      box.innerHTML = '<h3></h3><div class="stack"><div class="chart"></div><div class="cursor"></div><div class="dot" hidden></div></div>';
+      box.firstChild.textContent = panel.name;
+      const drawn = { ...panel, index, box, chart: box.querySelector('.chart'), line: box.querySelector('.cursor'), dot: box.querySelector('.dot') };
+      let under = null;  // a click's coordinates are rounded, and could mean the neighbour of the cell that is shown
+      for (const kind of ['pointerdown', 'pointermove']) drawn.chart.addEventListener(kind, (event) => hover((under = this.cellAt(drawn, event)), event));
+      drawn.chart.addEventListener('pointerleave', (event) => hover(null, event));
+      drawn.chart.addEventListener('click', () => pick(under));
+      return drawn;
+    });
+    // The panels that hold the path come first.
+    const used = new Set(rows.map((row) => row.label));
+    this.panels.sort((a, b) => used.has(b.label) - used.has(a.label) || a.index - b.index);
+    host.append(...this.panels.map(({ box }) => box));
+  }
+  cellAt({ index, chart, x, y }, event) {
+    const { cells } = this, r = chart.getBoundingClientRect();
+    const bounded = (v, most) => Math.min(most - 1, Math.max(0, v));
+    const layer = x.invert(event.clientX - r.left) + 0.5, angle = y.invert(event.clientY - r.top) + 0.5;
+    return cells.at(index, bounded(Math.floor(layer / cells.layers_each), cells.columns), bounded(Math.floor(angle / cells.angles_each), cells.rows));
+  }
+  /** vector: cells as rectangles, not as a picture. */
+  drawing(panel, width, height, colours, vector = false) {
+    const { cells, rows, cut } = this, angle = (phi) => ((phi + Math.PI) / (2 * Math.PI)) * cells.angles;
+    const path = rows.flatMap((row, k) => {
+      const last = rows[k - 1], jump = last && last.label === row.label && Math.abs(last.angle - row.angle) > cells.angles / 2;
+      const point = { x: row.layer, y: row.label === panel.label ? row.angle : NaN };
+      return jump ? [{ x: row.layer, y: NaN }, point] : [point];
+    });
+    const changes = rows.filter((row, k) => row.label === panel.label && [rows[k - 1], rows[k + 1]].some((other) => other && other.label !== row.label));
+    const frame = { marginLeft: 34, marginRight: 12, marginTop: vector ? 26 : 6, marginBottom: vector ? 34 : 20 };
+    return Plot.plot({
+      width, height, ...frame, style: { color: colours.soft, background: 'none', fontSize: '10px' },
+      x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector ? 's, m' : null },
+      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `φ, rad: ${panel.name}` : null, labelArrow: 'none', ticks: kAngles.map(([phi]) => angle(phi) - (phi === Math.PI ? 0.5 : 0)),
+        tickFormat: (_, k) => kAngles[k][1] },
+      marks: [
+        vector ? Plot.rect(this.runs(panel.index, colours), { x1: 'x1', x2: 'x2', y1: 'y1', y2: 'y2', fill: 'fill', shapeRendering: 'crispEdges' })
+          : this.picture(panel.index, colours, width - frame.marginLeft - frame.marginRight, height - frame.marginTop - frame.marginBottom),
+        Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
+        cut === null ? null : Plot.ruleX([cut.layer + 0.5], { stroke: '#c2185b', strokeWidth: 2, strokeDasharray: '5 3' }),
+        Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
+        Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
+        Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),
+        rows.length === 1 && rows[0].label === panel.label ? Plot.dot(rows, { x: 'layer', y: 'angle', r: 4, fill: '#000', stroke: '#fff' }) : null,
+      ],
+    });
+  }
+  /** One pixel a cell. */
+  picture(panel, colours, width, height) {
+    const { cells } = this, canvas = document.createElement('canvas'), known = new Map();
+    canvas.width = cells.columns;
+    canvas.height = cells.rows;
+    const pen = canvas.getContext('2d', { willReadFrequently: true }), image = pen.createImageData(cells.columns, cells.rows), pixels = new Uint32Array(image.data.buffer);
+    const pixel = (k) => {
+      const kind = cells.kind(k);
+      if (!known.has(kind)) {
+        const [r, g, b] = cells.colour(k, colours).match(/[0-9a-f]{2}/g).map((part) => parseInt(part, 16));
+        known.set(kind, (255 << 24) | (b << 16) | (g << 8) | r);
+      }
+      return known.get(kind);
+    };
+    for (let column = 0; column < cells.columns; ++column)
+      for (let row = 0; row < cells.rows; ++row) pixels[(cells.rows - 1 - row) * cells.columns + column] = pixel(cells.index(panel, column, row));
+    pen.putImageData(image, 0, 0);
+    // The last column and row may stand for fewer layers and angles than the others.
+    const layers = cells.columns * cells.layers_each, angles = cells.rows * cells.angles_each;
+    return Plot.image([canvas.toDataURL()], { src: (url) => url, x: () => (layers - 1) / 2, y: () => (angles - 1) / 2, width: (width * layers) / cells.layers,
+      height: (height * angles) / cells.angles, preserveAspectRatio: 'none', imageRendering: 'pixelated', clip: 'frame' });
+  }
+  /** Cells alike, side by side along s, as one rectangle. */
+  runs(panel, colours) {
+    const { cells } = this, runs = [];
+    for (let row = 0; row < cells.rows; ++row)
+      for (let column = 0, end; column < cells.columns; column = end) {
+        const k = cells.index(panel, column, row);
+        for (end = column + 1; end < cells.columns && cells.kind(cells.index(panel, end, row)) === cells.kind(k);) ++end;
+        const fill = cells.colour(k, colours);
+        if (fill === colours.nothing) continue;
+        const edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
+        runs.push({ fill, x1: edge(column, cells.layers_each, cells.layers), x2: edge(end, cells.layers_each, cells.layers),
+          y1: edge(row, cells.angles_each, cells.angles), y2: edge(row + 1, cells.angles_each, cells.angles) });
+      }
+    return runs;
+  }
+  /** Everything anew: at the start, and when the theme or the width changes. */
+  paint() {
+    const colours = { soft: style('--soft'), unseen: style('--unseen'), nothing: style('--void') };
+    const width = this.panels.length ? this.panels[0].chart.clientWidth : 0;
+    for (const panel of this.panels) {
+      const drawing = this.drawing(panel, width, 172, colours);
+      Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
+      panel.chart.replaceChildren(drawing);
+    }
+    const legend = document.getElementById('legend');
+    legend.replaceChildren(...this.cells.legend(colours).map(([meaning, colour]) => {
+      const entry = document.createElement('span'), swatch = document.createElement('i');
+      swatch.style.background = colour;
+      entry.append(swatch, meaning);
+      return entry;
+    }));
+    this.draw(this.cursor);
+  }
+  /** The cursor alone, which moves with every frame. */
+  draw(cursor) {
+    this.cursor = cursor;
+    const here = this.rows[Math.round(cursor)];
+    for (const { line, dot, label, x, y } of this.panels) {
+      line.hidden = !here;
+      dot.hidden = here?.label !== label;
+      if (!here) continue;
+      const left = x.apply(here.layer).toFixed(1);
+      line.style.transform = `translateX(${left}px)`;
+      dot.style.transform = `translate(${left}px, ${y.apply(here.angle).toFixed(1)}px)`;
+    }
+  }
+  /** The map as one drawing for papers. */
+  figure() {
+    const drawings = this.panels.map((panel) => this.drawing(panel, 640, 240, PAPER, true));
+    const legend = Plot.plot({
+      width: 640, height: 18 * this.cells.legend(PAPER).length + 12, margin: 6, axis: null, style: { color: PAPER.ink, background: 'none', fontSize: '11px' },
+      x: { domain: [0, 1] }, y: { domain: [this.cells.legend(PAPER).length, 0] },
+      marks: [
+        Plot.rect(this.cells.legend(PAPER), { x1: 0.045, x2: 0.065, y1: (_, k) => k + 0.15, y2: (_, k) => k + 0.75, fill: ([, colour]) => colour, stroke: '#999', strokeWidth: 0.5 }),
+        Plot.text(this.cells.legend(PAPER), { x: 0.08, y: (_, k) => k + 0.45, text: ([meaning]) => meaning, textAnchor: 'start' }),
+      ],
+    });
+    return sheet([...drawings, legend]);
+  }
+}

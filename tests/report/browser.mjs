@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Headless Chromium for the tests of the pages. Without a graphics card it draws them by the processor: WebGL by SwiftShader, the rest
+// by its own software compositor.
+import assert from 'node:assert/strict';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+/** Calls back with { browser, folder (for files), open, shoot }; ends with code 77 (skipped) where there is no browser. */
+export async function withBrowser({ packages, shots }, test) {
+  const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
+  const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  if (!existsSync(browserFile)) {
+    console.log(`no browser at ${browserFile}`);
+    process.exit(process.env.CI ? 1 : 77);
+  }
+  const folder = mkdtempSync(join(tmpdir(), 'swivel-page-'));
+  const browser = await chromium.launch({ executablePath: browserFile, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+    '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
+  /** A page that must stay without errors and without network: `close` asserts it. */
+  const open = async (html, options) => {
+    const page = await browser.newPage(options), troubles = [];
+    page.on('pageerror', (error) => troubles.push(String(error)));
+    page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
+    page.on('request', (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`));
+    await page.goto(`file://${html}`);
+    return { page, close: async () => { assert.deepEqual(troubles, []); await page.close(); } };
+  };
+  const shoot = async (page, name, options) => shots && (await page.screenshot({ path: join(shots, name), ...options }));
+  try {
+    await test({ browser, folder, open, shoot });
+  } finally {
+    await browser.close();
+    rmSync(folder, { recursive: true });
+  }
+}
+
+/** What a click on the page's button saves. */
+export async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent('download'), button.click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+/** How many elements of each name an SVG document has; throws where it is not well formed. */
+export const elements = (page, text) => page.evaluate((source) => {
+  const document = new DOMParser().parseFromString(source, 'image/svg+xml'), count = {};
+  if (document.querySelector('parsererror')) throw new Error(document.querySelector('parsererror').textContent);
+  for (const { localName } of document.querySelectorAll('*')) count[localName] = (count[localName] ?? 0) + 1;
+  return count;
+}, text);
+
+export async function assertFits(page, width) {
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= width, `${wide} pixels wide on a screen of ${width}`);
+}
