@@ -16,6 +16,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/campaign.hpp"
+#include "swivel/report/overview.hpp"
 
 namespace swivel::cli {
 
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CampaignArguments {
-  std::string problem, shard, out, trajectories, json;
+  std::string problem, shard, out, trajectories, json, report;
   std::uint64_t episodes = 100, seed = 1;
   SearchOptions search;
 };
@@ -97,6 +98,27 @@ void require_same_campaign(const PreparedRobot& robot, const Problem& problem, c
         " comes out differently now: allowed are rows of the same problem, seed and settings; remove the file to start anew");
 }
 
+/// As a POSIX shell reads it back.
+std::string quoted(const std::string& word) {
+  if (!word.empty() &&
+      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") == std::string::npos)
+    return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
+  return result + "'";
+}
+
+CampaignFacts facts_of(const CampaignArguments& arguments, const CampaignOptions& options) {
+  const std::string name = fs::path(arguments.problem).filename().string();
+  const std::string seed = std::to_string(options.seed);
+  return {name,
+          options.episodes,
+          options.seed,
+          options.shard,
+          arguments.search.planner,
+          "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + seed};
+}
+
 int run(const CampaignArguments& arguments) {
   CampaignOptions options;
   options.plan = arguments.search.plan_options();
@@ -106,6 +128,7 @@ int run(const CampaignArguments& arguments) {
   options.episodes = arguments.episodes;
   options.seed = arguments.seed;
   if (!arguments.shard.empty()) options.shard = shard_from_string(arguments.shard);
+  if (!arguments.report.empty()) require_pages();
   Problem problem = io::load_problem(arguments.problem);
   arguments.search.apply(problem);
   const PreparedRobot robot(problem);
@@ -149,6 +172,7 @@ int run(const CampaignArguments& arguments) {
   const CampaignSummary summary = summarize(rows, size);
   const bool complete = summary.answered() == size;
   if (file && complete) file->finish();
+  if (!arguments.report.empty()) io::write_file(arguments.report, to_overview(rows, facts_of(arguments, options)));
   if (arguments.json == "-")
     std::cout << io::to_json(summary);
   else if (!arguments.json.empty())
@@ -170,6 +194,8 @@ void add_campaign(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out,
                       "results file (CSV); an interrupted campaign goes on from FILE.part, which must be of the same settings");
   command->add_option("--trajectories", arguments->trajectories, "folder for the trajectories of solved episodes, episode_K.csv");
+  command->add_option("--report", arguments->report,
+                      "the campaign as one HTML file: verdicts, times, costs, where and why episodes fail");
   command->add_option("--json", arguments->json, "summary file, - for standard output");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
