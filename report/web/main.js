@@ -17,7 +17,7 @@ $('title').textContent = data.problem;
 $('verdict').textContent = verdict(data);
 summary(data);
 
-let view = null, shown = null, cursor = 0, playing = false, picked = false, before = 0;
+let view = null, shown = null, cursor = 0, playing = false, picked = false, before = 0, told = 0;
 /** For those who test the page: joints and line shown now, pictures drawn. */
 window.swivel = { joints: null, frames: 0, line: null };
 
@@ -81,6 +81,9 @@ function go(k) {
   const q = a.q.map((v, j) => (f === 0 ? v : f === 1 ? b.q[j] : v + f * (b.q[j] - v)));
   const near = f < 0.5 ? a : b;
   show(q, near.pair ?? null, lineOf(near));
+  // What is told in numbers and beside the arm need not change with every frame.
+  if (playing && performance.now() - told < 60) return;
+  told = performance.now();
   readout(a.s + f * (b.s - a.s), near.phi, q, near.pair ? `clearance ${number(near.clearance_mm, 4)} mm: ${near.pair.join(' – ')}` : '');
   $('slider').value = cursor;
   $('where').textContent = `${Math.round(cursor)} / ${last}`;
@@ -100,7 +103,10 @@ function frame(now) {
     // The whole path takes eight seconds at speed 1.
     go(cursor + (Math.max(0, now - before) / 8000) * last * Number($('speed').value));
     before = now;
-    if (cursor >= last) pause();
+    if (cursor >= last) {
+      pause();
+      go(last);
+    }
   }
   if (view.draw(now, playing) && ++window.swivel.frames === 1) performance.mark('first picture');
   requestAnimationFrame(frame);
