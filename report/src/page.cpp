@@ -164,7 +164,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& 
   constexpr std::string_view kBetween = " between layers";
   if (node.state == NodeState::kBlocked) {
     bodies = map.blockers[node.cause];
-    what = "the next pose is blocked by " + bodies;
+    what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + bodies;
   } else if (reason.ends_with(kBetween)) {
     bodies = reason.substr(0, reason.size() - kBetween.size());
     what = "the way to the next pose is blocked by " + bodies;

@@ -36,7 +36,7 @@ $('places').querySelector('p').textContent = unplaced ? `${unplaced} more: not e
 const charts = [
   ['times', rows, (width, colours) => distribution(rows, 'plan_ms', 'ms', 0.01, width, colours)],
   ['costs', solved, (width, colours) => histogram(solved, 'cost', 'cost of the solved', width, colours)],
-  ['work', rows, (width, colours) => distribution(rows, 'nodes_checked', 'nodes', 1, width, colours)],
+  ['work', rows, (width, colours) => distribution(rows, 'nodes_checked', rows.some((row) => row.nodes_checked === 0) ? 'nodes, none at 1' : 'nodes', 1, width, colours)],
   ['reasons', failed, (width, colours) => reasons(failed, width, colours)],
   ['places', placed, (width, colours) => places(placed, width, colours)],
 ];

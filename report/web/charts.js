@@ -37,8 +37,8 @@ export function reasons(rows, width, colours) {
   const count = new Map();
   for (const { reason } of rows) count.set(reason, (count.get(reason) ?? 0) + 1);
   const bars = [...count].map(([reason, n]) => ({ reason, n })).sort((a, b) => b.n - a.n).slice(0, 12);
-  return Plot.plot(frame(width, 46 + 38 * bars.length, colours, {
-    marginLeft: 14, marginRight: 40, x: { label: 'episodes', ticks: 4 }, y: { domain: bars.map(({ reason }) => reason), axis: null },
+  return Plot.plot(frame(width, 40 + 38 * bars.length, colours, {
+    marginLeft: 14, marginRight: 40, marginTop: 6, x: { label: 'episodes', ticks: 4 }, y: { domain: bars.map(({ reason }) => reason), axis: null },
     marks: [
       Plot.barX(bars, { x: 'n', y: 'reason', fill: FAILED, insetTop: 18, insetBottom: 4 }),
       Plot.text(bars, { x: 0, y: 'reason', text: 'reason', textAnchor: 'start', dy: -9 }),

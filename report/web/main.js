@@ -21,7 +21,7 @@ let view = null, shown = null, cursor = 0, playing = false, picked = false, befo
 /** For those who test the page: joints and line shown now, pictures drawn. */
 window.swivel = { joints: null, frames: 0, line: null };
 
-const plots = new Plots($('plots'), rows.length ? rows.map((row) => row.s) : [0], [
+const plots = new Plots($('plots'), rows.map((row) => row.s), [
   ...chain.joints.map((joint, k) => ({ title: joint.name, unit: 'rad', values: rows.map((row) => row.q[k]), low: joint.lower, high: joint.upper })),
   { title: 'largest joint step', unit: 'rad', values: rows.map((row, i) => (i ? Math.max(...row.q.map((v, k) => Math.abs(v - rows[i - 1].q[k]))) : null)), low: null, high: data.settings.joint_step },
   { title: 'manipulability', unit: 'm³', values: rows.map((row) => manipulability(chain, row.q)), low: null, high: null },
@@ -112,6 +112,7 @@ function frame(now) {
   requestAnimationFrame(frame);
 }
 
+$('controls').hidden = $('plots-section').hidden = !rows.length;
 $('slider').max = Math.max(0, last);
 $('slider').addEventListener('input', (event) => { pause(); go(Number(event.target.value)); });
 $('play').addEventListener('click', () => (playing ? pause() : play()));

@@ -91,11 +91,11 @@ export class View {
   }
   addPath() {
     const points = this.data.tool_path.map(vector);
-    this.rings = Math.min(2 * points.length, 600);
-    const tube = points.length > 1 ? new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points, false, 'centripetal'), this.rings, 0.004, 6) : new THREE.BufferGeometry();
+    this.rings = Math.min(2 * points.length, 200);
+    const tube = points.length > 1 ? new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points, false, 'centripetal'), this.rings, 0.004, 5) : new THREE.BufferGeometry();
     this.line = new THREE.Mesh(tube, surface(null));
     this.scene.add(this.line);
-    this.around = 7;  // vertices of a ring: the first again at the end
+    this.around = 6;  // vertices of a ring: the first again at the end
   }
   /** The shortest line between two bodies, drawn over everything. */
   addNearest() {

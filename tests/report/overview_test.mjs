@@ -30,6 +30,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal(await page.locator('#times .pick circle').count(), rows.length);
   assert.equal(await page.locator('#places .pick circle').count(), failed.filter(([, , , , , , , , s]) => s !== '').length);
 
+  await shoot(page, 'overview_c.png');
+
   // Sorted by cost, both ways; episodes without a cost stay at the end.
   const costs = async () => (await column(page, 2)).slice(0, rows.length - failed.length).map(Number);
   const head = page.locator('#scroll th button').nth(2);
@@ -62,7 +64,6 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     assert.equal(svg.name, `experiment_c_${section}.svg`);
     assert.ok((await elements(page, svg.bytes.toString())).text > 4);
   }
-  await shoot(page, 'overview_c.png');
   await page.click('#theme');
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
   await close();
