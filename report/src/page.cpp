@@ -196,9 +196,9 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& 
 class Clearances {
  public:
   Clearances(const World& world, std::size_t cells) : query_(world), each_(cells / kMost + 1) {}
-  void add(const Config& q) {
+  void add(const Config& q, bool surely) {
     values.push_back(kUnknown);
-    if (asked_++ % each_ != 0) return;
+    if (asked_++ % each_ != 0 && !surely) return;
     if (const auto clearance = query_.clearance(q))
       values.back() = static_cast<std::uint16_t>(std::min(1e4 * clearance->distance, kUnknown - 1.0));
   }
@@ -209,7 +209,7 @@ class Clearances {
   static constexpr std::uint16_t kUnknown = 65535;
   static constexpr std::size_t kMost = 2000;  // a question costs up to a millisecond
   World::Query query_;
-  std::size_t each_, asked_ = 0;  // one cell in so many is asked about
+  std::size_t each_, asked_ = 0;  // one cell in so many is asked about, and those of the path
 };
 
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
@@ -256,7 +256,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world)
         causes.push_back(cell.cause);
         if (!posed) continue;
         if (looked_at(cell))
-          clearances.add(shown[k]);
+          clearances.add(shown[k], cells.on_path(label, column, row));
         else
           clearances.skip();
         for (int j = 0; j < kDof; ++j)
