@@ -15,26 +15,6 @@ namespace {
 
 using namespace swivel::testing;
 
-const std::vector<std::string> kKinds{"sphere", "capsule", "box", "cylinder", "closed mesh", "open mesh"};
-
-Shape random_shape(int kind, Random& random) {
-  const double r = random.uniform(0.02, 0.12);
-  switch (kind) {
-    case 0:
-      return Sphere{r};
-    case 1:
-      return Capsule{r, random.uniform(0.02, 0.3)};
-    case 2:
-      return Box{random.vector(0.03, 0.3)};
-    case 3:
-      return Cylinder{r, random.uniform(0.02, 0.3)};
-    case 4:
-      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5), "closed");
-    default:
-      return as_mesh(tube_mesh(r, random.uniform(0.1, 0.3), 12), "open");
-  }
-}
-
 struct Tally {
   int apart = 0, answered = 0;
 };
@@ -48,7 +28,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
   const int kinds = static_cast<int>(kKinds.size());
   for (int ka = 0; ka < kinds; ++ka)
     for (int kb = 0; kb < kinds; ++kb)
-      for (int k = 0; k < 12; ++k) {
+      for (int k = 0; k < 8; ++k) {
         const Shape a = random_shape(ka, random), b = random_shape(kb, random);
         const Pose X_a = random.pose(0.05), X_b = random.pose(0.4);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
@@ -72,7 +52,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
         EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[0])), a, X_a), kSlack) << what;
         EXPECT_LE(reference_clearance(dot, Pose(Eigen::Translation3d((*points)[1])), b, X_b), kSlack) << what;
       }
-  EXPECT_GT(touching, 15);
+  EXPECT_GT(touching, 5);
   int apart = 0, answered = 0;
   for (const auto& [pair, t] : tally) {
     std::printf("%s / %s: %d of %d have points\n", kKinds[static_cast<std::size_t>(pair.first)].c_str(),
@@ -80,7 +60,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
     apart += t.apart;
     answered += t.answered;
   }
-  EXPECT_GT(apart, 350);
+  EXPECT_GT(apart, 300);
   EXPECT_GT(answered, apart * 95 / 100);
 }
 

@@ -20,28 +20,6 @@ using namespace swivel::testing;
 
 constexpr double kTau = 5e-5;  // design.md 1: the band in which FCL alone decides
 
-const std::vector<std::string> kKinds{"sphere", "capsule", "box", "cylinder", "closed mesh", "open mesh", "torus"};
-
-Shape random_shape(int kind, Random& random) {
-  const double r = random.uniform(0.02, 0.12);
-  switch (kind) {
-    case 0:
-      return Sphere{r};
-    case 1:
-      return Capsule{r, random.uniform(0.02, 0.3)};
-    case 2:
-      return Box{random.vector(0.03, 0.3)};
-    case 3:
-      return Cylinder{r, random.uniform(0.02, 0.3)};
-    case 4:
-      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5), "closed");
-    case 5:
-      return as_mesh(tube_mesh(r, random.uniform(0.1, 0.3), 12), "open");
-    default:
-      return as_mesh(torus_mesh(0.12, 0.04, 8), "torus");
-  }
-}
-
 /// A point that the shape holds: its centre or, of a mesh, which may be hollow, the middle of a triangle or of an edge.
 Vector3d held_point(const Shape& shape, bool of_triangle) {
   const auto* mesh = std::get_if<MeshPtr>(&shape);

@@ -71,6 +71,26 @@ std::string numbered(const std::string& name, int number) {
   return result.append(std::to_string(number));
 }
 
+Shape random_shape(int kind, Random& random) {
+  const double r = random.uniform(0.02, 0.12);
+  switch (kind) {
+    case 0:
+      return Sphere{r};
+    case 1:
+      return Capsule{r, random.uniform(0.02, 0.3)};
+    case 2:
+      return Box{random.vector(0.03, 0.3)};
+    case 3:
+      return Cylinder{r, random.uniform(0.02, 0.3)};
+    case 4:
+      return as_mesh(random.index(2) ? box_mesh(random.vector(0.05, 0.3), 2) : sphere_mesh(r, 5), "closed");
+    case 5:
+      return as_mesh(tube_mesh(r, random.uniform(0.1, 0.3), 12), "open");
+    default:
+      return as_mesh(torus_mesh(0.12, 0.04, 8), "torus");
+  }
+}
+
 MeshPtr as_mesh(TriangleMesh mesh, const std::string& name) {
   mesh.source = name;
   mesh.closed = is_closed(mesh);

@@ -29,6 +29,9 @@ class Random {
 std::string numbered(const std::string& name, int number);
 
 MeshPtr as_mesh(TriangleMesh mesh, const std::string& name);
+inline const std::vector<std::string> kKinds{"sphere", "capsule", "box", "cylinder", "closed mesh", "open mesh", "torus"};
+/// Of a kind, 0 ... kKinds.size() - 1; some 0.1 m large.
+Shape random_shape(int kind, Random& random);
 /// Full edge lengths; each side cut into n x n squares. Closed.
 TriangleMesh box_mesh(const Vector3d& size, int n);
 /// Latitude-longitude sphere. Closed.
