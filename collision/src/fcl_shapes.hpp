@@ -66,6 +66,8 @@ struct FclShape {
   std::shared_ptr<const TriangleTree> triangles;            // shared: the same; the surface of a box or mesh, a prism in a cylinder
   double beyond_triangles = 0;                              // no point of the cylinder is further from its prism, m
   Bound bound;
+  /// What FCL is asked for distances about.
+  [[nodiscard]] const fcl::CollisionGeometryd& distance_geometry() const { return mesh ? mesh->distance_tree() : *geometry; }
 };
 [[nodiscard]] FclShape make_fcl_shape(const Shape& shape, MeshStore& store);
 

@@ -10,6 +10,8 @@
 #include <limits>
 #include <memory>
 
+#include "pair_test.hpp"
+
 namespace swivel {
 
 namespace {
@@ -26,12 +28,7 @@ struct Core {
       own = std::make_unique<fcl::Capsuled>(0, capsule->length);
       radius = capsule->radius;
     }
-    if (own)
-      geometry = own.get();
-    else if (body.shape->mesh)
-      geometry = &body.shape->mesh->distance_tree();
-    else
-      geometry = body.shape->geometry.get();
+    geometry = own ? own.get() : &body.shape->distance_geometry();
   }
   Pose pose;
   std::unique_ptr<fcl::CollisionGeometryd> own;
@@ -41,7 +38,7 @@ struct Core {
 
 fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b,
                               const Pose& X_b) {
-  const fcl::DistanceRequestd request(true, false, 0.0, 0.0, 1e-10, fcl::GST_LIBCCD);
+  const fcl::DistanceRequestd request(true, false, 0.0, 0.0, kGjkTolerance, fcl::GST_LIBCCD);
   fcl::DistanceResultd result;
   try {
     fcl::distance<double>(&a, X_a, &b, X_b, request, result);
@@ -62,8 +59,8 @@ bool belongs(const Vector3d& point, const Core& core) {
 
 std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, const PlacedShapeRef& b, double clearance) {
   if (!(clearance > 0)) return std::nullopt;
-  if (b.shape->mesh &&
-      !a.shape->mesh) {  // FCL leaves the points of a sphere before a mesh unset, not those of a mesh before a sphere
+  // FCL leaves the points of a sphere before a mesh unset, not those of a mesh before a sphere.
+  if (b.shape->mesh && !a.shape->mesh) {
     const auto swapped = nearest_points(b, a, clearance);
     return swapped ? std::optional(std::array{(*swapped)[1], (*swapped)[0]}) : std::nullopt;
   }

@@ -5,6 +5,10 @@
 
 namespace swivel {
 
+/// GJK stops at the first step that gains less than this. At the default, 1e-6, it returned up to 13 mm too much between a box and
+/// a cylinder; at 1e-10 no more than 0.05 um, for the same time.
+inline constexpr double kGjkTolerance = 1e-10;
+
 /// FCL's verdicts on one pair of bodies, and a count of what they took; so it belongs to one thread.
 /// Every verdict is a function of its arguments alone: fresh results, a before b, no cached guess, no penetration depth (which can
 /// throw and abort).

@@ -228,10 +228,9 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   return Clearance{least, pairs[where]};
 }
 
-std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const BodyPair& pair) {
+std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
   impl_->move_to(q);
-  const PlacedShapeRef a = impl_->placed(pair.a), b = impl_->placed(pair.b);
-  return swivel::nearest_points(a, b, impl_->test.clearance(a, b));
+  return swivel::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
 }
 
 CollisionCounters World::Query::counters() const {

@@ -123,7 +123,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<int
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[static_cast<std::size_t>(clearance->pair.a)],
                      world.body_names()[static_cast<std::size_t>(clearance->pair.b)]};
-      if (const auto points = query.nearest_points(q, clearance->pair)) {
+      if (const auto points = query.nearest_points(q, *clearance)) {
         row["nearest"] = vector_json((*points)[0]);
         for (const double x : (*points)[1]) row["nearest"].push_back(x);
       } else {

@@ -93,9 +93,9 @@ class World {
       BodyPair pair;
     };
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
-    /// A point of each of the pair's bodies, base frame, as far apart as the bodies are: within 0.1 mm. For drawing. None where
-    /// they touch, and where FCL has no points that can be believed.
-    [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const Config& q, const BodyPair& pair);
+    /// A point of each of the two bodies of clearance(q), base frame, as far apart as the bodies are: within 0.1 mm. For drawing.
+    /// None where they touch, and where FCL has no points that can be believed.
+    [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const Config& q, const Clearance& clearance);
     [[nodiscard]] CollisionCounters counters() const;
 
    private:
