@@ -87,8 +87,7 @@ json to_json(const baselines::TrackResult& result, double ms, const PreparedRobo
   double sum = 0, most = 0;
   for (int i = 0; i + 1 < path.size(); ++i) {
     const Config& q = result.rows[static_cast<std::size_t>(i)];
-    for (const double error :
-         path_deviation(robot.arm().chain, path, i, q, result.rows[static_cast<std::size_t>(i) + 1] - q).position) {
+    for (const double error : path_deviation(robot.arm().chain, path, i, q, result.rows[static_cast<std::size_t>(i) + 1] - q)) {
       sum += 1e3 * error;
       most = std::max(most, 1e3 * error);
     }

@@ -10,12 +10,20 @@ namespace swivel {
 
 namespace {
 
-/// exp([S] q): a turn by q about the line through p along a.
-Pose turn(const Vector3d& a, const Vector3d& p, double q) {
-  Pose X;
-  X.linear() = Eigen::AngleAxisd(q, a).toRotationMatrix();
-  X.translation() = p - X.linear() * p;
-  return X;
+/// About the line through p along a.
+Chain::Turn turn_about(const Vector3d& a, const Vector3d& p) {
+  const Matrix3d along = a * a.transpose(), across = Matrix3d::Identity() - along;
+  Matrix3d cross;
+  cross << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
+  Chain::Turn turn;
+  turn.still << along, across * p, 0, 0, 0, 1;
+  turn.cosine << across, -across * p, 0, 0, 0, 0;
+  turn.sine << cross, -cross * p, 0, 0, 0, 0;
+  return turn;
+}
+
+Pose at(const Chain::Turn& turn, double cosine, double sine) {
+  return Pose(turn.still + cosine * turn.cosine + sine * turn.sine);
 }
 
 Pose joint_motion(const Joint& joint, double position) {
@@ -25,7 +33,7 @@ Pose joint_motion(const Joint& joint, double position) {
     case Joint::Type::kPrismatic:
       return Pose(Eigen::Translation3d(joint.axis * position));
     default:
-      return turn(joint.axis, Vector3d::Zero(), position);
+      return Pose(Eigen::AngleAxisd(position, joint.axis));
   }
 }
 
@@ -93,17 +101,26 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
 std::array<Pose, kDof + 1> Chain::displacements(const Config& q) const {
   std::array<Pose, kDof + 1> G;
   G[0].setIdentity();
-  for (std::size_t k = 0; k < kDof; ++k) {
-    const Matrix3d R = Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], axis[k]).toRotationMatrix();
-    G[k + 1].linear().noalias() = G[k].linear() * R;
-    G[k + 1].translation() = G[k].translation() + G[k].linear() * point[k] - G[k + 1].linear() * point[k];
-    G[k + 1].makeAffine();
-  }
+  displace(q, 0, kDof, G);
   return G;
+}
+
+void Chain::displace(const Config& q, int first, int last, std::array<Pose, kDof + 1>& G) const {
+  for (auto k = static_cast<std::size_t>(first); k < static_cast<std::size_t>(last); ++k) {
+    const double angle = q[static_cast<Eigen::Index>(k)];
+    G[k + 1] = product(G[k], at(turn[k], std::cos(angle), std::sin(angle)));
+  }
 }
 
 Pose Chain::tool(const Config& q) const {
   return displacements(q)[kDof] * home;
+}
+
+Vector3d Chain::tool_point(const Config& cosine, const Config& sine) const {
+  Eigen::Vector4d p = home.matrix().col(3);
+  for (std::size_t k = kDof; k-- > 0;)
+    p = at(turn[k], cosine[static_cast<Eigen::Index>(k)], sine[static_cast<Eigen::Index>(k)]).matrix() * p;
+  return p.head<3>();
 }
 
 Eigen::Matrix<double, 6, kDof> Chain::jacobian(const Config& q) const {
@@ -171,6 +188,7 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     chain.joint_names[k] = joint.name;
     chain.axis[k] = (frame.linear() * joint.axis).normalized();
     chain.point[k] = frame.translation();
+    chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
     chain.limit[k] = {joint.lower, joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous};
   }
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;

@@ -16,6 +16,31 @@ double rounded(double x) {
   return (x + kShift) - kShift;
 }
 
+/// The tool's straight line from a layer to the next; a point where they coincide.
+class Step {
+ public:
+  Step(const ToolPath& path, int layer) : start_(path.layer(layer).tool.translation()) {
+    const Vector3d along = path.layer(layer + 1).tool.translation() - start_;
+    length_ = along.norm();
+    if (length_ >= kShortest) direction_ = along / length_;
+  }
+  /// Distance of a point from the line, m.
+  [[nodiscard]] double aside(const Vector3d& p) const {
+    const Vector3d d = p - start_;
+    return (d - d.dot(direction_) * direction_).norm();
+  }
+  /// Where on the step the foot of a point lies, 0 to 1; none on a point.
+  [[nodiscard]] std::optional<double> fraction(const Vector3d& p) const {
+    if (length_ < kShortest) return std::nullopt;
+    return std::clamp((p - start_).dot(direction_) / length_, 0.0, 1.0);
+  }
+
+ private:
+  static constexpr double kShortest = 1e-9;  // m
+  Vector3d start_, direction_ = Vector3d::Zero();
+  double length_;
+};
+
 }  // namespace
 
 Config Lattice::delta(const Config& q0, const Config& q1) const {
@@ -45,13 +70,13 @@ double Lattice::edge_cost(const Config& delta) const {
 }
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
-  if (limits_.tool_path_error || limits_.tool_angle_error) {
-    const PathDeviation deviation = path_deviation(*chain_, *path_, layer, q0, delta(q0, q1));
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (limits_.tool_path_error && !(deviation.position[k] <= *limits_.tool_path_error)) return false;
-      if (limits_.tool_angle_error && !(deviation.angle[k] <= *limits_.tool_angle_error)) return false;
-    }
-  }
+  const auto within = [](const std::array<double, 3>& deviation, double limit) {
+    return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+  };
+  const Config move = delta(q0, q1);
+  if (limits_.tool_path_error && !within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error)) return false;
+  if (limits_.tool_angle_error && !within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
+    return false;
   if (limits_.step_error) {
     const double phi_a = phi(layer, a), phi_b = phi(layer + 1, b), dphi = wrap_angle(phi_b - phi_a);
     if (!(step_error(*this, layer, 0, branch_of(a), phi_a, dphi) <= *limits_.step_error)) return false;
@@ -60,24 +85,29 @@ bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Conf
   return true;
 }
 
-PathDeviation path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
-  const PathLayer& from = path.layer(layer);
-  const Vector3d p0 = from.tool.translation(), along = path.layer(layer + 1).tool.translation() - p0;
-  const double length = along.norm();
-  PathDeviation deviation;
+std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+  const Step step(path, layer);
+  // t = 1/2 as it is; 1/4 and 3/4 are a quarter of the move, h, before and after it.
+  Config c, s, c_before, s_before, c_after, s_after;
+  for (int k = 0; k < kDof; ++k) {
+    const double middle = q0[k] + 0.5 * delta[k], h = 0.25 * delta[k];
+    c[k] = std::cos(middle), s[k] = std::sin(middle);
+    const double ch = std::cos(h), sh = std::sin(h);
+    c_before[k] = c[k] * ch + s[k] * sh, s_before[k] = s[k] * ch - c[k] * sh;
+    c_after[k] = c[k] * ch - s[k] * sh, s_after[k] = s[k] * ch + c[k] * sh;
+  }
+  return {step.aside(chain.tool_point(c_before, s_before)), step.aside(chain.tool_point(c, s)),
+          step.aside(chain.tool_point(c_after, s_after))};
+}
+
+std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+  const Step step(path, layer);
+  std::array<double, 3> deviation{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double t = 0.25 * static_cast<double>(k + 1);
     const Pose tool = chain.tool(q0 + t * delta);
-    const Vector3d d = tool.translation() - p0;
-    double fraction = t;
-    if (length < 1e-9) {
-      deviation.position[k] = d.norm();
-    } else {
-      const Vector3d direction = along / length;
-      deviation.position[k] = (d - d.dot(direction) * direction).norm();
-      fraction = std::clamp(d.dot(direction) / length, 0.0, 1.0);
-    }
-    deviation.angle[k] = Eigen::AngleAxisd(path.at(layer, fraction).linear().transpose() * tool.linear()).angle();
+    const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
+    deviation[k] = Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
   }
   return deviation;
 }

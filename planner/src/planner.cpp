@@ -139,9 +139,9 @@ void fill_report(const PreparedRobot& robot, const Lattice& lattice, const World
     const auto clearance = query.clearance(q);
     if (clearance) result.min_clearance = std::min(result.min_clearance.value_or(clearance->distance), clearance->distance);
     if (i + 1 == result.trajectory.size()) break;
-    const PathDeviation deviation =
+    const auto deviation =
         path_deviation(robot.arm().chain, lattice.path(), static_cast<int>(i), q, result.trajectory[i + 1].q - q);
-    for (const double error : deviation.position) {
+    for (const double error : deviation) {
       sum += error;
       ++samples;
       result.tool_path_error_mm.max = std::max(result.tool_path_error_mm.max, 1e3 * error);

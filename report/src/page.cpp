@@ -108,8 +108,8 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<int
     if (layer > 0) {
       const Config step = lattice.delta(previous, q);
       q = previous + step;  // unwraps continuous joints, as the trajectory does
-      const PathDeviation deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, step);
-      error = 1e3 * *std::max_element(deviation.position.begin(), deviation.position.end());
+      const auto deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, step);
+      error = 1e3 * *std::max_element(deviation.begin(), deviation.end());
     }
     previous = q;
     Json row = {{"layer", layer},

@@ -32,6 +32,31 @@ TEST(Arm, Sda5fHasTheDimensionsOfItsDataSheet) {
   }
 }
 
+TEST(Arm, DisplacementsAreTurnsAboutTheAxes) {
+  Random random(seed("Arm.Displacements"));
+  double worst = 0;
+  int compared = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const Chain chain = arm_of(robot).chain;
+    for (int trial = 0; trial < 200; ++trial) {
+      const Config q = random_config(chain, random);
+      const auto G = chain.displacements(q);
+      Pose expected = Pose::Identity();
+      for (std::size_t k = 0; k < kDof; ++k) {
+        expected = expected * Eigen::Translation3d(chain.point[k]) *
+                   Eigen::AngleAxisd(q[static_cast<Eigen::Index>(k)], chain.axis[k]) * Eigen::Translation3d(-chain.point[k]);
+        worst = std::max(worst, (G[k + 1].matrix() - expected.matrix()).lpNorm<Eigen::Infinity>());
+        ++compared;
+      }
+      const Vector3d point = chain.tool_point(q.array().cos(), q.array().sin());
+      worst = std::max({worst, (point - expected * chain.home.translation()).norm(),
+                        (chain.tool(q).matrix() - (expected * chain.home).matrix()).lpNorm<Eigen::Infinity>()});
+    }
+  }
+  std::printf("%d displacements, worst error %.1e\n", compared, worst);
+  EXPECT_LT(worst, 1e-14 * 10);
+}
+
 TEST(Arm, JacobianIsTheDerivativeOfTheTool) {
   Random random(seed("Arm.Jacobian"));
   for (const TestRobot& robot : all_robots()) {

@@ -254,5 +254,40 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   EXPECT_GT(compared, 50);
 }
 
+/// Straight from its definition: the tool at a quarter, a half and three quarters of the move.
+TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
+  Random random(seed("Lattice.Deviations"));
+  int compared = 0;
+  double largest = 0;
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(50); ++trial) {
+      const Chain chain = arm_of(robot).chain;
+      const Config q0 = random_config(chain, random);
+      Config q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.2, 0.2);
+      const Small small(robot, q0, q1, {.ds = 0.05, .dphi = 0.3, .dalpha = 0.2});
+      const ToolPath& path = *small.path;
+      for (int layer = 0; layer + 1 < path.size(); ++layer) {
+        Config delta;
+        for (int j = 0; j < kDof; ++j) delta[j] = random.uniform(-0.3, 0.3);
+        const auto position = path_deviation(chain, path, layer, q0, delta), angle = angle_deviation(chain, path, layer, q0, delta);
+        const Vector3d start = path.layer(layer).tool.translation(), end = path.layer(layer + 1).tool.translation();
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double t = 0.25 * static_cast<double>(k + 1);
+          const Pose tool = chain.tool(q0 + t * delta);
+          const Vector3d direction = (end - start).normalized(), d = tool.translation() - start;
+          const double fraction = std::clamp(d.dot(direction) / (end - start).norm(), 0.0, 1.0);
+          EXPECT_NEAR(position[k], d.cross(direction).norm(), 1e-12) << robot.name;
+          EXPECT_NEAR(angle[k], Quaterniond(path.at(layer, fraction).linear()).angularDistance(Quaterniond(tool.linear())), 1e-7)
+              << robot.name;
+          largest = std::max(largest, position[k]);
+          ++compared;
+        }
+      }
+    }
+  std::printf("%d deviations, up to %.3f m\n", compared, largest);
+  EXPECT_GT(compared, 1000);
+}
+
 }  // namespace
 }  // namespace swivel

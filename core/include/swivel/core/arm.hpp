@@ -28,11 +28,20 @@ struct Chain {
   std::array<Vector3d, kDof> point;  ///< on the axis, base frame, q = 0, m
   std::array<JointLimit, kDof> limit;
   Pose home = Pose::Identity();  ///< tool in base at q = 0
+  /// exp([S] q) = still + cos(q) cosine + sin(q) sine, homogeneous matrices. Lynch & Park, Eq. (3.51) and (3.88).
+  struct Turn {
+    Eigen::Matrix4d still, cosine, sine;
+  };
+  std::array<Turn, kDof> turn;  ///< of `axis` and `point`, by build_arm
 
   /// G_0 ... G_7.
   [[nodiscard]] std::array<Pose, kDof + 1> displacements(const Config& q) const;
+  /// G_first+1 ... G_last, from G_first.
+  void displace(const Config& q, int first, int last, std::array<Pose, kDof + 1>& G) const;
   /// Tool in base.
   [[nodiscard]] Pose tool(const Config& q) const;
+  /// Its origin, m; of the joints' cosines and sines.
+  [[nodiscard]] Vector3d tool_point(const Config& cosine, const Config& sine) const;
   /// 6x7 geometric Jacobian at the tool origin, base frame: rows 0-2 linear, 3-5 angular.
   [[nodiscard]] Eigen::Matrix<double, 6, kDof> jacobian(const Config& q) const;
   /// Yoshikawa 1984: sqrt(max(0, det(J J^T))), J as above. Independent of the reference point.

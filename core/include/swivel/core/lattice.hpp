@@ -171,12 +171,12 @@ class Lattice {
   std::optional<Start> start_;
 };
 
-/// Deviation of the tool from its straight step, at t = 1/4, 1/2, 3/4 of a joint-linear move. m and rad.
-struct PathDeviation {
-  std::array<double, 3> position{}, angle{};
-};
-[[nodiscard]] PathDeviation path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
-                                           const Config& delta);
+/// Distance of the tool from its straight step, at t = 1/4, 1/2, 3/4 of a joint-linear move, m.
+[[nodiscard]] std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
+                                                   const Config& delta);
+/// Angle between the tool and the path at the foot of that distance, rad.
+[[nodiscard]] std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0,
+                                                    const Config& delta);
 
 /// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq.
 /// (12) replaced by the part normal to the tangent plane: 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi). end 0: at layer; end 1:

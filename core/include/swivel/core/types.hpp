@@ -19,4 +19,13 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
+/// A B. Leaves out the last rows, which Eigen multiplies.
+inline Pose product(const Pose& A, const Pose& B) {
+  const Eigen::Matrix4d &a = A.matrix(), &b = B.matrix();
+  Pose C;
+  for (int j = 0; j < 4; ++j) C.matrix().col(j) = b(0, j) * a.col(0) + b(1, j) * a.col(1) + b(2, j) * a.col(2);
+  C.matrix().col(3) += a.col(3);
+  return C;
+}
+
 }  // namespace swivel
