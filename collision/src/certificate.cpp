@@ -12,12 +12,20 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // far above what these distances lose, far below the band
 
-/// A distance below `low` is a collision, one from `high` on is free.
+constexpr Proof kCollides{Certificate::kColliding};
+
+/// Of distances that are larger than the clearance by at most `growth`: below `low` is a collision, from `high` on is free, and
+/// what is beyond `far` need not be told apart.
 struct Range {
-  double low, high;
-  Range(double d, double growth) : low(d + growth - kVerdictBand - kRounding), high(d + growth + kVerdictBand + kRounding) {}
-  [[nodiscard]] Certificate of(double distance) const {
-    return distance < low ? Certificate::kColliding : distance >= high ? Certificate::kFree : Certificate::kNone;
+  double growth, low, high, far;
+  Range(double d, double ahead, double growth_within, double growth_between = 0)
+      : growth(growth_within + growth_between),
+        low(d + growth_within - kVerdictBand - kRounding),
+        high(d + growth + kVerdictBand + kRounding),
+        far(high + ahead) {}
+  [[nodiscard]] Proof of(double distance) const {
+    if (distance < low) return kCollides;
+    return {distance >= high ? Certificate::kFree : Certificate::kNone, distance - growth - kRounding};
   }
 };
 
@@ -53,7 +61,7 @@ Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
 
 /// A convex solid's distance is convex along a segment: its least value lies between the values and the tangents on both sides.
 template <class Solid>
-Certificate bracket(const Segment& s, const Solid& solid, const Range& range) {
+Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
   struct Place {
     double t, distance, slope;
   };
@@ -65,28 +73,29 @@ Certificate bracket(const Segment& s, const Solid& solid, const Range& range) {
   constexpr int kSteps = 40;
   Place left = at(0), right = at(1);
   for (int step = 0; step < kSteps; ++step) {
-    if (range.of(std::min(left.distance, right.distance)) == Certificate::kColliding) return Certificate::kColliding;
+    if (std::min(left.distance, right.distance) < range.low) return kCollides;
     if (left.slope >= 0) return range.of(left.distance);
     if (right.slope <= 0) return range.of(right.distance);
     const double to_crossing = (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
-    if (range.of(left.distance + left.slope * to_crossing) == Certificate::kFree) return Certificate::kFree;
+    if (const Proof proof = range.of(left.distance + left.slope * to_crossing); proof.certificate == Certificate::kFree)
+      return proof;
     const Place middle = at(left.t + to_crossing);
     (middle.slope < 0 ? left : right) = middle;
   }
-  return Certificate::kNone;
+  return {};
 }
 
-Certificate certify_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d) {
+Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double ahead) {
   const Segment core = core_of(round);
   const double radius = radius_of(round.shape->shape);
   if (is_round(other))
-    return Range(d, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
+    return Range(d, ahead, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
   const Segment there = in_frame(core, *other.pose);
-  const Range range(d, radius);
+  const Range range(d, ahead, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
-  const Certificate surface = range.of(other.shape->triangles->distance(there, range.low, range.high));
-  return surface != Certificate::kColliding && one_inside_other(round, other) ? Certificate::kColliding : surface;
+  const Proof surface = range.of(other.shape->triangles->distance(there, range.low, range.far));
+  return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
 /// A point of `inner` lies in the box or cylinder `outer`, where their surfaces do not meet.
@@ -103,24 +112,27 @@ bool solid_holds(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
   return std::any_of(points.begin(), points.end(), holds);
 }
 
-Certificate certify_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
-  if (!a.shape->triangles || !b.shape->triangles) return Certificate::kNone;
-  Range range(d, 0);
-  range.high += a.shape->beyond_triangles + b.shape->beyond_triangles;
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead) {
+  if (!a.shape->triangles || !b.shape->triangles) return {};
+  const Range range(d, ahead, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  const Certificate surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.high));
-  if (surface == Certificate::kColliding) return surface;
-  const bool surfaces_apart = surface == Certificate::kFree || range.low > 0;
+  const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far));
+  if (surface.certificate == Certificate::kColliding) return surface;
+  const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
   const bool inside = one_inside_other(a, b) || (surfaces_apart && (solid_holds(a, b) || solid_holds(b, a)));
-  return inside ? Certificate::kColliding : surface;
+  return inside ? kCollides : surface;
 }
 
 }  // namespace
 
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead) {
+  if (is_round(a)) return prove_round(a, b, d, ahead);
+  if (is_round(b)) return prove_round(b, a, d, ahead);
+  return prove_triangles(a, b, d, ahead);
+}
+
 Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
-  if (is_round(a)) return certify_round(a, b, d);
-  if (is_round(b)) return certify_round(b, a, d);
-  return certify_triangles(a, b, d);
+  return prove(a, b, d, 0).certificate;
 }
 
 }  // namespace swivel

@@ -16,4 +16,11 @@ enum class Certificate { kFree, kColliding, kNone };
 /// A function of its arguments alone. Const-safe from many threads.
 [[nodiscard]] Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
 
+/// The same, with a number that the clearance is not below where it is kFree, m: looks `ahead` beyond d for a larger one.
+struct Proof {
+  Certificate certificate = Certificate::kNone;
+  double floor = 0;
+};
+[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead);
+
 }  // namespace swivel

@@ -13,15 +13,17 @@ namespace {
 constexpr int kLeaf = 4;
 constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
 
-/// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment.
+/// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment. Need not be
+/// told where it is at least `limit`.
 class BoxBound {
  public:
   explicit BoxBound(const Segment& s) : middle_(s.at(0.5)), half_(s.along.cwiseAbs() / 2) {
     for (int k = 0; k < 3; ++k) across_[static_cast<std::size_t>(k)] = Vector3d::Unit(k).cross(s.along).stableNormalized();
   }
-  [[nodiscard]] double squared(const Vector3d& center, const Vector3d& half) const {
+  [[nodiscard]] double squared(const Vector3d& center, const Vector3d& half, double limit) const {
     const Vector3d offset = center - middle_;
     double widest = (offset.cwiseAbs() - half - half_).cwiseMax(0).squaredNorm();
+    if (widest >= limit) return widest;
     for (const Vector3d& axis : across_) {
       const double gap = std::abs(axis.dot(offset)) - axis.cwiseAbs().dot(half);
       if (gap > 0) widest = std::max(widest, gap * gap);
@@ -93,10 +95,6 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
 
 double TriangleTree::distance(const Segment& segment, double enough, double limit) const {
   const BoxBound bound(segment);
-  const auto squared_bound = [&](int node) {
-    const Node& n = nodes_[static_cast<std::size_t>(node)];
-    return bound.squared(n.center, n.half);
-  };
   struct Open {
     int node;
     double bound;
@@ -105,6 +103,10 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
   std::size_t open = 0;
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
+  const auto squared_bound = [&](int node) {
+    const Node& n = nodes_[static_cast<std::size_t>(node)];
+    return bound.squared(n.center, n.half, least);
+  };
   stack[open++] = {0, squared_bound(0)};
   while (open > 0) {
     const auto [index, at_least] = stack[--open];

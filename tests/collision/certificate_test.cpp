@@ -194,6 +194,9 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
         ASSERT_EQ(certificate, Certificate::kColliding) << what;
       }
       tally.add(certificate);
+      const Proof ahead = prove(a, b, d, 0.01);
+      ASSERT_EQ(ahead.certificate, certificate) << what;
+      ASSERT_LE(ahead.floor, clearance + kTau) << what;
     }
   }
   for (const auto& [name, tally] : {std::pair("apart: sphere or capsule", round), std::pair("apart: box or cylinder", solid),
