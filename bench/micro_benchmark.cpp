@@ -232,6 +232,12 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
       state.counters["undecided"] = static_cast<double>(undecided) / static_cast<double>(state.iterations());
     });
   }
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  add("posture/kept", [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
+    World::Query query(c.world, Certificates::kOn);
+    cycle(state, rows, [&](const TrajectoryRow& row) { return query.next_below(row.q, c.problem.limits.clearance); });
+  });
   for (const auto& [name, certificates] : {std::pair{"fcl", Certificates::kOff}, {"certificates", Certificates::kOn}}) {
     const auto who = certificates;  // a structured binding cannot be captured
     add(std::string("posture/") + name, [&c, who](benchmark::State& state) {

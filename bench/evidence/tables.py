@@ -176,7 +176,7 @@ def pieces(data):
                                            ["cost-to-go, whole sweep, a node of the lattice (IK included)", *(each(f"sweep/whole/{u}") for u in units)],
                                             ["cost-to-go, bounded sweep, a node of the lattice", *(each(f"sweep/bounded/{u}") for u in units)]])
     names = {"ik/closed_form_libm": "IK, closed form with libm", "forward_kinematics": "forward kinematics", "jacobian": "Jacobian", "manipulability": "manipulability", "step_error": "step error (one end)",
-             "tool_path_error": "tool-path error of an edge", "a_star/expansion": "A*, an expansion", "posture/fcl": "posture: FCL", "posture/certificates": "posture: certificates, then FCL",
+             "tool_path_error": "tool-path error of an edge", "a_star/expansion": "A*, an expansion", "posture/fcl": "posture: FCL", "posture/certificates": "posture: certificates, then FCL", "posture/kept": "posture of a path: clearances kept",
              "motion/fcl": "motion of an edge: FCL", "motion/certificates": "motion of an edge: certificates, then FCL"}
     single = markdown(["piece", "ns each"], [[text, each(name)] for name, text in names.items()])
     shapes = ("sphere", "capsule", "box", "cylinder", "mesh_2k", "mesh_20k")

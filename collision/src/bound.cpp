@@ -41,6 +41,18 @@ PlacedBound place(const Bound& bound, const Pose& pose) {
   return {pose * bound.center, pose.linear()};
 }
 
+double motion(const Bound& bound, const PlacedBound& from, const PlacedBound& to) {
+  const Eigen::Vector4d squares((to.center - from.center).squaredNorm(), (to.axes.col(0) - from.axes.col(0)).squaredNorm(),
+                                (to.axes.col(1) - from.axes.col(1)).squaredNorm(),
+                                (to.axes.col(2) - from.axes.col(2)).squaredNorm());
+  const Eigen::Vector4d moved = squares.cwiseSqrt();  // centre, ends of the axes
+  return moved[0] + bound.half.dot(moved.tail<3>());
+}
+
+double ball_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
+  return (at_b.center - at_a.center).norm() - a.reach - b.reach;
+}
+
 double distance_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
   const Vector3d offset = at_b.center - at_a.center;
   return std::max(offset.norm() - a.reach - b.reach, gap_along_box_axes(a, at_a.axes, b, at_b.axes, offset));

@@ -21,8 +21,13 @@ struct PlacedBound {
 };
 [[nodiscard]] PlacedBound place(const Bound& bound, const Pose& pose);
 
+/// No point of a body's core (the shape itself, or what a ball grows to it) moves further than this between two places, m.
+[[nodiscard]] double motion(const Bound& bound, const PlacedBound& from, const PlacedBound& to);
+
 /// A number that the distance of the two bodies cannot be below, m: the widest gap along the line of centres and the six box axes.
 [[nodiscard]] double distance_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
+/// The same by the line of centres alone; cheap.
+[[nodiscard]] double ball_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
 /// True only if distance_floor >= d; asks the cheap balls first.
 [[nodiscard]] bool surely_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
 

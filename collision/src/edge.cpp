@@ -24,6 +24,7 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
   const double step = rule.motion(q0, q1) / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
+  query.forget();
   std::vector<std::int64_t> open{0}, next;  // first leaves of the intervals of this size that are not decided yet
   for (std::int64_t size = leaves; !open.empty(); size /= 2) {
     const double half_bound = step * static_cast<double>(size) / 2;
@@ -32,12 +33,12 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
       const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {
-        if (const auto pair = query.first_below(q, rule.d_edge + rule.h)) return pair;
+        if (const auto pair = query.next_below(q, rule.d_edge + rule.h)) return pair;
         continue;
       }
-      const auto near = query.first_below(q, rule.d_edge + rule.h + half_bound);
+      const auto near = query.next_below(q, rule.d_edge + rule.h + half_bound);
       if (!near) continue;
-      if (const auto pair = query.first_below(q, rule.d_edge, near)) return pair;
+      if (const auto pair = query.next_below(q, rule.d_edge, near)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }

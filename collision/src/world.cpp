@@ -133,6 +133,10 @@ const std::vector<std::string>& World::warnings() const {
 
 /// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
 static constexpr double kBoundSafety = 1e-6;
+/// A clearance kept says "free" only where FCL would.
+static constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
+/// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
+static constexpr double kAhead = 0.01;
 
 struct World::Query::Impl {
   const World::Impl* world;
@@ -140,32 +144,90 @@ struct World::Query::Impl {
   PairTest test;
   CollisionCounters own;  // all but what the test counts
   bool certain = false;   // no verdict of this question needed FCL
+  bool surely = false;    // the last verdict was a certificate's
   std::vector<Pose> poses;
   std::vector<PlacedBound> bounds;
-  Config placed_at = Config::Constant(std::numeric_limits<double>::quiet_NaN());
+  Config q = Config::Constant(std::numeric_limits<double>::quiet_NaN());
+  std::array<Pose, kDof + 1> displacements;
+  int displaced = 0;           // up to this group
+  std::vector<char> in_place;  // bodies, at q
+  // For next_below. What a pair's two bodies have moved in all is subtracted from its reserve, and is its clearance at least.
+  std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
+  std::vector<PlacedBound> moved_to;  // by body; empty after forget()
+  std::vector<double> reserve;        // by pair, m
+  std::vector<std::size_t> due;       // pairs that their reserve does not prove free
 
-  Impl(const World::Impl& w, Certificates c) : world(&w), certificates(c) {
+  Impl(const World::Impl& w, Certificates c)
+      : world(&w),
+        certificates(c),
+        in_place(w.bodies.size()),
+        moved(w.bodies.size()),
+        step(w.bodies.size()),
+        reserve(w.pairs.size(), std::numeric_limits<double>::lowest()) {
+    due.reserve(reserve.size());
+    moved_to.reserve(moved.size());
+    displacements[0].setIdentity();
     for (const auto& body : w.bodies) {
       poses.push_back(body.pose);
       bounds.push_back(place(body.shape.bound, body.pose));
     }
   }
 
-  void move_to(const Config& q) {
-    if (q == placed_at) return;  // an edge asks the same place at two distances
-    const auto moved = world->robot->chain.displacements(q);
-    for (std::size_t i = 0; i < world->robot->bodies.size(); ++i) {
-      const auto& body = world->bodies[i];
-      if (body.group == 0) continue;
-      poses[i] = moved[static_cast<std::size_t>(body.group)] * body.pose;
-      bounds[i] = place(body.shape.bound, poses[i]);
+  /// Bodies are placed where they are asked about.
+  void move_to(const Config& to) {
+    if (to == q) return;  // an edge asks the same place at two distances
+    q = to;
+    displaced = 0;
+    std::fill(in_place.begin(), in_place.end(), 0);
+  }
+  void put(int index) {
+    const auto i = static_cast<std::size_t>(index);
+    const auto& body = world->bodies[i];
+    if (in_place[i] || body.group == 0) return;
+    if (displaced < body.group) {
+      world->robot->chain.displace(q, displaced, body.group, displacements);
+      displaced = body.group;
     }
-    placed_at = q;
+    poses[i] = product(displacements[static_cast<std::size_t>(body.group)], body.pose);
+    bounds[i] = place(body.shape.bound, poses[i]);
+    in_place[i] = 1;
+  }
+  void put_all() {
+    for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) put(i);
   }
 
+  std::optional<BodyPair> first_below(double d, const std::optional<BodyPair>& suspect, bool keep) {
+    certain = certificates != Certificates::kOff;
+    const auto found = first(d, suspect, keep && certain);
+    (found ? own.certified_colliding : own.certified_free) += certain;
+    return found;
+  }
+  std::optional<BodyPair> first(double d, const std::optional<BodyPair>& suspect, bool keep) {
+    if (suspect && below(*suspect, d)) return suspect;
+    put_all();
+    if (keep) return first_due(d, suspect);
+    for (const BodyPair& p : world->pairs)
+      if (p != suspect && is_below(p, d, certify_pair(p, d))) return p;
+    return std::nullopt;
+  }
+  std::optional<BodyPair> first_due(double d, const std::optional<BodyPair>& suspect) {
+    move_on();
+    find_due(d + kKeptSafety);
+    if (certificates == Certificates::kCompared) compare_others(d);
+    for (const std::size_t k : due) {
+      const BodyPair& p = world->pairs[k];
+      if (p != suspect && is_below(p, d, renewed(k, d))) return p;
+    }
+    return std::nullopt;
+  }
   bool below(const BodyPair& p, double d) {
-    const Certificate certificate = certify_pair(p, d);
-    certain &= certificate != Certificate::kNone;
+    put(p.a);
+    put(p.b);
+    return is_below(p, d, certify_pair(p, d));
+  }
+  bool is_below(const BodyPair& p, double d, Certificate certificate) {
+    surely = certificate != Certificate::kNone;
+    certain &= surely;
     if (certificates != Certificates::kCompared && certificate != Certificate::kNone) return certificate == Certificate::kColliding;
     const bool verdict = test.below(placed(p.a), placed(p.b), d);
     own.contradictions += certificate == (verdict ? Certificate::kFree : Certificate::kColliding);
@@ -174,6 +236,57 @@ struct World::Query::Impl {
   [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d) const {
     if (surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
     return certificates == Certificates::kOff ? Certificate::kNone : certify(placed(p.a), placed(p.b), d);
+  }
+
+  void forget() {
+    moved_to.clear();
+    std::fill(moved.begin(), moved.end(), 0);
+    std::fill(reserve.begin(), reserve.end(), std::numeric_limits<double>::lowest());
+  }
+  void move_on() {
+    if (moved_to.empty()) moved_to = bounds;
+    for (std::size_t i = 0; i < world->robot->bodies.size(); ++i) {
+      const auto& body = world->bodies[i];
+      if (body.group == 0) continue;
+      step[i] = motion(body.shape.bound, moved_to[i], bounds[i]);
+      moved[i] += step[i];
+      moved_to[i] = bounds[i];
+    }
+  }
+  [[nodiscard]] double moved_together(const BodyPair& p) const {
+    return moved[static_cast<std::size_t>(p.a)] + moved[static_cast<std::size_t>(p.b)];
+  }
+  void find_due(double enough) {
+    due.resize(reserve.size());
+    std::size_t found = 0;
+    for (std::size_t k = 0; k < reserve.size(); ++k) {
+      due[found] = k;
+      found += !(reserve[k] - moved_together(world->pairs[k]) >= enough);  // NaN is due
+    }
+    due.resize(found);
+    own.pairs_kept += static_cast<std::int64_t>(reserve.size() - found);
+  }
+  void compare_others(double d) {
+    for (std::size_t k = 0; k < reserve.size(); ++k) {
+      if (std::binary_search(due.begin(), due.end(), k)) continue;
+      own.contradictions += test.below(placed(world->pairs[k].a), placed(world->pairs[k].b), d);
+    }
+  }
+  /// certify_pair, which also renews the reserve.
+  Certificate renewed(std::size_t k, double d) {
+    const BodyPair& p = world->pairs[k];
+    const double spent = moved_together(p);
+    const double ahead = step[static_cast<std::size_t>(p.a)] + step[static_cast<std::size_t>(p.b)] < kAhead ? kAhead : kBoundSafety;
+    const auto clear_by = [&](double floor) {
+      reserve[k] = floor + spent;
+      return floor >= d + ahead;
+    };
+    if (clear_by(ball_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)))) return Certificate::kFree;
+    const double floor = distance_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (clear_by(floor)) return Certificate::kFree;
+    const Proof proof = prove(placed(p.a), placed(p.b), d, ahead);
+    clear_by(std::max(floor, proof.floor));
+    return floor >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[static_cast<std::size_t>(i)]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
@@ -187,17 +300,20 @@ World::Query& World::Query::operator=(Query&&) noexcept = default;
 
 std::optional<BodyPair> World::Query::first_below(const Config& q, double d, const std::optional<BodyPair>& suspect) {
   impl_->move_to(q);
-  impl_->certain = impl_->certificates != Certificates::kOff;
-  const auto is_below = [&](const BodyPair& p) {
-    if (!impl_->below(p, d)) return false;
-    impl_->own.certified_colliding += impl_->certain;
-    return true;
-  };
-  if (suspect && is_below(*suspect)) return suspect;
-  for (const BodyPair& p : impl_->world->pairs)
-    if (p != suspect && is_below(p)) return p;
-  impl_->own.certified_free += impl_->certain;
-  return std::nullopt;
+  return impl_->first_below(d, suspect, false);
+}
+
+std::optional<BodyPair> World::Query::next_below(const Config& q, double d, const std::optional<BodyPair>& suspect) {
+  impl_->move_to(q);
+  return impl_->first_below(d, suspect, true);
+}
+
+void World::Query::forget() {
+  impl_->forget();
+}
+
+bool World::Query::surely_below() const {
+  return impl_->surely;
 }
 
 bool World::Query::pair_below(const Config& q, const BodyPair& pair, double d) {
@@ -208,6 +324,7 @@ bool World::Query::pair_below(const Config& q, const BodyPair& pair, double d) {
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {
   impl_->move_to(q);
+  impl_->put_all();
   const auto& pairs = impl_->world->pairs;
   std::vector<std::pair<double, std::size_t>> order;  // least possible distance, index of the pair
   order.reserve(pairs.size());
@@ -230,6 +347,7 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
   impl_->move_to(q);
+  impl_->put_all();
   return swivel::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
 }
 

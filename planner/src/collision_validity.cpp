@@ -13,8 +13,9 @@ EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) 
 }
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
-                                     Executor& executor, const Stop& stop, const Progress& progress)
+                                     Executor& executor, int lanes, const Stop& stop, const Progress& progress)
     : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop), progress_(progress) {
+  for (int lane = 0; lane < lanes; ++lane) lanes_.emplace_back(world, certificates);
   queries_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world, certificates);
 }
@@ -28,27 +29,39 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   batch.count("nodes", static_cast<std::int64_t>(questions.size()));
   nodes_checked_ += static_cast<std::int64_t>(questions.size());
   report();
-  executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
-    const Span span("node");
-    const auto& [layer, slot, q, suspect] = questions[static_cast<std::size_t>(index)];
-    World::Query& query = queries_[static_cast<std::size_t>(worker)];
-    NodeAnswer answer;
-    if (lattice_->manipulable(q)) {
-      const int bodies = static_cast<int>(world_->body_names().size());
-      std::optional<BodyPair> suspected;
-      if (suspect != kNoFault) suspected = {suspect / bodies, suspect % bodies};
-      const auto pair = query.first_below(q, lattice_->limits().clearance, suspected);
-      answer.valid = !pair;
-      if (pair) answer = {false, dependence(query, q, *pair), pair->a * bodies + pair->b};
+  const int count = static_cast<int>(questions.size()), lanes = static_cast<int>(lanes_.size());
+  if (lanes == 0) {
+    executor_->for_each(count, [&](int index, int worker) {
+      const auto k = static_cast<std::size_t>(index);
+      answers[k] = node(questions[k], queries_[static_cast<std::size_t>(worker)]);
+    });
+    return;
+  }
+  executor_->for_each(std::min(count, lanes), [&](int lane, int) {
+    const int runs = std::min(count, lanes);
+    for (int index = count * lane / runs; index < count * (lane + 1) / runs; ++index) {
+      const auto k = static_cast<std::size_t>(index);
+      answers[k] = node(questions[k], lanes_[static_cast<std::size_t>(lane)]);
     }
-    answers[static_cast<std::size_t>(index)] = answer;
   });
+}
+
+NodeAnswer CollisionValidity::node(const NodeQuestion& question, World::Query& query) const {
+  const Span span("node");
+  if (!lattice_->manipulable(question.q)) return {};
+  const int bodies = static_cast<int>(world_->body_names().size());
+  std::optional<BodyPair> suspect;
+  if (question.suspect != kNoFault) suspect = {question.suspect / bodies, question.suspect % bodies};
+  const auto pair = query.next_below(question.q, lattice_->limits().clearance, suspect);
+  if (!pair) return {.valid = true};
+  return {false, dependence(query, question.q, *pair), pair->a * bodies + pair->b};
 }
 
 /// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
 /// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
 std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q, const BodyPair& pair) const {
-  if (!lattice_->arm().exact || !query.pair_below(q, pair, lattice_->limits().clearance - kVerdictBand)) return kOnNodeAlone;
+  if (!lattice_->arm().exact) return kOnNodeAlone;
+  if (!query.surely_below() && !query.pair_below(q, pair, lattice_->limits().clearance - kVerdictBand)) return kOnNodeAlone;
   std::uint8_t depends = 0;
   for (const int body : {pair.a, pair.b}) {
     constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
@@ -86,7 +99,8 @@ bool CollisionValidity::stopped() const {
 
 CollisionCounters CollisionValidity::counters() const {
   CollisionCounters sum;
-  for (const World::Query& query : queries_) sum += query.counters();
+  for (const auto* queries : {&queries_, &lanes_})
+    for (const World::Query& query : *queries) sum += query.counters();
   return sum;
 }
 

@@ -13,11 +13,13 @@
 namespace swivel {
 
 /// The costly predicates of design.md 1, asked of the collision world on the executor's threads.
+/// Nodes are asked in lanes: a batch is cut into that many runs of consecutive questions, and what a lane keeps from one posture to
+/// the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of threads.
 class CollisionValidity final : public Validity {
  public:
   using Progress = std::function<void(const std::string&)>;
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates, Executor& executor,
-                    const Stop& stop, const Progress& progress);
+                    int lanes, const Stop& stop, const Progress& progress);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
@@ -31,6 +33,7 @@ class CollisionValidity final : public Validity {
 
  private:
   void report() const;
+  [[nodiscard]] NodeAnswer node(const NodeQuestion& question, World::Query& query) const;
   [[nodiscard]] std::uint8_t dependence(World::Query& query, const Config& q, const BodyPair& pair) const;
 
   const Lattice* lattice_;
@@ -40,6 +43,7 @@ class CollisionValidity final : public Validity {
   const Stop* stop_;
   Progress progress_;
   std::vector<World::Query> queries_;  // one per worker
+  std::vector<World::Query> lanes_;    // for nodes; empty: each node is shared out for itself
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 

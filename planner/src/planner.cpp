@@ -50,6 +50,12 @@ Certificates certificates_of(const PlanOptions& options) {
   return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
 }
 
+/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
+int lanes_of(const PlanOptions& options) {
+  if (options.planner == PlannerKind::kLazy) return 1;
+  return options.planner == PlannerKind::kParallel ? 8 : 0;
+}
+
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
 void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
@@ -205,7 +211,7 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
 
   const EdgeRule rule = edge_rule(problem.limits, robot.radii());
   if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, stop, options.progress);
+  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, lanes_of(options), stop, options.progress);
   const Found found = search(lattice, validity, options, result);
   result.time_ms["find"] = watch.lap() - (result.time_ms.contains("record") ? result.time_ms["record"] : 0);
   result.counters.nodes_checked = validity.nodes_checked();

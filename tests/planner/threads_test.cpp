@@ -68,6 +68,39 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
 INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
                          [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
 
+/// Postures of long paths, of which most is kept from one to the next, and batches that fail.
+TEST(Threads, KeptClearancesCountTheSame) {
+  Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  base.resolution.dphi = 0.2;
+  const PreparedRobot robot(base);
+  int compared = 0, repaired = 0;
+  for (int episode = 0; episode < 12; ++episode) {
+    const Problem problem = episode_problem(base, 1, episode);
+    std::optional<PlanResult> first;
+    for (const int threads : {1, 2, 4}) {
+      PlanOptions options;
+      options.threads = threads;
+      options.report = false;
+      const PlanResult result = plan(robot, problem, options);
+      if (!first) {
+        first = result;
+        repaired += result.counters.iterations > 1;
+        continue;
+      }
+      ASSERT_EQ(result.status, first->status);
+      ASSERT_EQ(result.cost, first->cost);
+      ASSERT_EQ(result.counters.nodes_checked, first->counters.nodes_checked);
+      ASSERT_EQ(result.counters.fcl_calls, first->counters.fcl_calls);
+      ASSERT_EQ(result.counters.certified_free, first->counters.certified_free);
+      ASSERT_EQ(result.counters.certified_colliding, first->counters.certified_colliding);
+      ++compared;
+    }
+  }
+  std::printf("%d plans compared, %d poses with failures\n", compared, repaired);
+  EXPECT_EQ(compared, 24);
+  EXPECT_GT(repaired, 2);
+}
+
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);

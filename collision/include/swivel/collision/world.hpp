@@ -28,12 +28,14 @@ struct CollisionCounters {
   std::int64_t fcl_failures = 0;         ///< of those, the ones that threw; the bodies then count as touching
   std::int64_t certified_free = 0;       ///< first_below: answers "none" that needed no FCL
   std::int64_t certified_colliding = 0;  ///< first_below: pairs found without FCL
+  std::int64_t pairs_kept = 0;           ///< next_below: pairs that a clearance kept proved free
   std::int64_t contradictions = 0;       ///< pairs that FCL and a certificate judge differently; with Certificates::kCompared
   CollisionCounters& operator+=(const CollisionCounters& o) {
     fcl_calls += o.fcl_calls;
     fcl_failures += o.fcl_failures;
     certified_free += o.certified_free;
     certified_colliding += o.certified_colliding;
+    pairs_kept += o.pairs_kept;
     contradictions += o.contradictions;
     return *this;
   }
@@ -85,7 +87,14 @@ class World {
     /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A pair suspected is asked
     /// before the others. A function of the arguments alone.
     [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d, const std::optional<BodyPair>& suspect = {});
-    /// The same of one pair. False for d < 0.
+    /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
+    /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before,
+    /// back to the last forget(). With Certificates::kOff nothing is kept.
+    [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, double d, const std::optional<BodyPair>& suspect = {});
+    void forget();
+    /// Of the pair that one of these has just named: its clearance is proved below d by more than FCL may err.
+    [[nodiscard]] bool surely_below() const;
+    /// Whether one pair's clearance is below d. False for d < 0.
     [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, double d);
     /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.
     struct Clearance {
@@ -120,6 +129,7 @@ struct EdgeRule {
 };
 /// None when every midpoint t = (m + 1/2) / N has clearance >= d_edge + h; else a pair that comes too near. By bisection, coarse to
 /// fine: an interval is free when its middle is clear by as much as the interval can move, blocked when its middle is below d_edge.
+/// Forgets what the query kept before, so that counters depend on the edge alone.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1);
 /// The same by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint that fails.
 [[nodiscard]] std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0,

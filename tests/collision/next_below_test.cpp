@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clearances kept from one posture to the next, against questions that know nothing of each other.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "bound.hpp"
+#include "random_problem.hpp"
+#include "support.hpp"
+#include "swivel/collision/world.hpp"
+
+namespace swivel {
+namespace {
+
+using test::Random;
+
+/// Postures of a walk: small and large steps, turns, stays and jumps.
+class Walk {
+ public:
+  Walk(const Chain& chain, Random& random) : chain_(&chain), random_(&random) { jump(); }
+  const Config& next() {
+    if (random_->coin(0.01)) jump();
+    if (random_->coin(0.05)) turn();
+    if (!random_->coin(0.05)) q_ += step_;
+    return q_;
+  }
+
+ private:
+  void jump() {
+    q_ = test::random_config(*chain_, *random_);
+    turn();
+  }
+  void turn() {
+    const double length = std::pow(10, random_->uniform(-4, -1));
+    for (int j = 0; j < kDof; ++j) step_[j] = random_->coin(0.3) ? 0 : random_->uniform(-length, length);
+  }
+  const Chain* chain_;
+  Random* random_;
+  Config q_, step_;
+};
+
+class Kept : public ::testing::TestWithParam<int> {};
+
+TEST_P(Kept, ClearancesChangeNoAnswer) {
+  const std::uint64_t base = test::seed("KeptClearances");
+  Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
+  const auto robots = test::all_robots();
+  const test::TestRobot& robot = robots[static_cast<std::size_t>(GetParam())];
+  const ArmModel arm = test::arm_of(robot);
+  const World empty(*robot.model, arm, test::problem_for(robot));
+  const MeshPtr panel = testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel");
+  CollisionCounters kept_counters, plain_counters, compared_counters;
+  std::int64_t questions = 0, pairs = 0, named = 0, turned = 0;
+  for (int s = 0; s < test::trials(40); ++s) {
+    std::vector<SceneObject> scene = test::random_problem(robot, random).scene;
+    scene.push_back({"panel", panel, test::random_pose(random, Vector3d(0, 0, 0.6), 0.8), {}});
+    const World world(empty, scene);
+    World::Query kept(world, Certificates::kOn), plain(world, Certificates::kOn), compared(world, Certificates::kCompared);
+    Walk walk(arm.chain, random);
+    bool was_free = false;
+    for (int k = 0; k < 500; ++k) {
+      const Config& q = walk.next();
+      const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
+      std::optional<BodyPair> suspect;
+      if (random.coin(0.2)) suspect = world.pairs()[static_cast<std::size_t>(random.below(static_cast<int>(world.pairs().size())))];
+      if (random.coin(0.01)) kept.forget();
+      const auto expected = plain.first_below(q, d, suspect), found = kept.next_below(q, d, suspect);
+      ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
+                                 << d;
+      if (found && kept.surely_below()) {
+        ASSERT_TRUE(d <= kVerdictBand || plain.pair_below(q, *found, d - kVerdictBand));
+      }
+      if (random.coin(0.1)) {  // other questions to the same query disturb nothing
+        const Config elsewhere = test::random_config(arm.chain, random);
+        ASSERT_EQ(kept.first_below(elsewhere, d), plain.first_below(elsewhere, d));
+      }
+      if (k < 50) static_cast<void>(compared.next_below(q, d, suspect));
+      ++questions;
+      pairs += static_cast<std::int64_t>(world.pairs().size());
+      named += found.has_value();
+      turned += k > 0 && was_free == found.has_value();
+      was_free = !found;
+    }
+    kept_counters += kept.counters();
+    plain_counters += plain.counters();
+    compared_counters += compared.counters();
+  }
+  std::printf(
+      "%s: %lld questions (%lld answered by a pair, %lld turns from free to not or back), %.1f of %.1f pairs a question kept, "
+      "%lld FCL calls for %lld\n",
+      robot.name.c_str(), static_cast<long long>(questions), static_cast<long long>(named), static_cast<long long>(turned),
+      static_cast<double>(kept_counters.pairs_kept) / static_cast<double>(questions),
+      static_cast<double>(pairs) / static_cast<double>(questions), static_cast<long long>(kept_counters.fcl_calls),
+      static_cast<long long>(plain_counters.fcl_calls));
+  EXPECT_EQ(compared_counters.contradictions, 0);
+  EXPECT_EQ(plain_counters.pairs_kept, 0);
+  EXPECT_GT(kept_counters.pairs_kept, pairs / 4);
+  EXPECT_LE(kept_counters.fcl_calls, plain_counters.fcl_calls);
+  EXPECT_GT(named, questions / 20);
+  EXPECT_GT(turned, questions / 400);
+}
+INSTANTIATE_TEST_SUITE_P(Robots, Kept, ::testing::Range(0, 5));
+
+/// No point of a box moves further than the bound says, and for a turn about the box's own z axis a rod on it does not move at all.
+TEST(Motion, BoundsEveryPoint) {
+  Random random(test::seed("Motion"));
+  int points = 0;
+  double tightest = 0;
+  for (int k = 0; k < 20000; ++k) {
+    Bound bound;
+    bound.center = Vector3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1));
+    bound.half = Vector3d(random.uniform(0, 0.2), random.coin() ? 0 : random.uniform(0, 0.2), random.uniform(0, 0.5));
+    const Pose from = test::random_pose(random, Vector3d::Zero(), 1);
+    const Vector3d axis = test::random_pose(random, Vector3d::Zero(), 1).linear().col(0);
+    Pose to = from * Eigen::AngleAxisd(std::pow(10, random.uniform(-4, 0.5)), axis);
+    to.translation() += random.coin(0.3) ? Vector3d(Vector3d::Zero()) : Vector3d(0.1 * random.uniform(0, 1) * axis);
+    const double most = motion(bound, place(bound, from), place(bound, to));
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      const Vector3d x = bound.center + bound.half.cwiseProduct(sign);
+      const double moved = (to * x - from * x).norm();
+      ASSERT_LE(moved, most + 1e-12);
+      tightest = std::max(tightest, moved / most);
+      ++points;
+    }
+  }
+  std::printf("%d points, the furthest at %.3f of the bound\n", points, tightest);
+  EXPECT_GT(tightest, 0.95);
+  Bound rod;
+  rod.half.z() = 0.3;
+  const Pose from = test::random_pose(random, Vector3d::Zero(), 1);
+  EXPECT_LT(motion(rod, place(rod, from), place(rod, from * Eigen::AngleAxisd(1.0, Vector3d::UnitZ()))), 1e-12);
+}
+
+}  // namespace
+}  // namespace swivel
