@@ -2,6 +2,7 @@
 #include "swivel/core/lattice.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -28,6 +29,11 @@ double image_from(double q, double base) {
   return q + kTwoPi * std::ceil((base - q) / kTwoPi);
 }
 
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
 std::string gigabytes(double bytes) {
   return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
 }
@@ -35,7 +41,7 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem)
-    : chain_(&chain), arm_(&arm), path_(&path), limits_(problem.limits), cost_(problem.cost) {
+    : id_(next_id()), chain_(&chain), arm_(&arm), path_(&path), limits_(problem.limits), cost_(problem.cost) {
   const Span span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
@@ -195,6 +201,10 @@ void Lattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
   const auto n = static_cast<std::size_t>(count);
   out.layer_ = layer;
   out.first_ = first;
+  const bool start = layer == 0 && start_;
+  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start};
+  if (layout == out.layout_ && !start) return;
+  out.layout_ = layout;
   out.count_ = count;
   out.offsets_.resize(static_cast<std::size_t>(labels()));
   const auto needed = static_cast<Eigen::Index>(tracks_ * n);
@@ -208,7 +218,7 @@ void Lattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
   const std::size_t free = allot(), never = allot();
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
-  if (layer == 0 && start_) {
+  if (start) {
     for (LayerNodes::Offsets& label : out.offsets_) label = {.q = {}, .bar = {never, free}, .alive = false};
     return lay_out_start(out);
   }

@@ -16,6 +16,14 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr int kRun = 16;  // angles relaxed at once
 
+/// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the arm angle may
+/// turn.
+int stride_of(const Lattice& lattice) {
+  constexpr double kTurn = 0.8;
+  const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
+  return turn_per_layer > 0 ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0)) : 4;
+}
+
 struct Interval {
   float low = kNever, high = -kNever;
   void add(const Interval& other) {
@@ -66,8 +74,8 @@ struct Circle {
 
 class Chords {
  public:
-  explicit Chords(const Lattice& lattice)
-      : lattice_(lattice), n_(lattice.angles()), window_(std::min(n_ / 2, ChordBound::kStride * lattice.window() + 1)) {
+  Chords(const Lattice& lattice, int stride)
+      : lattice_(lattice), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task_.wraps = false;
@@ -206,7 +214,7 @@ class Chords {
 
   const Lattice& lattice_;
   int n_, window_;
-  ChordTask task_;
+  RelaxTask<float> task_;
   double lost_ = 0;
   bool fits_ = true;
   std::array<std::vector<Circle>, 2> circles_;  // [here, before][label]
@@ -216,15 +224,15 @@ class Chords {
 
 }  // namespace
 
-ChordBound::ChordBound(const Lattice& lattice) : last_(lattice.layers() - 1), width_(lattice.width()) {
+ChordBound::ChordBound(const Lattice& lattice) : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const Span span("chord bound");
-  Chords chords(lattice);
+  Chords chords(lattice, stride_);
   if (!chords.fits()) return;
-  const int coarse = (last_ + kStride - 1) / kStride + 1;
+  const int coarse = (last_ + stride_ - 1) / stride_ + 1;
   rows_.resize(static_cast<std::size_t>(coarse) * static_cast<std::size_t>(width_));
   for (int c = 0; c < coarse; ++c) {
     ik_nodes_ += width_;
-    if (!chords.advance(std::min(c * kStride, last_), rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
+    if (!chords.advance(std::min(c * stride_, last_), rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
       best_ = std::numeric_limits<double>::infinity();
       return;
     }
@@ -233,8 +241,8 @@ ChordBound::ChordBound(const Lattice& lattice) : last_(lattice.layers() - 1), wi
 }
 
 const float* ChordBound::row(int layer) const {
-  if (rows_.empty() || (layer % kStride != 0 && layer != last_)) return nullptr;
-  return rows_.data() + static_cast<std::ptrdiff_t>((layer + kStride - 1) / kStride) * width_;
+  if (rows_.empty() || (layer % stride_ != 0 && layer != last_)) return nullptr;
+  return rows_.data() + static_cast<std::ptrdiff_t>((layer + stride_ - 1) / stride_) * width_;
 }
 
 }  // namespace swivel

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <mutex>
+#include <tuple>
 
 #include "kernels/relax.hpp"
 #include "swivel/core/timeline.hpp"
@@ -24,6 +25,15 @@ void each(int count, const F& f) {
 
 struct Interval {
   double low = kUnreachable, high = -kUnreachable;
+  Interval() = default;
+  static Interval of(const double* q, int count) {
+    Interval range;
+    const Eigen::Map<const Eigen::ArrayXd> values(q, count);
+    range.low = values.minCoeff();
+    range.high = values.maxCoeff();
+    return range;
+  }
+  [[nodiscard]] bool empty() const { return low > high; }
   Interval(const double* q, int begin, int end) {
     for (int k = begin; k < end; ++k) add(q[k]);
   }
@@ -36,15 +46,40 @@ struct Interval {
     low = q < low ? q : low;
     high = q > high ? q : high;
   }
+  void add(const Interval& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
   [[nodiscard]] double gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
 };
 
 }  // namespace
 
+/// A chunk of a label.
+struct CostToGo::Part {
+  int label = 0, chunk = 0;
+  bool live = false;  // holds values
+  [[nodiscard]] int begin() const { return chunk * kChunk; }
+  [[nodiscard]] int end(int angles) const { return std::min(angles, begin() + kChunk); }
+  bool operator==(const Part& o) const { return label == o.label && chunk == o.chunk; }
+  bool operator<(const Part& o) const { return std::tie(label, chunk) < std::tie(o.label, o.chunk); }
+};
+
+/// A branch flips only through the zero of a middle angle, so these tell branches apart.
+struct CostToGo::Middles {
+  static constexpr std::array<int, 2> kJoints{1, 5};
+  std::array<Interval, 2> joint;
+  void add(const Middles& other) {
+    for (std::size_t m = 0; m < joint.size(); ++m) joint[m].add(other.joint[m]);
+  }
+};
+
 struct CostToGo::Joints {
   int layer = -1;
   LayerNodes nodes;
   std::array<std::vector<std::uint8_t>, 2> solved;  // [elbow][chunk]
+  /// Ranges of the joints that tell branches apart, over what is solved: of each chunk, and of all.
+  std::vector<Middles> of_chunk, of_layer;  // [label][chunk], [label]
 };
 
 /// Joints that a search had kept, for the next one: pages fresh from the system took a quarter of a plan that meets obstacles.
@@ -81,16 +116,19 @@ struct CostToGo::Block {
   int layer = -1;
   Joints own;
   Joints* joints = nullptr;
-  std::vector<double> row;    // [label][angle], where live
-  Marks todo, live;           // to be relaxed; holding values
+  std::vector<double> row;    // [label][angle], of the parts
+  std::vector<Part> parts;    // to be relaxed or holding values, in order
   std::vector<double> value;  // [label][padded angle]: the row once it is settled, infinite elsewhere
   std::vector<int> labels;    // with a finite value
-  /// First and last padded position of finite values in the window of a chunk; none where last < first.
+  /// The finite values in the window of a chunk: first and last padded position, none where last < first.
   struct Near {
     int first = 0, last = -1;
+    mutable Middles middles;  // filled when asked for
   };
-  std::vector<Near> near;  // [label][chunk]
+  std::vector<Near> near;        // [label][chunk], of the labels with a finite value
+  std::array<Marks, 2> reached;  // [elbow]: chunks with any near
   [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
+  [[nodiscard]] bool find(int label, int chunk) const { return std::binary_search(parts.begin(), parts.end(), Part{label, chunk}); }
 };
 
 CostToGo::CostToGo(const Lattice& lattice, Extent extent)
@@ -104,8 +142,6 @@ CostToGo::CostToGo(const Lattice& lattice, Extent extent)
   for (auto& block : block_) {
     block = std::make_unique<Block>();
     block->row.resize(static_cast<std::size_t>(lattice.width()));
-    block->todo.resize(marks);
-    block->live.resize(marks);
     block->near.resize(marks);
     block->value.assign(static_cast<std::size_t>(lattice.labels() * (lattice.angles() + 2 * lattice.window())), kUnreachable);
   }
@@ -130,22 +166,46 @@ CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
     joints->layer = layer;
     lattice_->lay_out(layer, (n - window % n) % n, n + 2 * window, joints->nodes);
     for (auto& solved : joints->solved) solved.assign(static_cast<std::size_t>(chunks()), 0);
+    joints->of_chunk.resize(mark(lattice_->labels(), 0));
+    joints->of_layer.assign(static_cast<std::size_t>(lattice_->labels()), {});
   }
   return *joints;
 }
 
-void CostToGo::want(Joints& joints, int elbow, int chunk) {
-  std::uint8_t& solved = joints.solved[static_cast<std::size_t>(elbow)][static_cast<std::size_t>(chunk)];
-  if (solved) return;
-  solved = 1;
-  const int n = lattice_->angles(), window = lattice_->window(), begin = chunk * kChunk, end = std::min(n, begin + kChunk);
-  ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->labels() / 2;
-  lattice_->solve_part(elbow, window + begin, window + end, joints.nodes);
-  // The window reaches around the circle.
-  if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
-  if (end > n - window) {
-    const int first = std::max(begin, n - window);
-    joints.nodes.repeat(window + first, window + first - n, end - first);
+void CostToGo::want(Joints& joints, int elbow, int first, int last) {
+  Marks& solved = joints.solved[static_cast<std::size_t>(elbow)];
+  const int n = lattice_->angles(), window = lattice_->window();
+  for (int chunk = first, next = first; chunk < last; chunk = next) {
+    next = chunk + 1;
+    if (solved[static_cast<std::size_t>(chunk)]) continue;
+    while (next < last && !solved[static_cast<std::size_t>(next)]) ++next;
+    std::fill(solved.begin() + chunk, solved.begin() + next, std::uint8_t{1});
+    const int begin = chunk * kChunk, end = std::min(n, next * kChunk);
+    ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->labels() / 2;
+    lattice_->solve_part(elbow, window + begin, window + end, joints.nodes);
+    for (int done = chunk; done < next; ++done) range(joints, elbow, done);
+    // The window reaches around the circle.
+    if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
+    if (end > n - window) {
+      const int from = std::max(begin, n - window);
+      joints.nodes.repeat(window + from, window + from - n, end - from);
+    }
+  }
+}
+
+void CostToGo::range(Joints& joints, int elbow, int chunk) const {
+  const int half = lattice_->labels() / 2, begin = lattice_->window() + chunk * kChunk;
+  const int count = std::min(kChunk, lattice_->angles() - chunk * kChunk);
+  for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
+    const double* known = nullptr;  // labels share arrays
+    Interval found;
+    for (int label = elbow * half; label < (elbow + 1) * half; ++label) {
+      const double* q = joints.nodes.q(label, Middles::kJoints[m]) + begin;
+      if (q != known) found = Interval::of(q, count);
+      known = q;
+      joints.of_chunk[mark(label, chunk)].joint[m] = found;
+      joints.of_layer[static_cast<std::size_t>(label)].joint[m].add(found);
+    }
   }
 }
 
@@ -159,7 +219,10 @@ CostToGo::Nodes CostToGo::nodes(int layer, int elbow, int first, int count, Laye
     return {&scratch, 0};
   }
   Joints& kept = joints(layer, *block_[0]);
-  for (int k = 0; k < count; ++k) want(kept, elbow, (first + k) % n / kChunk);
+  for (int k = 0; k < count; ++k) {
+    const int chunk = (first + k) % n / kChunk;
+    want(kept, elbow, chunk, chunk + 1);
+  }
   return {&kept.nodes, (first + lattice_->window()) % n};
 }
 
@@ -180,8 +243,8 @@ void CostToGo::clear(int layer, Block& block) {
   block.labels.clear();
   block.layer = layer;
   block.joints = &joints(layer, block);
-  std::fill(block.todo.begin(), block.todo.end(), std::uint8_t{0});
-  std::fill(block.live.begin(), block.live.end(), std::uint8_t{0});
+  block.parts.clear();
+  for (Marks& reached : block.reached) reached.assign(static_cast<std::size_t>(chunks()), 0);
 }
 
 bool CostToGo::elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const {
@@ -191,34 +254,50 @@ bool CostToGo::elbows_may_connect(int step_layer, int layer, int elbow, int othe
 }
 
 void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
-  std::array<bool, 2> reaches[2];
-  for (int elbow = 0; elbow < 2; ++elbow)
-    for (int other = 0; other < 2; ++other)
-      reaches[elbow][static_cast<std::size_t>(other)] = elbows_may_connect(step_layer, from.layer, elbow, to.layer, other);
-  for (int chunk = 0; chunk < chunks(); ++chunk) {
-    std::array<bool, 2> near{};
-    for (const int label : to.labels)
-      if (to.near[mark(label, chunk)].last >= 0) near[static_cast<std::size_t>(lattice_->elbow_of(label))] = true;
-    for (int elbow = 0; elbow < 2; ++elbow) {
-      if (!((near[0] && reaches[elbow][0]) || (near[1] && reaches[elbow][1]))) continue;
-      want(*from.joints, elbow, chunk);
-      for (int label = 0; label < lattice_->labels(); ++label)
-        if (lattice_->elbow_of(label) == elbow) from.todo[mark(label, chunk)] = from.nodes().alive(label);
+  for (int elbow = 0; elbow < 2; ++elbow) {
+    const int first_label = elbow * lattice_->labels() / 2;
+    if (!from.nodes().alive(first_label)) continue;  // all of an elbow's labels, or none
+    const std::array<bool, 2> reaches{elbows_may_connect(step_layer, from.layer, elbow, to.layer, 0),
+                                      elbows_may_connect(step_layer, from.layer, elbow, to.layer, 1)};
+    columns_.clear();
+    for (int chunk = 0; chunk < chunks(); ++chunk) {
+      const auto c = static_cast<std::size_t>(chunk);
+      if ((reaches[0] && to.reached[0][c]) || (reaches[1] && to.reached[1][c])) columns_.push_back(chunk);
     }
+    for (std::size_t k = 0, next = 0; k < columns_.size(); k = next) {
+      for (next = k + 1; next < columns_.size() && columns_[next] == columns_[next - 1] + 1;) ++next;
+      want(*from.joints, elbow, columns_[k], columns_[next - 1] + 1);
+    }
+    for (int label = first_label; label < first_label + lattice_->labels() / 2; ++label)
+      for (const int chunk : columns_) from.parts.push_back({label, chunk});
   }
 }
 
-bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+bool CostToGo::may_meet(int step_layer, const Middles& a, const Middles& b) const {
   const Config& bound = lattice_->step_bound(step_layer);
+  for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
+    const int joint = Middles::kJoints[m];
+    if (!lattice_->continuous()[static_cast<std::size_t>(joint)] && a.joint[m].gap(b.joint[m]) > bound[joint]) return false;
+  }
+  return true;
+}
+
+bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+  const Middles& own_middles = from.joints->of_chunk[mark(label, chunk)];
+  if (!may_meet(step_layer, own_middles, to.joints->of_layer[static_cast<std::size_t>(other)])) return false;
   const Block::Near& near = to.near[mark(other, chunk)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
+  const auto theirs = [&](int joint) { return Interval(to.nodes().q(other, joint), value, near.first, near.last + 1); };
+  if (near.middles.joint[0].empty())
+    for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) near.middles.joint[m] = theirs(Middles::kJoints[m]);
+  if (!may_meet(step_layer, own_middles, near.middles)) return false;
+  // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart. Continuous
+  // joints have no plain interval.
   const int begin = lattice_->window() + chunk * kChunk, end = std::min(lattice_->window() + lattice_->angles(), begin + kChunk);
-  // A branch flips only through the zero of a middle angle, so those tell branches apart; near a singular pose the outer joints of
-  // the triple must meet as well. Joints of several turns tell windings apart. Continuous joints have no plain interval.
-  for (const int joint : {1, 5, 3, 0, 2, 4, 6}) {
+  for (const int joint : {3, 0, 2, 4, 6}) {
     if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const Interval own(from.nodes().q(label, joint), begin, end);
-    if (own.gap(Interval(to.nodes().q(other, joint), value, near.first, near.last + 1)) > bound[joint]) return false;
+    if (own.gap(theirs(joint)) > lattice_->step_bound(step_layer)[joint]) return false;
   }
   return true;
 }
@@ -226,7 +305,7 @@ bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chu
 void CostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other,
                          double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
-  RelaxTask task;
+  RelaxTask<double> task;
   task.n = count;
   task.offsets = 2 * window + 1;
   task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
@@ -248,51 +327,57 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
 }
 
 void CostToGo::relax(int step_layer, Block& from, const Block& to) {
-  const int n = lattice_->angles(), count = chunks();
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    double* row = from.row.data() + static_cast<std::ptrdiff_t>(label) * n;
-    std::uint8_t* todo = from.todo.data() + mark(label, 0);
-    std::uint8_t* live = from.live.data() + mark(label, 0);
-    int low = 0, high = count;  // todo lies in between
-    while (low < high && !todo[low]) ++low;
-    while (low < high && !todo[high - 1]) --high;
-    for (int chunk = low; chunk < high; ++chunk)
-      if (todo[chunk]) std::fill(row + chunk * kChunk, row + std::min(n, (chunk + 1) * kChunk), kUnreachable);
+  const int n = lattice_->angles();
+  for (const Part& part : from.parts) {
+    double* const row = from.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
+    std::fill(row + part.begin(), row + part.end(n), kUnreachable);
+  }
+  for (std::size_t first = 0, last = 0; first < from.parts.size(); first = last) {
+    const int label = from.parts[first].label;
+    while (last < from.parts.size() && from.parts[last].label == label) ++last;
     for (const int other : to.labels) {
-      if (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other))) continue;
-      int begin = low;  // of a run of chunks
-      for (int chunk = low; chunk <= high; ++chunk) {
-        if (chunk < high && todo[chunk] && to.near[mark(other, chunk)].last >= 0 &&
-            (label == other || may_connect(step_layer, from, label, chunk, to, other))) {
-          live[chunk] = 1;
+      if (label != other &&
+          (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other)) ||
+           !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(label)],
+                     to.joints->of_layer[static_cast<std::size_t>(other)])))
+        continue;
+      int begin = 0, end = 0;  // a run of chunks
+      const auto relax_chunks = [&] {
+        if (begin == end) return;
+        const int stop = std::min(n, end * kChunk), start = std::max(0, std::min(begin * kChunk, stop - kChunk));  // whole vectors
+        relax_run(step_layer, from, label, start, stop - start, to, other, from.row.data() + label * n + start);
+      };
+      for (std::size_t k = first; k < last; ++k) {
+        Part& part = from.parts[k];
+        if (to.near[mark(other, part.chunk)].last < 0 ||
+            (label != other && !may_connect(step_layer, from, label, part.chunk, to, other)))
           continue;
+        part.live = true;
+        if (part.chunk != end) {
+          relax_chunks();
+          begin = part.chunk;
         }
-        if (begin < chunk)
-          relax_run(step_layer, from, label, begin * kChunk, std::min(n, chunk * kChunk) - begin * kChunk, to, other,
-                    row + begin * kChunk);
-        begin = chunk + 1;
+        end = part.chunk + 1;
       }
+      relax_chunks();
     }
   }
 }
 
 void CostToGo::bar(Block& block) const {
   const int n = lattice_->angles(), window = lattice_->window();
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    const std::uint8_t* live = block.live.data() + mark(label, 0);
-    double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
-    const double* shoulder = block.nodes().shoulder_bar(label) + window;
-    const double* wrist = block.nodes().wrist_bar(label) + window;
-    const Verdict* verdict = &verdict_[index(block.layer, label * n)];
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      if (!live[chunk]) continue;
-      const int begin = chunk * kChunk, count = std::min(kChunk, n - begin);
-      each<kChunk>(count, [&](int k) { row[begin + k] += shoulder[begin + k] + wrist[begin + k]; });
-      if (std::memchr(verdict + begin, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
-        each<kChunk>(count, [&](int k) {
-          if (verdict[begin + k] == Verdict::kRemoved) row[begin + k] = kUnreachable;
-        });
-    }
+  for (const Part& part : block.parts) {
+    if (!part.live) continue;
+    const int slot = part.label * n + part.begin(), at = window + part.begin(), count = part.end(n) - part.begin();
+    double* const values = block.row.data() + slot;
+    const double* shoulder = block.nodes().shoulder_bar(part.label) + at;
+    const double* wrist = block.nodes().wrist_bar(part.label) + at;
+    each<kChunk>(count, [&](int k) { values[k] += shoulder[k] + wrist[k]; });
+    const Verdict* verdict = &verdict_[index(block.layer, slot)];
+    if (std::memchr(verdict, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
+      each<kChunk>(count, [&](int k) {
+        if (verdict[k] == Verdict::kRemoved) values[k] = kUnreachable;
+      });
   }
 }
 
@@ -300,59 +385,50 @@ void CostToGo::cut(Block& block) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
   const float* bound = chords_->row(block.layer);
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    const std::uint8_t* live = block.live.data() + mark(label, 0);
-    double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
-    const float* before = bound ? bound + static_cast<std::ptrdiff_t>(label) * n : nullptr;
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      if (!live[chunk]) continue;
-      const int begin = chunk * kChunk, count = std::min(kChunk, n - begin);
-      double* const values = row + begin;
-      if (before)
-        each<kChunk>(count, [&](int k) { values[k] = values[k] + before[begin + k] > limit_ ? kUnreachable : values[k]; });
-      else
-        each<kChunk>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
-    }
+  for (const Part& part : block.parts) {
+    if (!part.live) continue;
+    const int slot = part.label * n + part.begin(), count = part.end(n) - part.begin();
+    double* const values = block.row.data() + slot;
+    if (const float* before = bound ? bound + slot : nullptr)
+      each<kChunk>(count, [&](int k) { values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k]; });
+    else
+      each<kChunk>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
   }
 }
 
 void CostToGo::settle(Block& block) {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    std::uint8_t* live = block.live.data() + mark(label, 0);
-    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n;
-    double* value = block.value.data() + static_cast<std::ptrdiff_t>(label) * length;
-    Block::Near* near = block.near.data() + mark(label, 0);
-    bool any = false;
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      if (!live[chunk]) continue;
-      int first = chunk * kChunk, last = std::min(n, first + kChunk) - 1;
-      while (first <= last && row[first] == kUnreachable) ++first;
-      while (first <= last && row[last] == kUnreachable) --last;
-      live[chunk] = first <= last;
-      if (first > last) continue;
-      if (!any) {
-        std::fill(near, near + chunks(), Block::Near{length, -1});
-        block.labels.push_back(label);
-        any = true;
-      }
-      std::copy(row + first, row + last + 1, value + window + first);
-      for (const int turn : {0, n, -n}) {
-        const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
-        if (low > high) continue;
-        if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
-        // The window of chunk c is at the padded positions c * kChunk ... c * kChunk + kChunk - 1 + 2 * window.
-        const int begin = std::max(0, low - 2 * window) / kChunk, end = std::min(chunks() - 1, high / kChunk);
-        for (int c = begin; c <= end; ++c) {
-          near[c].first = std::min(near[c].first, std::max(low, c * kChunk));
-          near[c].last = std::max(near[c].last, std::min(high, c * kChunk + kChunk - 1 + 2 * window));
-        }
+  std::size_t kept = 0;
+  for (const Part& part : block.parts) {
+    if (!part.live) continue;
+    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
+    double* value = block.value.data() + static_cast<std::ptrdiff_t>(part.label) * length;
+    Block::Near* near = block.near.data() + mark(part.label, 0);
+    Marks& reached = block.reached[static_cast<std::size_t>(lattice_->elbow_of(part.label))];
+    int first = part.begin(), last = part.end(n) - 1;
+    while (first <= last && row[first] == kUnreachable) ++first;
+    while (first <= last && row[last] == kUnreachable) --last;
+    if (first > last) continue;
+    block.parts[kept++] = part;
+    if (block.labels.empty() || block.labels.back() != part.label) {
+      std::fill(near, near + chunks(), Block::Near{length, -1, {}});
+      block.labels.push_back(part.label);
+    }
+    std::copy(row + first, row + last + 1, value + window + first);
+    for (const int turn : {0, n, -n}) {
+      const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
+      if (low > high) continue;
+      if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
+      // The window of chunk c is at the padded positions c * kChunk ... c * kChunk + kChunk - 1 + 2 * window.
+      const int begin = std::max(0, low - 2 * window) / kChunk, end = std::min(chunks() - 1, high / kChunk);
+      for (int c = begin; c <= end; ++c) {
+        near[c].first = std::min(near[c].first, std::max(low, c * kChunk));
+        near[c].last = std::max(near[c].last, std::min(high, c * kChunk + kChunk - 1 + 2 * window));
+        reached[static_cast<std::size_t>(c)] = 1;
       }
     }
-    if (any)
-      for (int c = 0; c < chunks(); ++c)
-        if (near[c].first > near[c].last) near[c].last = -1;
   }
+  block.parts.resize(kept);
 }
 
 double& CostToGo::cell_value(int layer, int slot) {
@@ -367,16 +443,12 @@ double& CostToGo::cell_value(int layer, int slot) {
 
 void CostToGo::store(const Block& block) {
   const int n = lattice_->angles();
-  for (const int label : block.labels)
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      if (!block.live[mark(label, chunk)]) continue;
-      cell_[cell_index(block.layer, label, chunk)] = static_cast<std::uint32_t>(cells_.size());
-      Cell& cell = cells_.emplace_back();
-      const double* row = block.row.data() + static_cast<std::ptrdiff_t>(label) * n + static_cast<std::ptrdiff_t>(chunk) * kChunk;
-      const int count = std::min(kChunk, n - chunk * kChunk);
-      std::copy(row, row + count, cell.begin());
-      std::fill(cell.begin() + count, cell.end(), kUnreachable);
-    }
+  for (const Part& part : block.parts) {
+    cell_[cell_index(block.layer, part.label, part.chunk)] = static_cast<std::uint32_t>(cells_.size());
+    Cell& cell = cells_.emplace_back();
+    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
+    std::fill(std::copy(row + part.begin(), row + part.end(n), cell.begin()), cell.end(), kUnreachable);
+  }
 }
 
 void CostToGo::load(int layer, const Marks& columns, Block& block) {
@@ -386,10 +458,10 @@ void CostToGo::load(int layer, const Marks& columns, Block& block) {
     for (int chunk = 0; chunk < chunks(); ++chunk) {
       const std::uint32_t cell = columns[static_cast<std::size_t>(chunk)] ? cell_[cell_index(layer, label, chunk)] : 0;
       if (cell == 0) continue;
-      want(*block.joints, lattice_->elbow_of(label), chunk);
-      std::copy_n(cells_[cell].begin(), std::min(kChunk, n - chunk * kChunk),
-                  block.row.begin() + static_cast<std::ptrdiff_t>(label) * n + static_cast<std::ptrdiff_t>(chunk) * kChunk);
-      block.live[mark(label, chunk)] = 1;
+      want(*block.joints, lattice_->elbow_of(label), chunk, chunk + 1);
+      const Part& part = block.parts.emplace_back(Part{label, chunk, true});
+      std::copy_n(cells_[cell].begin(), part.end(n) - part.begin(),
+                  block.row.begin() + static_cast<std::ptrdiff_t>(label) * n + part.begin());
     }
   settle(block);
 }
@@ -407,11 +479,12 @@ double CostToGo::relax_one(int layer, int slot) {
       for (int k = 0; lattice_->elbow_of(other) == elbow && k < run.count; ++k) {
         const int b = other * n + (run.first + k) % n;
         const double rest = at(layer + 1, b);
-        if (rest == kUnreachable || edge_verdict(layer, slot, b) == Verdict::kRemoved) continue;
+        if (rest >= best) continue;
         if (!next.nodes) next = nodes(layer + 1, elbow, run.first, run.count, scratch_);
         const Config delta = lattice_->delta(q, next.nodes->config(other, next.shift + k));
         ++edges_;
-        if (lattice_->step_allowed(layer, delta)) best = std::min(best, lattice_->edge_cost(delta) + rest);
+        const double value = lattice_->edge_cost(delta) + rest;
+        if (value < best && lattice_->step_allowed(layer, delta) && edge_verdict(layer, slot, b) != Verdict::kRemoved) best = value;
       }
   }
   return best;
@@ -422,11 +495,15 @@ double CostToGo::relax_one(int layer, int slot) {
 bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
   goal_ = goal_layer;
   limit_ = kUnreachable;
+  forget();
+  for (int layer = 0; layer <= goal_; ++layer)
+    if (!lattice_->alive(layer)) return true;
   if (bounded_ && goal_layer == lattice_->layers() - 1) {
     if (!chords_) {
       chords_ = std::make_unique<ChordBound>(*lattice_);
       ik_nodes_ += chords_->ik_nodes();
     }
+    if (chords_->best() == kUnreachable) return true;
     raise_limit();
   }
   return sweep_once(stop) && make_exact(stop);
@@ -453,22 +530,25 @@ bool CostToGo::make_exact(const std::function<bool()>& stop) {
 }
 
 void CostToGo::start_from(int layer, Block& block) {
-  const int n = lattice_->angles();
   clear(layer, block);
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int chunk = 0; block.nodes().alive(label) && chunk < chunks(); ++chunk) {
-      want(*block.joints, lattice_->elbow_of(label), chunk);
-      block.live[mark(label, chunk)] = 1;
-      std::fill_n(block.row.begin() + label * n + chunk * kChunk, std::min(kChunk, n - chunk * kChunk), 0.0);
-    }
+  std::fill(block.row.begin(), block.row.end(), 0.0);
+  for (int label = 0; label < lattice_->labels(); ++label) {
+    if (!block.nodes().alive(label)) continue;
+    want(*block.joints, lattice_->elbow_of(label), 0, chunks());
+    for (int chunk = 0; chunk < chunks(); ++chunk) block.parts.push_back({label, chunk, true});
+  }
   bar(block);
+}
+
+void CostToGo::forget() {
+  pending_.clear();
+  std::fill(cell_.begin(), cell_.end(), 0U);
+  cells_.resize(1);
 }
 
 bool CostToGo::sweep_once(const std::function<bool()>& stop) {
   const Span span("sweep");
-  pending_.clear();
-  std::fill(cell_.begin(), cell_.end(), 0U);
-  cells_.resize(1);
+  forget();
   Block* next = block_[0].get();
   Block* here = block_[1].get();
   start_from(goal_, *next);
@@ -499,7 +579,7 @@ void CostToGo::relax_removed(Block& block) {
   const auto removed = removed_edges_.find(block.layer);
   if (removed == removed_edges_.end()) return;
   for (const auto& [a, edges] : removed->second.tails) {
-    if (!block.live[mark(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)]) continue;
+    if (!block.find(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)) continue;
     double& value = block.row[static_cast<std::size_t>(a)];
     const auto gives_value = [&](const HalfEdge& edge) { return edge.cost + at(block.layer + 1, edge.other) == value; };
     if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(block.layer, a);
@@ -599,15 +679,13 @@ void CostToGo::repair_once() {
       const Marks dependent = widened(changed);
       load(layer + 1, widened(dependent), *next);
       load(layer, dependent, *here);
-      here->todo = here->live;
       relax(layer, *here, *next);
       bar(*here);
       relax_removed(*here);
       cut(*here);
-      for (int label = 0; label < lattice_->labels(); ++label)
-        for (int chunk = 0; chunk < chunks(); ++chunk)
-          for (int j = chunk * kChunk; here->todo[mark(label, chunk)] && j < std::min(n, (chunk + 1) * kChunk); ++j)
-            set(label * n + j, here->row[static_cast<std::size_t>(label * n + j)]);
+      for (const Part& part : here->parts)
+        for (int slot = part.label * n + part.begin(); slot < part.label * n + part.end(n); ++slot)
+          set(slot, here->row[static_cast<std::size_t>(slot)]);
     }
     std::swap(here, next);  // its joints serve once more
     const auto pending = pending_.find(layer);
@@ -640,9 +718,11 @@ double CostToGo::relax_one_forward(int layer, int slot, const Block& before) {
     for (int k = 0; k < run.count; ++k) {
       const int j = (run.first + k) % n, a = other * n + j;
       const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
-      if (done == kUnreachable || edge_verdict(layer - 1, a, slot) == Verdict::kRemoved) continue;
+      if (done >= best) continue;
       const Config delta = lattice_->delta(config(layer - 1, a), q);
-      if (lattice_->step_allowed(layer - 1, delta)) best = std::min(best, lattice_->edge_cost(delta) + done);
+      const double value = lattice_->edge_cost(delta) + done;
+      if (value < best && lattice_->step_allowed(layer - 1, delta) && edge_verdict(layer - 1, a, slot) != Verdict::kRemoved)
+        best = value;
     }
   return best;
 }
@@ -659,12 +739,14 @@ int CostToGo::deepest_reachable() {
   for (; layer < lattice_->layers(); ++layer) {
     clear(layer, *here);
     const auto step_one = [&](int slot) {
-      const std::size_t chunk = mark(lattice_->label_of(slot), lattice_->angle_of(slot) / kChunk);
-      double* row = here->row.data() + lattice_->label_of(slot) * n;
-      const int begin = lattice_->angle_of(slot) / kChunk * kChunk;
-      if (!here->live[chunk]) std::fill(row + begin, row + std::min(n, begin + kChunk), kUnreachable);
-      here->live[chunk] = 1;
-      want(*here->joints, lattice_->elbow_of(lattice_->label_of(slot)), begin / kChunk);
+      const Part part{lattice_->label_of(slot), lattice_->angle_of(slot) / kChunk, true};
+      double* row = here->row.data() + part.label * n;
+      const auto place = std::lower_bound(here->parts.begin(), here->parts.end(), part);
+      if (place == here->parts.end() || *place != part) {
+        std::fill(row + part.begin(), row + part.end(n), kUnreachable);
+        here->parts.insert(place, part);
+      }
+      want(*here->joints, lattice_->elbow_of(part.label), part.chunk, part.chunk + 1);
       row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, *before);
     };
     const auto reaches = [&](const HalfEdge& edge, double value) {
@@ -683,7 +765,7 @@ int CostToGo::deepest_reachable() {
       const auto removed = removed_edges_.find(layer - 1);
       if (removed != removed_edges_.end())
         for (const auto& [b, edges] : removed->second.heads)
-          if (here->live[mark(lattice_->label_of(b), lattice_->angle_of(b) / kChunk)] &&
+          if (here->find(lattice_->label_of(b), lattice_->angle_of(b) / kChunk) &&
               std::any_of(edges.begin(), edges.end(),
                           [&](const HalfEdge& edge) { return reaches(edge, here->row[static_cast<std::size_t>(b)]); }))
             step_one(b);

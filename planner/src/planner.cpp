@@ -80,7 +80,8 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
     return found;
   }
   Stopwatch watch;
-  CostToGo togo(lattice, CostToGo::Extent::kBounded);
+  constexpr int kFewLayers = 64;  // where chords are too long to bound much
+  CostToGo togo(lattice, lattice.layers() < kFewLayers ? CostToGo::Extent::kWhole : CostToGo::Extent::kBounded);
   found.outcome.stopped = !togo.sweep(lattice.layers() - 1, [&] { return validity.stopped(); });
   result.time_ms["sweep"] = watch.lap();
   if (found.outcome.stopped) return found;

@@ -5,7 +5,7 @@
 
 namespace swivel {
 const RelaxKernels& scalar_relax_kernels() {
-  static constexpr RelaxKernels kernels{&scalar::relax, &scalar::chord};
+  static constexpr RelaxKernels kernels{&scalar::relax<double>, &scalar::relax<float>};
   return kernels;
 }
 }  // namespace swivel

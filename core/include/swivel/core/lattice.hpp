@@ -45,6 +45,13 @@ class LayerNodes {
     bool alive = false;
   };
   [[nodiscard]] const Offsets& at(int label) const { return offsets_[static_cast<std::size_t>(label)]; }
+  struct Layout {  // what the offsets depend on
+    std::uint64_t lattice = 0;
+    int count = 0;
+    bool elbow0 = false, elbow1 = false, start = false;
+    bool operator==(const Layout&) const = default;
+  };
+  Layout layout_;
   int layer_ = -1, first_ = 0, count_ = 0;
   Eigen::ArrayXd data_;
   std::vector<Offsets> offsets_;  // [label]
@@ -93,6 +100,8 @@ class Lattice {
   void solve_part(int elbow, int begin, int end, LayerNodes& out) const;
   /// Joint 4 of a layer's nodes by the sign of the elbow, where the arm angle does not move it: exact arms, layers without a start.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
+  /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
+  [[nodiscard]] bool alive(int layer) const { return (layer == 0 && start_) || elbow_alive(layer, 0) || elbow_alive(layer, 1); }
   [[nodiscard]] int elbow_of(int label) const { return label / windings_ & kElbowBit ? 1 : 0; }
   /// One node; none where it does not exist.
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const;
@@ -152,6 +161,7 @@ class Lattice {
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 
+  std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
   const Chain* chain_;
   const SrsArm* arm_;
   const ToolPath* path_;

@@ -7,13 +7,12 @@
 
 namespace swivel {
 
-/// Lower bounds of the cost from layer 0 to the nodes of every kStride-th layer and of the last. An edge's cost is a norm of the
+/// Lower bounds of the cost from layer 0 to the nodes of every stride-th layer and of the last. An edge's cost is a norm of the
 /// joints' move, so a path between two layers costs at least the norm of the chord between its ends: a dynamic program over chords
-/// alone, with the window of kStride steps and any change of label, bounds every path's cost from below and asks for the joints of
-/// one layer in kStride. In single precision, less what that may lose. Memory: half a byte per lattice node.
+/// alone, with the window of a stride's steps and any change of label, bounds every path's cost from below and asks for the joints
+/// of one layer a stride. In single precision, less what that may lose. Memory: one byte per lattice node or less.
 class ChordBound {
  public:
-  static constexpr int kStride = 8;
   explicit ChordBound(const Lattice& lattice);
 
   /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
@@ -23,7 +22,7 @@ class ChordBound {
   [[nodiscard]] std::int64_t ik_nodes() const { return ik_nodes_; }
 
  private:
-  int last_ = 0, width_ = 0;
+  int stride_ = 1, last_ = 0, width_ = 0;
   double best_ = 0;
   std::vector<float> rows_;  // [coarse layer][slot]
   std::int64_t ik_nodes_ = 0;

@@ -26,7 +26,7 @@ inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 /// it comes to be more, the limit is raised and the sweep repeated. Other nodes may read as unreachable, or as costlier than they
 /// are.
 ///
-/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, half a byte for the bounds. Joints are solved again where they
+/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they
 /// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
 /// nodes: there they are kept, 40 bytes a node of the layers that were visited; up to 64 MB of that stays with the process for the
 /// next search.
@@ -85,10 +85,12 @@ class CostToGo {
   /// The joints of one layer, from -window to angles + window around the circle, solved by chunks as they are wanted.
   struct Joints;
   class Spare;
+  struct Part;
+  struct Middles;
   /// A layer's values, ready to be relaxed against or being relaxed.
   struct Block;
   using Cell = std::array<double, kChunk>;
-  using Marks = std::vector<std::uint8_t>;  // [label][chunk], or [chunk]: a column of all labels
+  using Marks = std::vector<std::uint8_t>;  // [chunk]
 
   struct EdgeKey {
     std::int64_t node;
@@ -127,11 +129,13 @@ class CostToGo {
   double& cell_value(int layer, int slot);  // makes the cell
 
   Joints& joints(int layer, Block& block);
-  void want(Joints& joints, int elbow, int chunk);
+  void want(Joints& joints, int elbow, int first, int last);  // chunks
   void clear(int layer, Block& block);
   void start_from(int layer, Block& block);  // every node at cost 0
   void relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other, double* best);
   void relax(int step_layer, Block& from, const Block& to);
+  void range(Joints& joints, int elbow, int chunk) const;
+  [[nodiscard]] bool may_meet(int step_layer, const Middles& a, const Middles& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const;
   [[nodiscard]] bool elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const;
   void mark_reach(int step_layer, const Block& to, Block& from);
@@ -145,6 +149,7 @@ class CostToGo {
   [[nodiscard]] double relax_one(int layer, int slot);
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Block& before);
   void relax_removed(Block& block);
+  void forget();  // everything is unreachable
   bool sweep_once(const std::function<bool()>& stop);
   void raise_limit();
   bool make_exact(const std::function<bool()>& stop);
@@ -163,6 +168,7 @@ class CostToGo {
   std::map<int, Pending> pending_;
   std::vector<std::unique_ptr<Joints>> cache_;  // by layer; empty where joints are not kept
   std::array<std::unique_ptr<Block>, 2> block_;
+  std::vector<int> columns_;  // scratch of mark_reach
   LayerNodes scratch_;
   std::int64_t ik_nodes_ = 0, edges_ = 0;
 };
