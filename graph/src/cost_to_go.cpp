@@ -294,8 +294,10 @@ bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chu
   // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart. Continuous
   // joints have no plain interval.
   const int begin = lattice_->window() + chunk * kChunk, end = std::min(lattice_->window() + lattice_->angles(), begin + kChunk);
-  for (const int joint : {3, 0, 2, 4, 6}) {
-    if (lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
+  const bool one_elbow = lattice_->elbow_of(label) == lattice_->elbow_of(other);
+  for (const int joint : {0, 2, 4, 6, 3}) {
+    const bool shared = one_elbow && from.nodes().q(label, joint) == from.nodes().q(other, joint);  // tells nothing apart
+    if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const Interval own(from.nodes().q(label, joint), begin, end);
     if (own.gap(theirs(joint)) > lattice_->step_bound(step_layer)[joint]) return false;
   }

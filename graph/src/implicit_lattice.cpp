@@ -20,7 +20,12 @@ const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) cons
   }
   const int layer = layer_of(v), slot = slot_of(v), n = lattice.angles();
   if (layer >= togo_->goal_layer()) return edges_;
-  const Config q = togo_->config(layer, slot);
+  // A best path's vertices are expanded one after the other, each among the successors of the last.
+  const int offset = (lattice.angle_of(slot) - solved_.run.first + n) % n;
+  const bool known =
+      solved_.layer == layer && solved_.elbow == lattice.elbow_of(lattice.label_of(slot)) && offset < solved_.run.count;
+  const Config q =
+      known ? solved_.nodes.nodes->config(lattice.label_of(slot), solved_.nodes.shift + offset) : togo_->config(layer, slot);
   const Lattice::Run run = lattice.successors(layer, slot);
   for (int elbow = 0; elbow < 2; ++elbow) {
     CostToGo::Nodes next;
@@ -29,7 +34,10 @@ const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) cons
         const int b = label * n + (run.first + k) % n;
         const double rest = togo_->at(layer + 1, b);
         if (rest == kUnreachable || rest > bound) continue;
-        if (!next.nodes) next = togo_->nodes(layer + 1, elbow, run.first, run.count, next_);
+        if (!next.nodes) {
+          next = togo_->nodes(layer + 1, elbow, run.first, run.count, next_);
+          solved_ = {layer + 1, elbow, run, next};
+        }
         const Config delta = lattice.delta(q, next.nodes->config(label, next.shift + k));
         if (!lattice.step_allowed(layer, delta)) continue;
         const double cost = lattice.edge_cost(delta);

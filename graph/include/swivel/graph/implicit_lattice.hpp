@@ -43,6 +43,12 @@ class ImplicitLattice {
   // Scratch of the one search that walks this graph; the graph itself has no state.
   mutable std::vector<Edge> edges_;
   mutable LayerNodes next_;
+  struct Solved {
+    int layer = -1, elbow = 0;
+    Lattice::Run run;
+    CostToGo::Nodes nodes;
+  };
+  mutable Solved solved_;  // last, in next_ or kept by the cost-to-go
 };
 
 // Boost.Graph interface, found by argument-dependent look-up.
