@@ -82,12 +82,11 @@ class CostToGo {
  private:
   static constexpr int kChunk = 8;  // angles: a cache line of costs, one vector of the widest unit
 
-  /// The joints of one layer, from -window to angles + window around the circle, solved by chunks as they are wanted.
   struct Joints;
   class Spare;
+  struct Interval;
   struct Part;
   struct Middles;
-  /// A layer's values, ready to be relaxed against or being relaxed.
   struct Block;
   using Cell = std::array<double, kChunk>;
   using Marks = std::vector<std::uint8_t>;  // [chunk]

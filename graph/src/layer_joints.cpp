@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <mutex>
+
+#include "layer_parts.hpp"
+
+namespace swivel {
+
+/// Joints that a search had kept, for the next one: pages fresh from the system took a quarter of a plan that meets obstacles.
+class CostToGo::Spare {
+ public:
+  static Spare& of_process() {
+    static Spare spare;
+    return spare;
+  }
+  std::unique_ptr<Joints> take() {
+    const std::lock_guard lock(mutex_);
+    if (joints_.empty()) return std::make_unique<Joints>();
+    std::unique_ptr<Joints> joints = std::move(joints_.back());
+    joints_.pop_back();
+    bytes_ -= joints->nodes.bytes();
+    return joints;
+  }
+  void give(std::unique_ptr<Joints> joints) {
+    constexpr std::size_t kMost = 64 << 20;
+    const std::lock_guard lock(mutex_);
+    if (bytes_ + joints->nodes.bytes() > kMost) return;
+    bytes_ += joints->nodes.bytes();
+    joints->layer = -1;
+    joints_.push_back(std::move(joints));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Joints>> joints_;
+  std::size_t bytes_ = 0;
+};
+
+CostToGo::~CostToGo() {
+  for (auto& joints : cache_)
+    if (joints) Spare::of_process().give(std::move(joints));
+}
+
+CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
+  Joints* joints = &block.own;
+  if (!cache_.empty()) {
+    auto& kept = cache_[static_cast<std::size_t>(layer)];
+    if (!kept) kept = Spare::of_process().take();
+    joints = kept.get();
+  }
+  if (joints->layer != layer) {
+    const int n = lattice_->angles(), window = lattice_->window();
+    joints->layer = layer;
+    lattice_->lay_out(layer, (n - window % n) % n, n + 2 * window, joints->nodes);
+    for (auto& solved : joints->solved) solved.assign(static_cast<std::size_t>(chunks()), 0);
+    joints->of_chunk.resize(mark(lattice_->labels(), 0));
+    joints->of_layer.assign(static_cast<std::size_t>(lattice_->labels()), {});
+  }
+  return *joints;
+}
+
+void CostToGo::want(Joints& joints, int elbow, int first, int last) {
+  Marks& solved = joints.solved[static_cast<std::size_t>(elbow)];
+  const int n = lattice_->angles(), window = lattice_->window();
+  for (int chunk = first, next = first; chunk < last; chunk = next) {
+    next = chunk + 1;
+    if (solved[static_cast<std::size_t>(chunk)]) continue;
+    while (next < last && !solved[static_cast<std::size_t>(next)]) ++next;
+    std::fill(solved.begin() + chunk, solved.begin() + next, std::uint8_t{1});
+    const int begin = chunk * kChunk, end = std::min(n, next * kChunk);
+    ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->labels() / 2;
+    lattice_->solve_part(elbow, window + begin, window + end, joints.nodes);
+    for (int done = chunk; done < next; ++done) range(joints, elbow, done);
+    // The window reaches around the circle.
+    if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
+    if (end > n - window) {
+      const int from = std::max(begin, n - window);
+      joints.nodes.repeat(window + from, window + from - n, end - from);
+    }
+  }
+}
+
+void CostToGo::range(Joints& joints, int elbow, int chunk) const {
+  const int half = lattice_->labels() / 2, begin = lattice_->window() + chunk * kChunk;
+  const int count = std::min(kChunk, lattice_->angles() - chunk * kChunk);
+  for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
+    const double* known = nullptr;  // labels share arrays
+    Interval found;
+    for (int label = elbow * half; label < (elbow + 1) * half; ++label) {
+      const double* q = joints.nodes.q(label, Middles::kJoints[m]) + begin;
+      if (q != known) found = Interval(q, count);
+      known = q;
+      joints.of_chunk[mark(label, chunk)].joint[m] = found;
+      joints.of_layer[static_cast<std::size_t>(label)].joint[m].add(found);
+    }
+  }
+}
+
+CostToGo::Nodes CostToGo::nodes(int layer, int elbow, int first, int count, LayerNodes& scratch) {
+  const int n = lattice_->angles();
+  if (cache_.empty()) {
+    if (n >= kChunk) count = (count + kChunk - 1) / kChunk * kChunk;  // whole vectors are quicker
+    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels() / 2;
+    lattice_->lay_out(layer, first, count, scratch);
+    lattice_->solve_part(elbow, 0, count, scratch);
+    return {&scratch, 0};
+  }
+  Joints& kept = joints(layer, *block_[0]);
+  for (int k = 0; k < count; ++k) {
+    const int chunk = (first + k) % n / kChunk;
+    want(kept, elbow, chunk, chunk + 1);
+  }
+  return {&kept.nodes, (first + lattice_->window()) % n};
+}
+
+Config CostToGo::config(int layer, int slot) {
+  const int label = lattice_->label_of(slot);
+  const Nodes here = nodes(layer, lattice_->elbow_of(label), lattice_->angle_of(slot), 1, scratch_);
+  return here.nodes->config(label, here.shift);
+}
+
+}  // namespace swivel
