@@ -53,7 +53,7 @@ Certificates certificates_of(const PlanOptions& options) {
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
 int lanes_of(const PlanOptions& options) {
   if (options.planner == PlannerKind::kLazy) return 1;
-  return options.planner == PlannerKind::kParallel ? 8 : 0;
+  return options.planner == PlannerKind::kParallel ? 4 : 0;
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
@@ -86,7 +86,7 @@ Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOpti
   result.time_ms["sweep"] = watch.lap();
   if (found.outcome.stopped) return found;
   // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
-  const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 16 : 1};
+  const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
   SearchCounters searched;
   found.outcome = path_first(togo, validity, path_first_options, searched);
   result.time_ms["search"] = watch.lap();
