@@ -34,6 +34,18 @@ TEST_P(Backends, ForEachVisitsEveryIndexOnceAndPassesExceptionsOn) {
   }
 }
 
+void expect_same(const PlanResult& result, const PlanResult& first) {
+  EXPECT_EQ(result.status, first.status);
+  EXPECT_EQ(result.cost, first.cost);
+  EXPECT_EQ(result.counters.fcl_calls, first.counters.fcl_calls);
+  EXPECT_EQ(result.counters.certified_free, first.counters.certified_free);
+  EXPECT_EQ(result.counters.certified_colliding, first.counters.certified_colliding);
+  EXPECT_EQ(result.counters.nodes_checked, first.counters.nodes_checked);
+  EXPECT_EQ(result.counters.edges_checked, first.counters.edges_checked);
+  ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
+}
+
 TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
   const std::uint64_t base = seed("Backends.SameResult");
   const auto robots = all_robots();
@@ -51,25 +63,16 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
         first = result;
         continue;
       }
-      ASSERT_EQ(result.status, first->status);
-      ASSERT_EQ(result.cost, first->cost);
-      ASSERT_EQ(result.counters.fcl_calls, first->counters.fcl_calls);
-      ASSERT_EQ(result.counters.certified_free, first->counters.certified_free);
-      ASSERT_EQ(result.counters.certified_colliding, first->counters.certified_colliding);
-      ASSERT_EQ(result.counters.nodes_checked, first->counters.nodes_checked);
-      ASSERT_EQ(result.counters.edges_checked, first->counters.edges_checked);
-      ASSERT_EQ(result.trajectory.size(), first->trajectory.size());
-      for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q);
+      expect_same(result, *first);
+      ASSERT_FALSE(HasFailure());
       ++compared;
     }
   }
   EXPECT_EQ(compared, 3 * trials(20));
 }
-INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
-                         [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
 
 /// Postures of long paths, of which most is kept from one to the next, and batches that fail.
-TEST(Threads, KeptClearancesCountTheSame) {
+TEST_P(Backends, KeptClearancesCountTheSame) {
   Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.dphi = 0.2;
   const PreparedRobot robot(base);
@@ -80,6 +83,7 @@ TEST(Threads, KeptClearancesCountTheSame) {
     for (const int threads : {1, 2, 4}) {
       PlanOptions options;
       options.threads = threads;
+      options.backend = GetParam();
       options.report = false;
       const PlanResult result = plan(robot, problem, options);
       if (!first) {
@@ -87,12 +91,8 @@ TEST(Threads, KeptClearancesCountTheSame) {
         repaired += result.counters.iterations > 1;
         continue;
       }
-      ASSERT_EQ(result.status, first->status);
-      ASSERT_EQ(result.cost, first->cost);
-      ASSERT_EQ(result.counters.nodes_checked, first->counters.nodes_checked);
-      ASSERT_EQ(result.counters.fcl_calls, first->counters.fcl_calls);
-      ASSERT_EQ(result.counters.certified_free, first->counters.certified_free);
-      ASSERT_EQ(result.counters.certified_colliding, first->counters.certified_colliding);
+      expect_same(result, *first);
+      ASSERT_FALSE(HasFailure());
       ++compared;
     }
   }
@@ -100,6 +100,9 @@ TEST(Threads, KeptClearancesCountTheSame) {
   EXPECT_EQ(compared, 24);
   EXPECT_GT(repaired, 2);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
+                         [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
 
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
