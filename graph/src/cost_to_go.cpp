@@ -99,16 +99,19 @@ void CostToGo::load(int layer, const Marks& columns, Block& block) {
 bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
   goal_ = goal_layer;
   limit_ = kUnreachable;
-  forget();
-  for (int layer = 0; layer <= goal_; ++layer)
-    if (!lattice_->alive(layer)) return true;
-  if (bounded_ && goal_layer == lattice_->layers() - 1) {
+  bool hopeless = false;
+  for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
+  if (!hopeless && bounded_ && goal_layer == lattice_->layers() - 1) {
     if (!chords_) {
       chords_ = std::make_unique<ChordBound>(*lattice_);
       ik_nodes_ += chords_->ik_nodes();
     }
-    if (chords_->best() == kUnreachable) return true;
-    raise_limit();
+    hopeless = chords_->best() == kUnreachable;
+    if (!hopeless) raise_limit();
+  }
+  if (hopeless) {
+    forget();
+    return true;
   }
   return sweep_once(stop) && make_exact(stop);
 }

@@ -14,6 +14,12 @@ namespace {
 
 using namespace test;
 
+/// Each joint up to `most` away.
+Config nearby(Config q, double most, Random& random) {
+  for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-most, most);
+  return q;
+}
+
 /// A problem whose path joins the poses of two nearby random configurations.
 struct Small {
   Problem problem;
@@ -41,9 +47,7 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
   for (const TestRobot& robot : all_robots())
     for (int trial = 0; trial < trials(20); ++trial) {
       const Chain chain = arm_of(robot).chain;
-      const Config q0 = random_config(chain, random);
-      Config q1 = q0;
-      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.2, 0.2);
+      const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
       const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
       const Lattice& lattice = *small.lattice;
       LayerNodes nodes;
@@ -224,9 +228,7 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   const Chain chain = arm_of(robot).chain;
   int compared = 0;
   for (int trial = 0; trial < 400; ++trial) {
-    const Config q0 = random_config(chain, random);
-    Config q1 = q0;
-    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.05, 0.05);
+    const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.05, random);
     const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.1, .dalpha = 0.1});
     const Lattice& lattice = *small.lattice;
     const double phi = random.uniform(-kPi, kPi), dphi = random.uniform(-0.1, 0.1);
@@ -262,9 +264,7 @@ TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
   for (const TestRobot& robot : all_robots())
     for (int trial = 0; trial < trials(50); ++trial) {
       const Chain chain = arm_of(robot).chain;
-      const Config q0 = random_config(chain, random);
-      Config q1 = q0;
-      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.2, 0.2);
+      const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
       const Small small(robot, q0, q1, {.ds = 0.05, .dphi = 0.3, .dalpha = 0.2});
       const ToolPath& path = *small.path;
       for (int layer = 0; layer + 1 < path.size(); ++layer) {
