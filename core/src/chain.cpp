@@ -62,6 +62,28 @@ int require_link(const RobotModel& robot, const std::string& key, const std::str
   return link;
 }
 
+/// Mimic joints follow their leaders, which may follow others, in any order. `position` holds that of all other joints.
+void place_mimics(const RobotModel& robot, const std::vector<int>& arm, std::vector<double>& position) {
+  std::vector<char> known(robot.joints.size());
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) known[j] = !robot.joints[j].mimic;
+  std::vector<std::size_t> waiting;
+  for (std::size_t first = 0; first < robot.joints.size(); ++first) {
+    for (std::size_t j = first; !known[j]; j = static_cast<std::size_t>(robot.joints[j].mimic->joint)) {
+      if (waiting.size() == robot.joints.size())
+        fail(robot, "joint '" + robot.joints[j].name + "' mimics itself: allowed is another");
+      waiting.push_back(j);
+    }
+    for (; !waiting.empty(); waiting.pop_back()) {
+      const Joint& joint = robot.joints[waiting.back()];
+      if (std::find(arm.begin(), arm.end(), joint.mimic->joint) != arm.end())
+        fail(robot, "joint '" + joint.name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
+      position[waiting.back()] =
+          joint.mimic->multiplier * position[static_cast<std::size_t>(joint.mimic->joint)] + joint.mimic->offset;
+      known[waiting.back()] = 1;
+    }
+  }
+}
+
 /// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
 std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold,
                                    const std::vector<int>& arm) {
@@ -85,14 +107,7 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
                       std::to_string(joint.lower) + " to " + std::to_string(joint.upper));
     position[static_cast<std::size_t>(j)] = value;
   }
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const auto& mimic = robot.joints[j].mimic;
-    if (!mimic) continue;
-    if (std::find(arm.begin(), arm.end(), mimic->joint) != arm.end())
-      fail(robot,
-           "joint '" + robot.joints[j].name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
-    position[j] = mimic->multiplier * position[static_cast<std::size_t>(mimic->joint)] + mimic->offset;
-  }
+  place_mimics(robot, arm, position);
   return position;
 }
 
@@ -142,6 +157,15 @@ double Chain::manipulability(const Config& q) const {
   return std::sqrt(std::max(0.0, JJt.determinant()));
 }
 
+std::vector<std::string> limit_warnings(const Chain& chain) {
+  std::vector<std::string> warnings;
+  for (std::size_t j = 0; j < kDof; ++j)
+    if (chain.limit[j].wide())
+      warnings.push_back("joint '" + chain.joint_names[j] +
+                         "' has limits over 64 turns apart: it is planned as a continuous joint");
+  return warnings;
+}
+
 ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
                    const std::map<std::string, double>& hold, const Pose& tool) {
   const int base = require_link(robot, "robot.base_link", base_link);
@@ -160,24 +184,29 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
       fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's seven joints must turn");
   const std::vector<double> position = held_positions(robot, hold, arm);
 
-  // Parents come before children only by luck in a file, so poses are found by recursion to the root.
+  // Parents come before children only by luck in a file: a link waits, with its children so far, for its parent.
   ArmModel model;
   model.links.resize(robot.links.size());
   std::vector<char> known(robot.links.size(), 0);
-  const auto place = [&](auto&& self, int link) -> const LinkPlacement& {
-    auto& placement = model.links[static_cast<std::size_t>(link)];
-    if (known[static_cast<std::size_t>(link)]) return placement;
-    known[static_cast<std::size_t>(link)] = 1;
-    const int j = robot.links[static_cast<std::size_t>(link)].parent_joint;
-    if (j < 0) return placement;
-    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    const LinkPlacement& parent = self(self, joint.parent_link);
-    const auto in_arm = std::find(arm.begin(), arm.end(), j);
-    placement.group = in_arm == arm.end() ? parent.group : static_cast<int>(in_arm - arm.begin()) + 1;
-    placement.pose = parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
-    return placement;
-  };
-  for (std::size_t link = 0; link < robot.links.size(); ++link) place(place, static_cast<int>(link));
+  std::vector<int> waiting;
+  for (std::size_t first = 0; first < robot.links.size(); ++first) {
+    for (int link = static_cast<int>(first); !known[static_cast<std::size_t>(link)];) {
+      known[static_cast<std::size_t>(link)] = 1;
+      const int j = robot.links[static_cast<std::size_t>(link)].parent_joint;
+      if (j < 0) break;
+      waiting.push_back(link);
+      link = robot.joints[static_cast<std::size_t>(j)].parent_link;
+    }
+    for (; !waiting.empty(); waiting.pop_back()) {
+      const int j = robot.links[static_cast<std::size_t>(waiting.back())].parent_joint;
+      const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+      const LinkPlacement& parent = model.links[static_cast<std::size_t>(joint.parent_link)];
+      LinkPlacement& placement = model.links[static_cast<std::size_t>(waiting.back())];
+      const auto in_arm = std::find(arm.begin(), arm.end(), j);
+      placement.group = in_arm == arm.end() ? parent.group : static_cast<int>(in_arm - arm.begin()) + 1;
+      placement.pose = parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
+    }
+  }
   const Pose root_in_base = model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
   for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "robots.hpp"
@@ -144,6 +146,78 @@ TEST(Arm, HeldJointsAndWrongNames) {
              (turn * (straight.tool(Config::Zero()).translation() - axis_of_torso) + axis_of_torso))
                 .norm(),
             1e-9);
+}
+
+/// sda5f behind three prismatic joints m1, m2, m3 along x, y, z; m1 follows m2 and m2 follows m3. In the order of `order` in the
+/// file.
+RobotModel mimicking(const std::array<int, 3>& order) {
+  RobotModel model = *data_robot("sda5f").model;
+  const int first_link = static_cast<int>(model.links.size()), first_joint = static_cast<int>(model.joints.size());
+  std::array<int, 3> index{};
+  for (int place = 0; place < 3; ++place)
+    index[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])] = first_joint + place;
+  for (int k = 0; k < 3; ++k)
+    model.links.push_back({"w" + std::to_string(k), {}, k == 0 ? -1 : index[static_cast<std::size_t>(k) - 1]});
+  model.joints.resize(model.joints.size() + 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    Joint& joint = model.joints[static_cast<std::size_t>(index[k])];
+    joint.name = "m" + std::to_string(k + 1);
+    joint.type = Joint::Type::kPrismatic;
+    joint.parent_link = first_link + static_cast<int>(k);
+    joint.child_link = k < 2 ? first_link + static_cast<int>(k) + 1 : model.root_link;
+    joint.axis = Vector3d::Unit(static_cast<Eigen::Index>(k));
+    joint.lower = -10, joint.upper = 10;
+    if (k < 2) joint.mimic = Joint::Mimic{index[k + 1], 2, 0.1};
+  }
+  model.links[static_cast<std::size_t>(model.root_link)].parent_joint = index[2];
+  model.root_link = first_link;
+  return model;
+}
+
+TEST(Arm, MimicJointsFollowTheirLeadersInAnyOrderOfTheFile) {
+  const Pose none = Pose::Identity();
+  const TestRobot robot = data_robot("sda5f");
+  const Vector3d alone = arm_of(robot).chain.home.translation();
+  std::array<int, 3> order{0, 1, 2};
+  int orders = 0;
+  do {
+    const RobotModel model = mimicking(order);
+    const Chain chain = build_arm(model, "w0", robot.tip_link, {{"m3", 0.5}}, none).chain;
+    EXPECT_LT((chain.home.translation() - alone - Vector3d(2.3, 1.1, 0.5)).norm(), 1e-12) << chain.home.translation().transpose();
+    ++orders;
+  } while (std::next_permutation(order.begin(), order.end()));
+  EXPECT_EQ(orders, 6);
+
+  RobotModel loop = mimicking(order);
+  const int m1 = loop.find_joint("m1");
+  loop.joints[static_cast<std::size_t>(loop.find_joint("m3"))].mimic = Joint::Mimic{m1, 1, 0};
+  EXPECT_THROW((void)build_arm(loop, "w0", robot.tip_link, {}, none), InputError);
+  loop.joints[static_cast<std::size_t>(m1)].mimic->joint = m1;
+  EXPECT_THROW((void)build_arm(loop, "w0", robot.tip_link, {}, none), InputError);
+  RobotModel of_arm = mimicking(order);
+  of_arm.joints[static_cast<std::size_t>(of_arm.find_joint("m3"))].mimic =
+      Joint::Mimic{of_arm.find_joint("arm_left_joint_1_s"), 1, 0};
+  EXPECT_THROW((void)build_arm(of_arm, "w0", robot.tip_link, {}, none), InputError);
+}
+
+/// A long chain that the file lists from its end, so that every parent comes after its child.
+TEST(Arm, LongChainsNeedNoStackAndLinearTime) {
+  constexpr int kLinks = 300000;
+  RobotModel model = *data_robot("sda5f").model;
+  const int first_link = static_cast<int>(model.links.size());
+  for (int k = 0; k < kLinks; ++k) {
+    Joint joint;
+    joint.name = "c" + std::to_string(k);
+    joint.parent_link = k + 1 < kLinks ? first_link + k + 1 : model.find_link("arm_left_link_7_t");
+    joint.child_link = first_link + k;
+    joint.origin.translation() = Vector3d(1e-6, 0, 0);
+    model.links.push_back({"l" + std::to_string(k), {}, static_cast<int>(model.joints.size())});
+    model.joints.push_back(joint);
+  }
+  const ArmModel arm = build_arm(model, "base_link", "l0", {}, Pose::Identity());
+  const TestRobot robot = data_robot("sda5f");
+  EXPECT_NEAR((arm.chain.home.translation() - arm_of(robot).chain.home.translation()).norm(), 1e-6 * kLinks, 1e-6);
+  EXPECT_EQ(arm.links[static_cast<std::size_t>(first_link)].group, kDof);
 }
 
 TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {

@@ -104,6 +104,16 @@ inline TestRobot windings_robot() {
                          z * 0.12, 0.05);
 }
 
+/// The same robot with other limits of its arm's joints: change(number of the joint, 0 ... 6, joint).
+template <class Change>
+TestRobot with_limits(const TestRobot& robot, const Change& change) {
+  auto model = std::make_shared<RobotModel>(*robot.model);
+  int number = 0;
+  for (const std::string& name : build_arm(*robot.model, robot.base_link, robot.tip_link, {}, Pose::Identity()).chain.joint_names)
+    change(number++, model->joints[static_cast<std::size_t>(model->find_joint(name))]);
+  return {robot.name, model, robot.base_link, robot.tip_link};
+}
+
 inline std::vector<TestRobot> all_robots() {
   return {data_robot("sda5f"), data_robot("sda10f"), data_robot("iiwa14"), continuous_robot(), windings_robot()};
 }

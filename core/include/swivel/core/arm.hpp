@@ -11,11 +11,15 @@
 
 namespace swivel {
 
+inline constexpr int kMostTurns = 64;  ///< that a bounded joint may have
+
 /// A bounded joint keeps lower <= q <= upper; a continuous one has neither.
 struct JointLimit {
   double lower = -kPi, upper = kPi;  ///< rad
   double velocity = 0;               ///< rad/s, 0 where the file gives none
   bool continuous = false;
+  /// Bounds that mean "unlimited": over 64 turns. Such a joint is planned as a continuous one.
+  [[nodiscard]] bool wide() const { return !continuous && upper - lower > kMostTurns * kTwoPi; }
 };
 
 /// The seven-joint chain from base to tool, exactly as the URDF has it, as a product of exponentials in the base frame:
@@ -47,6 +51,9 @@ struct Chain {
   /// Yoshikawa 1984: sqrt(max(0, det(J J^T))), J as above. Independent of the reference point.
   [[nodiscard]] double manipulability(const Config& q) const;
 };
+
+/// One line for every wide joint.
+[[nodiscard]] std::vector<std::string> limit_warnings(const Chain& chain);
 
 /// Where every link of the robot is at q = 0, and which joint of the chain moves it.
 struct LinkPlacement {
