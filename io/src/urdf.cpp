@@ -12,6 +12,7 @@
 #include <mutex>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 
 #include "bad_input.hpp"
 #include "srdf.hpp"
@@ -165,6 +166,7 @@ class ModelBuilder {
     link.name = element.Attribute("name");
     for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array)
       link.collision.push_back({shape(*collision->geometry, where(element)), to_eigen(collision->origin)});
+    link_index_[link.name] = static_cast<int>(model_->links.size());
     model_->links.push_back(std::move(link));
   }
 
@@ -204,8 +206,8 @@ class ModelBuilder {
     Joint joint;
     joint.name = parsed.name;
     joint.type = type(parsed, at);
-    joint.parent_link = model_->find_link(parsed.parent_link_name);
-    joint.child_link = model_->find_link(parsed.child_link_name);
+    joint.parent_link = link_index_.at(parsed.parent_link_name);
+    joint.child_link = link_index_.at(parsed.child_link_name);
     joint.origin = to_eigen(parsed.parent_to_joint_origin_transform);
     if (joint.movable()) {
       const double length = to_eigen(parsed.axis).norm();
@@ -214,6 +216,7 @@ class ModelBuilder {
       read_limits(parsed, at, joint);
     }
     model_->links[static_cast<std::size_t>(joint.child_link)].parent_joint = static_cast<int>(model_->joints.size());
+    joint_index_[joint.name] = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
   }
 
@@ -252,10 +255,12 @@ class ModelBuilder {
   void add_mimic(const tinyxml2::XMLElement& element) {
     const std::string name = element.Attribute("name");
     const urdf::JointMimicSharedPtr& mimic = parsed_->getJoint(name)->mimic;
-    Joint& joint = model_->joints[static_cast<std::size_t>(model_->find_joint(name))];
+    Joint& joint = model_->joints[static_cast<std::size_t>(joint_index_.at(name))];
     if (!mimic || !joint.movable()) return;
-    const int leader = model_->find_joint(mimic->joint_name);
-    if (leader < 0) bad_input(where(element), "mimics unknown joint '" + mimic->joint_name + "'", "the name of another joint");
+    const auto found = joint_index_.find(mimic->joint_name);
+    if (found == joint_index_.end())
+      bad_input(where(element), "mimics unknown joint '" + mimic->joint_name + "'", "the name of another joint");
+    const int leader = found->second;
     // Leaders come before or after in the file, so follow the chain as far as it is known.
     for (int k = leader; k >= 0;) {
       const Joint& next = model_->joints[static_cast<std::size_t>(k)];
@@ -269,6 +274,7 @@ class ModelBuilder {
   const Packages& packages_;
   urdf::ModelInterfaceSharedPtr parsed_;
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
+  std::unordered_map<std::string, int> link_index_, joint_index_;  // by name: find_link of every joint would be quadratic
   MeshCache meshes_;
 };
 
