@@ -6,6 +6,7 @@
 #include "files.hpp"
 #include "srdf.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/validate.hpp"
 #include "swivel/io/io.hpp"
 #include "urdf.hpp"
 #include "yaml_value.hpp"
@@ -293,6 +294,8 @@ class ProblemReader {
           choice<CostMetric>(*metric, {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
     if (const auto weights = section.find("weights")) {
       const std::vector<double> values = weights->numbers(kDof, Range::kNonNegative);
+      for (std::size_t k = 0; k < values.size(); ++k)
+        if (!weight_allowed(values[k])) weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
       std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
     }
   }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -41,6 +42,8 @@ class InOrder {
 
 void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
+  validate(problem);
+  robot.require_prepared_for(problem);
   if (problem.vary.empty() && options.episodes > 1)
     throw InputError(problem.source +
                      ": vary: missing, so that all episodes would be the same: allowed are a key vary, or --episodes 1");

@@ -13,6 +13,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
+#include "swivel/core/validate.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {
@@ -171,12 +172,6 @@ PlannerKind planner_from_string(const std::string& name) {
   throw InputError("--planner: unknown planner '" + name + "': allowed are eager, eager_dp, lazy, parallel");
 }
 
-PreparedRobot::PreparedRobot(const Problem& problem)
-    : arm_(build_arm(*problem.robot, problem.base_link, problem.tip_link, problem.hold, problem.tool)),
-      srs_(fit_srs(arm_.chain, problem.robot->source)),
-      world_(*problem.robot, arm_, problem),
-      radii_(motion_radii(arm_.chain, world_.bodies())) {}
-
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
   Stopwatch watch;
   const PreparedRobot robot = [&] {
@@ -191,6 +186,8 @@ PlanResult plan(const Problem& problem, const PlanOptions& options) {
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
   const Span span("plan");
+  validate(problem);
+  robot.require_prepared_for(problem);
   Stopwatch watch;
   PlanResult result;
   result.planner = to_string(options.planner);
@@ -206,7 +203,8 @@ PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOp
   result.time_ms["lattice"] = watch.lap();
   const World world(robot.world(), problem.scene);
   result.time_ms["world"] = watch.lap();
-  result.warnings = world.warnings();
+  result.warnings = limit_warnings(robot.arm().chain);
+  result.warnings.insert(result.warnings.end(), world.warnings().begin(), world.warnings().end());
   result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
                     lattice.nodes(),  path.merged_waypoints()};
 

@@ -7,6 +7,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -30,6 +31,8 @@ std::string LatticeMap::label_name(int label) const {
 }
 
 LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full) {
+  validate(problem);
+  robot.require_prepared_for(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const World world(robot.world(), problem.scene);

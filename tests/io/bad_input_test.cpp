@@ -121,6 +121,8 @@ const Case kCases[] = {
     {"WeightsShort", "cost", "{weights: [1]}", {"cost.weights", "7 numbers"}},
     {"WeightNegative", "cost", "{weights: [1, 1, 1, 1, 1, 1, -1]}", {"cost.weights[6]", ">= 0"}},
     {"WeightInfinite", "cost", "{weights: [1, 1, 1, 1, 1, 1, .inf]}", {"cost.weights[6]", "finite"}},
+    {"WeightTooLarge", "cost", "{weights: [1, 1, 1e160, 1, 1, 1, 1]}", {"cost.weights[2]", "1e-6 to 1e6"}},
+    {"WeightTooSmall", "cost", "{weights: [1e-170, 1, 1, 1, 1, 1, 1]}", {"cost.weights[0]", "1e-6 to 1e6"}},
     {"VaryUnknownObject", "vary", "[{object: door}]", {"vary[0].object", "'door'"}},
     {"VaryNoObject", "vary", "[{xyz: [1, 1, 1]}]", {"vary[0].object", "missing"}},
     {"TopLevelUnknownKey", "limit", "{}", {": limit", "'limits'"}},

@@ -19,7 +19,7 @@ struct CheckResult {
   std::optional<double> min_clearance;
 };
 /// Tolerances: pose 1e-6 m and rad, limits 1e-9, clearance - 0.05 mm; between rows the tool-path error and, in continuous mode,
-/// d_edge. Rows may have any spacing in s but must begin and end with the path.
+/// d_edge. Rows may have any spacing in s but must begin and end with the path. Throws InvalidArgument as plan() does.
 [[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows);
 
 }  // namespace swivel

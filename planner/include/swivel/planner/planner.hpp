@@ -55,8 +55,12 @@ struct PlanOptions {
 /// Immutable and safe to share between threads.
 class PreparedRobot {
  public:
-  /// Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ...
+  /// Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ... InvalidArgument: see validate().
   explicit PreparedRobot(const Problem& problem);
+  /// Throws InvalidArgument for a problem that another robot would have to be prepared for: another model, base_link, tip_link,
+  /// tool, hold or attached body; and, where pairs are left out by sampling (no SRDF, or attached bodies), other distances to be
+  /// kept.
+  void require_prepared_for(const Problem& problem) const;
   [[nodiscard]] const ArmModel& arm() const { return arm_; }
   [[nodiscard]] const SrsArm& srs() const { return srs_; }
   [[nodiscard]] const std::array<double, kDof>& radii() const { return radii_; }
@@ -64,6 +68,17 @@ class PreparedRobot {
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
+  /// What of a problem goes into the members below.
+  struct Basis {
+    explicit Basis(const Problem& problem);
+    std::shared_ptr<const RobotModel> model;  // shared: as Problem holds it; kept, so that no other takes its address
+    std::string base_link, tip_link;
+    Pose tool;
+    std::map<std::string, double> hold;
+    std::vector<AttachedBody> attached;
+    double pair_distance;  // m
+  };
+  Basis basis_;
   ArmModel arm_;
   SrsArm srs_;
   World world_;
@@ -71,9 +86,11 @@ class PreparedRobot {
 };
 
 /// Plans one problem. Const, reentrant, deterministic at any thread count (except where it times out).
-/// Throws InputError for problems that make no sense; "no path" is a status, not an exception.
+/// Throws InputError for problems that make no sense, InvalidArgument for values that no problem may have (validate());
+/// "no path" is a status, not an exception.
 [[nodiscard]] PlanResult plan(const Problem& problem, const PlanOptions& options = {});
-/// The same on a robot prepared before (by a problem with the same robot section).
+/// The same on a robot prepared before. Throws InvalidArgument unless it was prepared for this problem
+/// (PreparedRobot::require_prepared_for).
 [[nodiscard]] PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options = {});
 
 }  // namespace swivel

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+
+#include "swivel/core/invalid_argument.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Where a value stands: scene[2].pose. Text is made only where something is wrong, so that a valid problem costs no allocation.
+struct Field {
+  const Field* parent = nullptr;
+  const char* name = "";
+  std::ptrdiff_t index = -1;
+  [[nodiscard]] Field operator()(const char* member) const { return {this, member}; }
+  [[nodiscard]] Field operator()(const char* list, std::size_t at) const { return {this, list, static_cast<std::ptrdiff_t>(at)}; }
+  [[nodiscard]] std::string text() const {
+    std::string result = parent ? parent->text() : "";
+    if (!result.empty()) result += parent->parent ? "." : ": ";
+    result += name;
+    if (index >= 0) result += "[" + std::to_string(index) + "]";
+    return result;
+  }
+};
+
+[[noreturn]] void fail(const Field& field, const std::string& what, const std::string& allowed) {
+  throw InvalidArgument(field.text() + ": " + what + ": allowed is " + allowed);
+}
+
+enum class Range { kFinite, kNonNegative, kPositive };
+
+void number(const Field& field, double value, Range range) {
+  if (std::isfinite(value) && (range == Range::kFinite || value > 0 || (value == 0 && range == Range::kNonNegative))) return;
+  char text[32];
+  std::snprintf(text, sizeof text, "is %g", value);
+  fail(field, text,
+       range == Range::kFinite        ? "a finite number"
+       : range == Range::kNonNegative ? "a finite number >= 0"
+                                      : "a finite number > 0");
+}
+void number(const Field& field, const std::optional<double>& value, Range range) {
+  if (value) number(field, *value, range);
+}
+template <class Vector>
+void numbers(const Field& field, const Vector& values, Range range) {
+  for (Eigen::Index k = 0; k < values.size(); ++k) number({field.parent, field.name, k}, values[k], range);
+}
+
+void pose(const Field& field, const Pose& pose) {
+  constexpr double kTolerance = 1e-6;
+  const Matrix3d R = pose.linear();
+  if (!pose.matrix().allFinite()) fail(field, "has numbers that are not finite", "a rotation and a finite translation");
+  if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance && R.determinant() > 0 &&
+        pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
+    fail(field, "is no rigid transform", "a rotation within 1e-6 and a finite translation");
+}
+
+void mesh(const Field& field, const MeshPtr& mesh) {
+  if (!mesh) fail(field, "is a null mesh", "a mesh");
+  for (const Vector3d& vertex : mesh->vertices)
+    if (!vertex.allFinite()) fail(field, "has a vertex that is not finite", "a mesh of finite numbers");
+  const auto count = static_cast<int>(mesh->vertices.size());
+  for (const auto& triangle : mesh->triangles)
+    for (const int corner : triangle)
+      if (corner < 0 || corner >= count) fail(field, "has a triangle without a vertex", "indices of the mesh's vertices");
+}
+
+void shape(const Field& field, const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) number(field("radius"), sphere->radius, Range::kPositive);
+  if (const auto* box = std::get_if<Box>(&shape)) numbers(field("size"), box->size, Range::kPositive);
+  const auto round = [&](const auto& body) {
+    number(field("radius"), body.radius, Range::kPositive);
+    number(field("length"), body.length, Range::kPositive);
+  };
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) round(*cylinder);
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) round(*capsule);
+  if (const auto* triangles = std::get_if<MeshPtr>(&shape)) mesh(field, *triangles);
+}
+
+/// Every item has a name of its own.
+template <class Item>
+void names(const Field& parent, const char* list, const std::vector<Item>& items) {
+  std::vector<std::pair<std::string_view, std::size_t>> sorted;
+  sorted.reserve(items.size());
+  for (std::size_t k = 0; k < items.size(); ++k) {
+    if (items[k].name.empty()) fail(parent(list, k)("name"), "is empty", "a name of its own");
+    sorted.emplace_back(items[k].name, k);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const auto twice =
+      std::adjacent_find(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  if (twice != sorted.end())
+    fail(parent(list, std::next(twice)->second)("name"), "'" + std::string(twice->first) + "' is taken", "a name of its own");
+}
+
+bool named(const std::vector<SceneObject>& scene, const std::string& name) {
+  return std::any_of(scene.begin(), scene.end(), [&](const auto& object) { return object.name == name; });
+}
+bool named(const std::vector<AttachedBody>& attached, const std::string& name) {
+  return std::any_of(attached.begin(), attached.end(), [&](const auto& body) { return body.name == name; });
+}
+
+void validate_robot(const Field& root, const Problem& problem) {
+  if (!problem.robot) fail(root("robot"), "is null", "a robot model, as io::load_robot gives it");
+  pose(root("tool"), problem.tool);
+  for (const auto& [joint, position] : problem.hold) number(root("hold")(joint.c_str()), position, Range::kFinite);
+  names(root, "attached", problem.attached);
+  for (std::size_t k = 0; k < problem.attached.size(); ++k) {
+    const AttachedBody& body = problem.attached[k];
+    const Field field = root("attached", k);
+    if (problem.robot->find_link(body.name) >= 0) fail(field("name"), "'" + body.name + "' is a link", "a name of its own");
+    if (problem.robot->find_link(body.link) < 0) fail(field("link"), "unknown link '" + body.link + "'", "a link of the robot");
+    shape(field("shape"), body.shape);
+    pose(field("pose"), body.pose);
+  }
+}
+
+void validate_scene(const Field& root, const Problem& problem) {
+  names(root, "scene", problem.scene);
+  for (std::size_t k = 0; k < problem.scene.size(); ++k) {
+    const SceneObject& object = problem.scene[k];
+    const Field field = root("scene", k);
+    if (object.name == problem.base_link) fail(field("name"), "'" + object.name + "' is the base link", "a name of its own");
+    if (named(problem.attached, object.name)) fail(field("name"), "'" + object.name + "' is an attached body", "a name of its own");
+    shape(field("shape"), object.shape);
+    pose(field("pose"), object.pose);
+    for (std::size_t i = 0; i < object.allow.size(); ++i)
+      if (problem.robot->find_link(object.allow[i]) < 0 && !named(problem.attached, object.allow[i]))
+        fail(field("allow", i), "unknown body '" + object.allow[i] + "'", "a link of the robot or the name of an attached body");
+  }
+  for (std::size_t k = 0; k < problem.vary.size(); ++k) {
+    const Field field = root("vary", k);
+    if (!named(problem.scene, problem.vary[k].object))
+      fail(field("object"), "unknown object '" + problem.vary[k].object + "'", "the name of a scene object");
+    numbers(field("xyz"), problem.vary[k].xyz, Range::kNonNegative);
+    numbers(field("rpy"), problem.vary[k].rpy, Range::kNonNegative);
+  }
+}
+
+void validate_path(const Field& root, const Problem& problem) {
+  if (!problem.path_frame.empty() && problem.path_frame != problem.base_link && !named(problem.scene, problem.path_frame))
+    fail(root("path_frame"), "unknown frame '" + problem.path_frame + "'", "the base link or the name of a scene object");
+  for (std::size_t k = 0; k < problem.waypoints.size(); ++k) {
+    const Waypoint& waypoint = problem.waypoints[k];
+    const Field field = root("waypoints", k);
+    numbers(field("position"), waypoint.position, Range::kFinite);
+    if (!(std::abs(waypoint.orientation.norm() - 1) <= 1e-3))
+      fail(field("orientation"), "is no rotation", "a finite quaternion of length 1 within 1e-3");
+  }
+}
+
+void validate_numbers(const Field& root, const Problem& problem) {
+  constexpr auto kPositive = Range::kPositive, kNonNegative = Range::kNonNegative;
+  const Field resolution = root("resolution");
+  number(resolution("ds"), problem.resolution.ds, kPositive);
+  number(resolution("dphi"), problem.resolution.dphi, kPositive);
+  if (problem.resolution.dphi > kTwoPi) fail(resolution("dphi"), "is more than a turn", "a finite number > 0, at most 2*pi");
+  number(resolution("dalpha"), problem.resolution.dalpha, kPositive);
+  const Field field = root("limits");
+  const Limits& limits = problem.limits;
+  number(field("clearance"), limits.clearance, kNonNegative);
+  number(field("manipulability"), limits.manipulability, kNonNegative);
+  number(field("joint_margin"), limits.joint_margin, kNonNegative);
+  number(field("joint_step"), limits.joint_step, kPositive);
+  number(field("arm_slope"), limits.arm_slope, kPositive);
+  number(field("step_error"), limits.step_error, kPositive);
+  number(field("tool_path_error"), limits.tool_path_error, kPositive);
+  number(field("tool_angle_error"), limits.tool_angle_error, kPositive);
+  number(field("tool_speed"), limits.tool_speed, kPositive);
+  number(field("tool_turn_speed"), limits.tool_turn_speed, kPositive);
+  number(field("edge_clearance"), limits.edge_clearance, kNonNegative);
+  number(field("edge_tolerance"), limits.edge_tolerance, kPositive);
+  if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const double weight = problem.cost.weights[k];
+    if (weight_allowed(weight)) continue;
+    char text[32];
+    std::snprintf(text, sizeof text, "is %g", weight);
+    fail(root("cost")("weights", k), text, kAllowedWeights);
+  }
+}
+
+void validate_joint(const Field& field, const Joint& joint, const RobotModel& robot) {
+  const auto index = [&](const char* name, int value, std::size_t size) {
+    if (value < 0 || static_cast<std::size_t>(value) >= size)
+      fail(field(name), "is " + std::to_string(value), "an index of the robot model");
+  };
+  index("parent_link", joint.parent_link, robot.links.size());
+  index("child_link", joint.child_link, robot.links.size());
+  pose(field("origin"), joint.origin);
+  if (!joint.movable()) return;
+  if (!(std::abs(joint.axis.norm() - 1) <= 1e-6)) fail(field("axis"), "is no unit vector", "a finite vector of length 1 within 1e-6");
+  if (!(joint.velocity >= 0)) fail(field("velocity"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (joint.type != Joint::Type::kContinuous && !(joint.lower <= joint.upper))
+    fail(field("lower"), "is not a number up to `upper`", "lower <= upper");
+  if (!joint.mimic) return;
+  index("mimic.joint", joint.mimic->joint, robot.joints.size());
+  number(field("mimic.multiplier"), joint.mimic->multiplier, Range::kFinite);
+  number(field("mimic.offset"), joint.mimic->offset, Range::kFinite);
+}
+
+}  // namespace
+
+bool weight_allowed(double weight) {
+  return weight == 0 || (weight >= 1e-6 && weight <= 1e6);
+}
+
+void validate(const Problem& problem) {
+  const Field root{nullptr, problem.source.empty() ? "problem" : problem.source.c_str()};
+  validate_robot(root, problem);
+  validate_scene(root, problem);
+  validate_path(root, problem);
+  validate_numbers(root, problem);
+}
+
+void validate(const RobotModel& robot) {
+  const Field root{nullptr, robot.source.empty() ? "robot" : robot.source.c_str()};
+  names(root, "links", robot.links);
+  names(root, "joints", robot.joints);
+  if (robot.root_link < 0 || static_cast<std::size_t>(robot.root_link) >= robot.links.size())
+    fail(root("root_link"), "is " + std::to_string(robot.root_link), "an index of the robot model");
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) validate_joint(root("joints", j), robot.joints[j], robot);
+  for (std::size_t k = 0; k < robot.links.size(); ++k) {
+    const Link& link = robot.links[k];
+    const Field field = root("links", k);
+    if (link.parent_joint >= static_cast<int>(robot.joints.size()) ||
+        (link.parent_joint >= 0 && robot.joints[static_cast<std::size_t>(link.parent_joint)].child_link != static_cast<int>(k)))
+      fail(field("parent_joint"), "is " + std::to_string(link.parent_joint), "the index of the joint that has this link as its child");
+    for (std::size_t i = 0; i < link.collision.size(); ++i) {
+      shape(field("collision", i)("shape"), link.collision[i].shape);
+      pose(field("collision", i)("pose"), link.collision[i].pose);
+    }
+  }
+  // Every way up ends: what was walked in an earlier round need not be walked again.
+  std::vector<std::size_t> seen(robot.links.size(), 0);
+  for (std::size_t first = 0; first < robot.links.size(); ++first)
+    for (std::size_t link = first; seen[link] == 0 || seen[link] == first + 1;) {
+      if (seen[link] == first + 1) fail(root("links", first)("parent_joint"), "closes a loop", "a tree of links");
+      seen[link] = first + 1;
+      if (robot.links[link].parent_joint < 0) break;
+      link = static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(robot.links[link].parent_joint)].parent_link);
+    }
+}
+
+}  // namespace swivel
