@@ -88,6 +88,7 @@ int run(const InfoArguments& arguments) {
                   limit.lower, limit.upper, limit.lower * 180 / kPi, limit.upper * 180 / kPi);
     limit.velocity > 0 ? std::printf(", %.3f rad/s\n", limit.velocity) : std::printf(", no speed limit\n");
   }
+  for (const std::string& warning : limit_warnings(arm.chain)) std::printf("warning    %s\n", warning.c_str());
   return kOk;
 }
 

@@ -10,10 +10,10 @@ namespace swivel {
 
 namespace {
 
-/// Rounds to a multiple of 2^-40 (for |x| < 2048): sums of costs are then exact in any order.
-double rounded(double x) {
-  constexpr double kShift = 6144.0;  // 1.5 * 2^12, whose last place is 2^-40
-  return (x + kShift) - kShift;
+/// Rounds to a multiple of 2^-40 units (for |x| < 2048 units): sums of costs are then exact in any order.
+double rounded(double x, double unit) {
+  const double shift = 6144.0 * unit;  // 1.5 * 2^12, whose last place is 2^-40
+  return (x + shift) - shift;
 }
 
 /// The tool's straight line from a layer to the next; a point where they coincide.
@@ -63,10 +63,11 @@ double Lattice::edge_cost(const Config& delta) const {
   if (cost_.metric == CostMetric::kL2)
     // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
     return rounded(
-        std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])));
+        std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
+        cost_unit_);
   double most = 0;
   for (const double value : x) most = std::max(most, std::abs(value));
-  return rounded(most);
+  return rounded(most, cost_unit_);
 }
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {

@@ -11,6 +11,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
+#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -18,6 +19,9 @@ namespace {
 
 constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
 constexpr double kSingularSine = 1e-6;
+constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole turns without another image
+constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
+constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 
 int wrapped_index(long long j, int n) {
@@ -27,6 +31,19 @@ int wrapped_index(long long j, int n) {
 /// Least k with q + 2 pi k >= base; as the kernels compute it.
 double image_from(double q, double base) {
   return q + kTwoPi * std::ceil((base - q) / kTwoPi);
+}
+
+/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the nearest that leaves 31 turns to both
+/// limits.
+double turn_within(const JointLimit& limit) {
+  constexpr double kFromLimits = (kMostTurns / 2 - 1) * kTwoPi;
+  return std::clamp(-kPi, limit.lower + kFromLimits, limit.upper - kFromLimits - kTwoPi);
+}
+
+/// The least power of two >= x > 0; 1 for x = 0.
+double power_of_two_from(double x) {
+  int exponent = 0;
+  return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
 }
 
 std::uint64_t next_id() {
@@ -45,27 +62,45 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   const Span span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
-  for (int k = 0; k < kDof; ++k) {
-    const JointLimit& limit = chain.limit[static_cast<std::size_t>(k)];
-    Images& images = images_[static_cast<std::size_t>(k)];
-    continuous_[static_cast<std::size_t>(k)] = limit.continuous;
-    cost_scale_[static_cast<std::size_t>(k)] =
-        cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[static_cast<std::size_t>(k)];
-    if (limit.continuous) {
-      images = {-kPi, std::numeric_limits<double>::infinity(), 1};
-      continue;
+  const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
+  double windings = 1;
+  std::string wound;  // the joints that have more than one image
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    const auto fail = [&](const std::string& what) {
+      throw InputError(problem.source + ": joint '" + chain.joint_names[j] + "'" + what);
+    };
+    if ((timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
+      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
+                       chain.joint_names[j] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+    cost_scale_[j] = cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[j];
+    if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[j]))
+      fail(": its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
+    Images& images = images_[j];
+    continuous_[j] = limit.continuous || limit.wide();
+    if (continuous_[j]) {
+      images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
+    } else {
+      const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
+      if (lower > upper)
+        throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[j] +
+                         "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
+      images = images_between(lower, upper, problem.start ? (*problem.start)[static_cast<Eigen::Index>(j)] : lower);
     }
-    const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
-    if (lower > upper)
-      throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" +
-                       chain.joint_names[static_cast<std::size_t>(k)] + "': allowed is at most " +
-                       std::to_string((limit.upper - limit.lower) / 2));
-    images.base = lower - kLimitTolerance;
-    images.upper = upper + kLimitTolerance;
-    const double range = upper - lower;
-    images.count = range > kTwoPi + kLimitTolerance ? static_cast<int>(std::floor((range + 2 * kLimitTolerance) / kTwoPi)) + 1 : 1;
-    windings_ *= images.count;
+    if (!(std::abs(images.base) <= kFarthest))
+      fail(": its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
+    if (images.count > 1) wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
+    windings *= images.count;
   }
+  if (windings > kMostWindings) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.4g", windings);
+    throw InputError(problem.source + ": joint limits allow " + number + " windings (" + wound +
+                     "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
+                     "counts as continuous");
+  }
+  windings_ = static_cast<int>(windings);
+  cost_unit_ = power_of_two_from(*std::max_element(cost_scale_.begin(), cost_scale_.end()));
 
   tracks_ = 2;
   if (arm.exact) {
@@ -111,12 +146,6 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
       elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
   }
 
-  const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
-  for (int k = 0; k < kDof; ++k)
-    if ((timed || cost_.metric == CostMetric::kTime) && chain.limit[static_cast<std::size_t>(k)].velocity <= 0)
-      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
-                       chain.joint_names[static_cast<std::size_t>(k)] +
-                       "' has no speed limit in the URDF: allowed are robots whose joints all have one");
   step_bounds_.resize(timed ? m - 1 : 1, Config::Constant(limits_.joint_step));
   if (timed)
     for (int i = 0; i + 1 < layers(); ++i) {
@@ -132,6 +161,18 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
     }
 
   if (problem.start) place_start(*problem.start, problem.source);
+}
+
+Lattice::Images Lattice::images_between(double lower, double upper, double start) {
+  const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
+  Images images;
+  images.upper = upper + kLimitTolerance;
+  images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
+  images.base = lower - kLimitTolerance;
+  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
+  const double length = images.count * kTwoPi;
+  if (start >= images.base + length) images.base = images.upper - length;
+  return images;
 }
 
 void Lattice::place_start(const Config& q, const std::string& source) {

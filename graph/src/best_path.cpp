@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <boost/graph/astar_search.hpp>
+#include <stdexcept>
 #include <unordered_map>
 
 #include "swivel/core/timeline.hpp"
@@ -105,7 +106,7 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
     std::reverse(path.begin(), path.end());
     return path;
   }
-  return {};
+  throw std::logic_error("the cost-to-go knows a path that the search does not find");
 }
 
 }  // namespace swivel

@@ -89,8 +89,9 @@ class Chords {
       const JointLimit& limit = lattice.chain().limit[j];
       if (!turns) largest = std::max({largest, std::abs(limit.lower), std::abs(limit.upper)});
     }
-    // Rounding of joints, their difference, its norm, and of exact costs to 2^-40: a few units of 2^-24 of each.
-    lost_ = 0x1p-20 * scales * (largest + kTwoPi) + 1e-10;
+    task_.unit = static_cast<float>(lattice.cost_unit());
+    // Rounding of joints, their difference, its norm, and of exact costs: a few units of 2^-24 of each.
+    lost_ = 0x1p-20 * scales * (largest + kTwoPi) + 1e-10 * lattice.cost_unit();
     fits_ = scales * (largest + kTwoPi) * lattice.layers() < 1e30;
     for (auto& layer : circles_) layer.resize(static_cast<std::size_t>(lattice.labels()));
   }

@@ -94,6 +94,7 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
     task.from[j] = from.nodes().q(label, j) + window + first;
     task.to[j] = to.nodes().q(other, j) + first;
   }
+  task.unit = lattice_->cost_unit();
   task.best = best;
   task.value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
   edges_ += static_cast<std::int64_t>(count) * task.offsets;

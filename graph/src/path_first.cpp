@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <deque>
+#include <stdexcept>
+
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -44,7 +46,10 @@ class Search {
       if (path.empty()) return {};
       ++counters.iterations;
       fail_first_.next_round();
+      const std::int64_t removed = togo_.removed();
       if (valid(path)) return {.stopped = false, .path = path, .cost = togo_.best()};
+      if (togo_.removed() == removed && !validity_.stopped())
+        throw std::logic_error("a round of the search removed nothing: it would never end");
       togo_.repair([this] { return validity_.stopped(); });
     }
   }
@@ -223,10 +228,12 @@ std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const
   for (;;) {
     const int optimistic = togo.deepest_reachable();
     if (optimistic < 0) return -1;
+    const std::int64_t removed = togo.removed();
     if (!togo.sweep(optimistic, [&] { return validity.stopped(); })) return std::nullopt;
     const SearchOutcome outcome = path_first(togo, validity, options, counters);
     if (outcome.stopped) return std::nullopt;
     if (!outcome.path.empty()) return optimistic;
+    if (togo.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }
 

@@ -57,6 +57,7 @@ void CostToGo::relax_removed(Block& block) {
 
 void CostToGo::remove_node(int layer, int slot) {
   verdict_[index(layer, slot)] = Verdict::kRemoved;
+  ++removed_;
   pending_[layer].nodes.push_back(slot);
 }
 
@@ -84,6 +85,7 @@ void CostToGo::keep_edge(int layer, int a, int b) {
 
 void CostToGo::remove_edge(int layer, int a, int b) {
   edge_verdict_[{static_cast<std::int64_t>(index(layer, a)), b}] = Verdict::kRemoved;
+  ++removed_;
   const double cost = lattice_->edge_cost(lattice_->delta(config(layer, a), config(layer + 1, b)));
   removed_edges_[layer].tails[a].push_back({b, cost});
   removed_edges_[layer].heads[b].push_back({a, cost});

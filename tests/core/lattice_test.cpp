@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 
 #include "robots.hpp"
@@ -118,6 +119,125 @@ TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {
       }
   }
   EXPECT_GT(images, 10);
+}
+
+/// The iiwa with joints 1, 3, 5, 7 between -limit and limit.
+TestRobot wide_iiwa(double limit) {
+  return with_limits(data_robot("iiwa14"), [&](int number, Joint& joint) {
+    if (number % 2 == 0) joint.lower = -limit, joint.upper = limit;
+  });
+}
+
+TEST(Lattice, LimitsRoundedUpGiveNoMoreWindings) {
+  Config q0;
+  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
+  const Config q1 = q0 + 0.05 * Config::Ones();
+  const Resolution resolution{.ds = 0.02, .dphi = 0.1, .dalpha = 0.1};
+  const auto windings = [&](double limit) { return Small(wide_iiwa(limit), q0, q1, resolution).lattice->windings(); };
+  EXPECT_EQ(windings(3.14159), 1);
+  EXPECT_EQ(windings(kPi), 1);
+  EXPECT_EQ(windings(3.1416), 1);
+  EXPECT_EQ(windings(kPi + 0.45e-3), 1);
+  EXPECT_EQ(windings(kPi + 0.55e-3), 16);
+  EXPECT_EQ(windings(6.28318531), 16);
+  EXPECT_EQ(windings(kTwoPi + 0.55e-3), 81);
+  // All nodes are the same but those in the sliver by which the ranges differ.
+  const Small exact(wide_iiwa(3.14159), q0, q1, resolution), rounded(wide_iiwa(3.1416), q0, q1, resolution);
+  int nodes = 0;
+  for (int layer = 0; layer < exact.lattice->layers(); ++layer)
+    for (int slot = 0; slot < exact.lattice->width(); ++slot) {
+      const auto q = exact.lattice->node(layer, slot);
+      const auto same = rounded.lattice->node(layer, slot);
+      if (same && same->cwiseAbs().maxCoeff() > 3.14159) continue;
+      ASSERT_EQ(q, same);
+      nodes += q.has_value();
+    }
+  EXPECT_GT(nodes, 1000);
+}
+
+TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
+  Random random(seed("Lattice.Sliver"));
+  int tried = 0, connected = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    const double limit = trial % 2 ? kPi + random.uniform(1e-6, 0.49e-3) : kTwoPi + random.uniform(1e-6, 0.49e-3);
+    const TestRobot robot = wide_iiwa(limit);
+    Config q0;
+    q0 << random.uniform(-1, 1), 0.7, random.uniform(-1, 1), -1.2, random.uniform(-1, 1), 0.9, random.uniform(-1, 1);
+    const int joint = 2 * random.below(4);
+    const double sign = random.coin() ? 1 : -1, sliver = 2 * limit - (trial % 2 ? kTwoPi : 2 * kTwoPi);
+    // At the limit, within the sliver, at its inner end.
+    const double inside = std::array{0.0, 0.5, 1.0}[static_cast<std::size_t>(random.below(3))] * sliver;
+    q0[joint] = sign * (limit - inside);
+    Config q1 = q0;
+    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.02, 0.02);
+    q1[joint] = q0[joint] - sign * 0.02;  // away from the limit
+    Small small(robot, q0, q1, {.ds = 0.005, .dphi = 0.02, .dalpha = 0.1});
+    small.problem.limits.joint_step = 0.2;
+    small.problem.start = q0;
+    small.rebuild();
+    const Lattice& lattice = *small.lattice;
+    ++tried;
+    ASSERT_EQ(lattice.node(0, lattice.start_slot()), q0);
+    bool any = false;
+    const Lattice::Run run = lattice.successors(0, lattice.start_slot());
+    for (int label = 0; label < lattice.labels() && !any; ++label)
+      for (int k = 0; k < run.count && !any; ++k) {
+        const auto q = lattice.node(1, label * lattice.angles() + (run.first + k) % lattice.angles());
+        any = q && lattice.step_allowed(0, lattice.delta(q0, *q));
+      }
+    EXPECT_TRUE(any) << "joint " << joint << " at " << q0[joint] << " of " << limit;
+    connected += any;
+  }
+  std::printf("%d starts, %d connected\n", tried, connected);
+  EXPECT_EQ(connected, tried);
+}
+
+TEST(Lattice, RangesOverSixtyFourTurnsAreContinuous) {
+  Config q0;
+  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.4;
+  const Resolution resolution{.ds = 0.02, .dphi = 0.1, .dalpha = 0.1};
+  const auto robot = [&](double lower, double upper) {
+    return with_limits(data_robot("iiwa14"), [&](int number, Joint& joint) {
+      if (number == 6) joint.lower = lower, joint.upper = upper;
+    });
+  };
+  for (const auto& [lower, upper] : {std::pair{-1e16, 1e16}, {-1e300, 1e308}, {-202.0, 202.0}, {-5.0, 1000.0}, {100.0, 600.0}}) {
+    Small small(robot(lower, upper), q0, q0 + 0.05 * Config::Ones(), resolution);
+    EXPECT_EQ(small.lattice->windings(), 1);
+    EXPECT_TRUE(small.lattice->continuous()[6]);
+    ASSERT_EQ(limit_warnings(small.arm.chain).size(), 1u);
+    EXPECT_NE(limit_warnings(small.arm.chain)[0].find("joint_a7"), std::string::npos);
+    int nodes = 0;
+    for (int slot = 0; slot < small.lattice->width(); ++slot)
+      if (const auto q = small.lattice->node(0, slot)) {
+        ++nodes;
+        EXPECT_GE((*q)[6], lower);
+        EXPECT_LE((*q)[6], upper);
+        if (lower < -200) {
+          EXPECT_LE(std::abs((*q)[6]), kPi);
+        }
+      }
+    EXPECT_GT(nodes, 50);
+  }
+  EXPECT_EQ(Small(robot(-200, 200), q0, q0 + 0.05 * Config::Ones(), resolution).lattice->windings(), 64);
+  EXPECT_THROW(Small(robot(1e15, 1e16), q0, q0 + 0.05 * Config::Ones(), resolution), InputError);
+  EXPECT_THROW(Small(robot(1e16, 1e16), q0, q0 + 0.05 * Config::Ones(), resolution), InputError);
+}
+
+TEST(Lattice, MoreThanOneThousandAndTwentyFourWindingsAreRefused) {
+  Config q0;
+  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.4;
+  const Resolution resolution{.ds = 0.02, .dphi = 0.1, .dalpha = 0.1};
+  EXPECT_EQ(Small(wide_iiwa(5 * kPi), q0, q0 + 0.05 * Config::Ones(), resolution).lattice->windings(), 625);
+  try {
+    Small(wide_iiwa(6 * kPi), q0, q0 + 0.05 * Config::Ones(), resolution);
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const char* needle : {"1296 windings", "joint_a1: 6", "joint_a3: 6", "joint_a5: 6", "joint_a7: 6", "1024"})
+      EXPECT_NE(message.find(needle), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
 }
 
 TEST(Lattice, CarriedReferenceKeepsNeighboursAlignedWhereTheLinePassesAxisOne) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "collision_validity.hpp"
@@ -47,7 +48,8 @@ Answer brute_force(const Problem& problem) {
     const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
     Config delta = qb - qa;
     for (int j = 0; j < kDof; ++j) {
-      if (robot.arm().chain.limit[static_cast<std::size_t>(j)].continuous) delta[j] = std::remainder(delta[j], kTwoPi);
+      const JointLimit& limit = robot.arm().chain.limit[static_cast<std::size_t>(j)];
+      if (limit.continuous || limit.wide()) delta[j] = std::remainder(delta[j], kTwoPi);
       if (std::abs(delta[j]) > problem.limits.joint_step) return std::nullopt;
     }
     if (!lattice.follows_path(layer, sa, qa, sb, qb)) return std::nullopt;
@@ -185,6 +187,156 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(continuous, count / 5);
   EXPECT_GE(started, count / 10);
   EXPECT_GE(detours, count / 20);
+}
+
+/// Weights of every size, some or all of them zero, in one table so that each kind is met equally often.
+enum class Weights { kAllZero, kSomeZero, kLeast, kMost, kBothEnds, kCount };
+
+void set_weights(Weights kind, Random& random, Cost& cost) {
+  for (double& weight : cost.weights) switch (kind) {
+      case Weights::kAllZero:
+        weight = 0;
+        break;
+      case Weights::kSomeZero:
+        weight = random.coin() ? 0 : random.uniform(0.1, 2);
+        break;
+      case Weights::kLeast:
+        weight = 1e-6 * random.uniform(1, 3);
+        break;
+      case Weights::kMost:
+        weight = 1e6 * random.uniform(0.3, 1);
+        break;
+      default:
+        weight = random.coin() ? 1e-6 : random.coin() ? 1e6 : 0;
+    }
+}
+
+TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
+  const std::uint64_t base = seed("Agreement.Weights");
+  const auto robots = all_robots();
+  constexpr int kKinds = static_cast<int>(Weights::kCount);
+  std::array<int, kKinds> solved{}, infeasible{};
+  const int count = trials(150);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial / kKinds) % robots.size()], random);
+    const auto kind = static_cast<std::size_t>(trial % kKinds);
+    problem.limits.step_error = std::nullopt;
+    if (random.coin(0.3)) problem.limits.joint_step = random.uniform(0.1, 0.4);  // where no path is, moves are what is missing
+    set_weights(static_cast<Weights>(kind), random, problem.cost);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
+                             problem.source + " kind " + std::to_string(kind);
+    const Answer truth = brute_force(problem);
+    (truth.solved ? solved : infeasible)[kind] += 1;
+    std::vector<PlanResult> results;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.timeout_s = 20;  // a search that never ends fails here
+      results.push_back(plan(problem, options));
+      ASSERT_EQ(results.back().status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible)
+          << what << " planner " << results.back().planner;
+      expect_same(results[0], results.back(), what + " planner " + results.back().planner);
+      if (HasFatalFailure()) return;
+    }
+    if (!truth.solved) {
+      ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+      continue;
+    }
+    ASSERT_EQ(results[0].cost, truth.cost) << what;
+    const PreparedRobot robot(problem);
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+    const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+    for (int i = 0; i < lattice.layers(); ++i)
+      ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)]))
+          << what;
+  }
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    std::printf("weights of kind %zu: %d solved, %d infeasible\n", kind, solved[kind], infeasible[kind]);
+    EXPECT_GE(solved[kind], count / 50);
+    EXPECT_GE(infeasible[kind], count / 50);
+  }
+}
+
+/// Ranges of a turn and a sliver, two turns and a sliver, and over 64 turns; a start at the limits, in the slivers and beside them.
+TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
+  const std::uint64_t base = seed("Agreement.Slivers");
+  int solved = 0, infeasible = 0, in_sliver = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const std::array slivers{random.uniform(0, 1e-3), random.uniform(0, 1e-3)};
+    const TestRobot robot = with_limits(windings_robot(), [&](int number, Joint& joint) {
+      if (number == 0) joint.lower = -kPi, joint.upper = kPi + slivers[0];
+      if (number == 4 && trial % 3 == 0) joint.lower = -1000, joint.upper = 3000;
+      if (number == 6) joint.lower = -kTwoPi, joint.upper = kTwoPi + slivers[1];
+    });
+    Problem problem = random_problem(robot, random);
+    const Chain chain = arm_of(robot).chain;
+    Config q = random_config(chain, random);
+    if (random.coin(0.8)) q[4] = random.uniform(-3, 3);
+    for (const int j : {0, 6}) {
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+      const double sliver = slivers[j == 0 ? 0 : 1];
+      if (random.coin(0.3))
+        q[j] = limit.lower + random.uniform(0, sliver);
+      else if (random.coin(0.6))
+        q[j] = limit.upper - random.uniform(0, sliver), ++in_sliver;
+    }
+    Config end = q;
+    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
+    problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(end))};
+    problem.limits.step_error = std::nullopt;
+    problem.limits.joint_margin = 0;
+    problem.limits.tool_path_error = 0.1;
+    problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 1));
+    problem.start = q;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const Answer truth = brute_force(problem);
+    (truth.solved ? solved : infeasible) += 1;
+    std::vector<PlanResult> results;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      results.push_back(plan(problem, options));
+      ASSERT_EQ(results.back().lattice.windings, 2) << what;
+      expect_same(results[0], results.back(), what + " planner " + results.back().planner);
+      if (HasFatalFailure()) return;
+    }
+    ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
+    ASSERT_EQ(results[0].warnings.empty(), trial % 3 != 0) << what;
+    if (!truth.solved) continue;
+    ASSERT_EQ(results[0].cost, truth.cost) << what;
+    ASSERT_EQ(results[0].trajectory[0].q, q) << what;
+    const CheckResult check = check_trajectory(problem, results[0].trajectory);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+  }
+  std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved, infeasible, in_sliver);
+  EXPECT_GE(solved, count / 4);
+  EXPECT_GE(in_sliver, count / 2);
+}
+
+TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {
+  const auto iiwa = [](double limit) {
+    return with_limits(data_robot("iiwa14"), [&](int number, Joint& joint) {
+      if (number % 2 == 0) joint.lower = -limit, joint.upper = limit;
+    });
+  };
+  const Chain chain = arm_of(iiwa(3)).chain;
+  Config q0, q1;
+  q0 << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
+  q1 << 0.5, 0.7, 0.1, -1.0, 0.3, 0.8, 0.2;
+  std::vector<PlanResult> results;
+  for (const double limit : {3.14159, 3.1416}) {
+    Problem problem = problem_for(iiwa(limit));
+    problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
+    results.push_back(plan(problem));
+    EXPECT_EQ(results.back().lattice.windings, 1);
+  }
+  ASSERT_EQ(results[0].status, PlanStatus::kSolved);
+  expect_same(results[0], results[1], "3.14159 and 3.1416");
 }
 
 class Experiments : public testing::TestWithParam<const char*> {};

@@ -18,6 +18,7 @@ struct RelaxTask {
   T scale[7];        ///< on each joint's move before the metric
   T bound[7];        ///< largest move of each joint; of doubles
   T turn[7];         ///< 2 pi for continuous joints, else 0
+  T unit;            ///< Lattice::cost_unit
   RelaxMetric metric;
   bool wraps;  ///< any joint is continuous
 };

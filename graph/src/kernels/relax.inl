@@ -120,16 +120,18 @@ inline V move(V from, V to, float turn) {
 }
 
 /// As many nodes as V has lanes, from the run's node `at`. Partners that better no lane's best are left before the root is drawn;
-/// the middle one, first, is mostly the best. `sure`: a measure of the move up to which every joint stays within its bound.
+/// the middle one, first, is mostly the best. `sure`: a measure of the move up to which every joint stays within its bound;
+/// negative where no measure tells.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
 inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
-  constexpr T kRounding = kSingle<T> ? T(1e-4) : T(1e-11);  // far above what the sum may lose
+  const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;  // far above what the sum may lose
+  const T shift = T(6144) * task.unit;
   V from[7];
   for (int j = 0; j < 7; ++j) from[j] = load<V>(task.from[j] + at);
   V best = load<V>(task.best + at);
   for (int turn = 0; turn < task.offsets; ++turn) {
     const int offset = task.offsets / 2 + (turn % 2 == 0 ? turn / 2 : -(turn + 1) / 2), partner = at + offset;
-    const V value = load<V>(task.value + partner), room = larger(V(best - value + kRounding), V{});
+    const V value = load<V>(task.value + partner), room = larger(V(best - value + rounding), V{});
     V step[7], x[7];
     for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], load<V>(task.to[j] + partner), task.turn[j]);
     for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
@@ -145,7 +147,7 @@ inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
     if (!any_less(measure, limit)) continue;
     V cost = measure;
     if constexpr (kMetric == RelaxMetric::kL2) cost = root(measure);
-    if constexpr (!kSingle<T>) cost = (cost + T(6144)) - T(6144);
+    if constexpr (!kSingle<T>) cost = (cost + shift) - shift;
     V total = cost + value;
     if constexpr (!kSingle<T>)
       if (any_less(V{} + sure, measure)) {
@@ -169,6 +171,8 @@ void relax_run(const RelaxTask<T>& task) {
   }
   sure *= T(1 - 1e-12);
   if (kMetric == RelaxMetric::kL2) sure *= sure;
+  // A joint of weight 0 moves at no cost, and a tiny product underflows: the measure then says nothing of the moves.
+  if (!(sure > T(1e-280))) sure = -1;
   int at = 0;
   for (; at + kLanes <= task.n; at += kLanes) relax_lanes<Lanes, kMetric, kWraps>(task, at, sure);
   if (at < task.n && task.n >= kLanes) {  // nodes relaxed twice come out the same

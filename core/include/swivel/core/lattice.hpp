@@ -57,13 +57,20 @@ class LayerNodes {
   std::vector<Offsets> offsets_;  // [label]
 };
 
+/// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as the range has turns, begun ones
+/// counted. A begun turn of up to 1e-3 rad, as limits written 3.1416 have it, is cut off at the upper end, or at the lower where a
+/// given start lies in it: no pose is lost by that, but joints do not move through the part that was cut off. A joint with a range
+/// of over 64 turns is treated as a continuous one (JointLimit::wide): its angles begin in the turn about 0, or in the nearest that
+/// leaves 31 turns to both limits.
+///
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
 /// nodes at each angle. design.md 1. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
 /// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
 /// asked.
 class Lattice {
  public:
-  /// Throws InputError when the start does not fit or the lattice is too large for the memory of the machine.
+  /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
+  /// of the machine.
   Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem);
 
   [[nodiscard]] int layers() const { return path_->size(); }
@@ -133,7 +140,7 @@ class Lattice {
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
-  /// Cost of a move, a multiple of 2^-40. Source: design.md 1 "Cost".
+  /// Cost of a move, a multiple of 2^-40 units. Source: design.md 1 "Cost".
   [[nodiscard]] double edge_cost(const Config& delta) const;
   /// Tool-path, tool-angle and step-error bounds of the joint-linear move from q0 (slot a) to q1 (slot b).
   [[nodiscard]] bool follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const;
@@ -142,12 +149,16 @@ class Lattice {
   [[nodiscard]] const std::array<bool, kDof>& continuous() const { return continuous_; }
   /// What each joint's move is multiplied by before the metric: the weights, or 1/speed for CostMetric::kTime.
   [[nodiscard]] const std::array<double, kDof>& cost_scale() const { return cost_scale_; }
+  /// The least power of two that no cost_scale() exceeds; 1 where all are 0. Costs are rounded in this unit, so sums of a path's
+  /// costs are exact whatever the size of the weights.
+  [[nodiscard]] double cost_unit() const { return cost_unit_; }
 
  private:
   struct Images {
     double base = 0, upper = 0;  // image 0 lies in [base, base + 2 pi); valid up to upper
     int count = 1;
   };
+  static Images images_between(double lower, double upper, double start);
   struct Start {
     int slot = 0;
     double phi = 0;
@@ -172,6 +183,7 @@ class Lattice {
   std::size_t tracks_ = 0;  // arrays in a LayerNodes
   std::array<bool, kDof> continuous_{};
   std::array<double, kDof> cost_scale_{};
+  double cost_unit_ = 1;
   std::vector<double> sine_, cosine_;  // of the grid angles, three times around
   std::vector<ArmPlane> planes_;
   std::vector<ReachStatus> reach_;

@@ -59,6 +59,8 @@ class CostToGo {
   [[nodiscard]] Verdict edge_verdict(int layer, int a, int b) const;
   void keep_edge(int layer, int a, int b);
   void remove_edge(int layer, int a, int b);
+  /// Nodes and edges removed so far.
+  [[nodiscard]] std::int64_t removed() const { return removed_; }
   /// Makes best() exact again after removals. False when `stop`, as in sweep(), said so.
   bool repair(const std::function<bool()>& stop = {});
 
@@ -169,7 +171,7 @@ class CostToGo {
   std::array<std::unique_ptr<Block>, 2> block_;
   std::vector<int> columns_;  // scratch of mark_reach
   LayerNodes scratch_;
-  std::int64_t ik_nodes_ = 0, edges_ = 0;
+  std::int64_t ik_nodes_ = 0, edges_ = 0, removed_ = 0;
 };
 
 }  // namespace swivel
