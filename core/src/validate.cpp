@@ -195,7 +195,8 @@ void validate_joint(const Field& field, const Joint& joint, const RobotModel& ro
   index("child_link", joint.child_link, robot.links.size());
   pose(field("origin"), joint.origin);
   if (!joint.movable()) return;
-  if (!(std::abs(joint.axis.norm() - 1) <= 1e-6)) fail(field("axis"), "is no unit vector", "a finite vector of length 1 within 1e-6");
+  if (!(std::abs(joint.axis.norm() - 1) <= 1e-6))
+    fail(field("axis"), "is no unit vector", "a finite vector of length 1 within 1e-6");
   if (!(joint.velocity >= 0)) fail(field("velocity"), "is negative or not a number", "a number >= 0, 0 for none");
   if (joint.type != Joint::Type::kContinuous && !(joint.lower <= joint.upper))
     fail(field("lower"), "is not a number up to `upper`", "lower <= upper");
@@ -231,7 +232,8 @@ void validate(const RobotModel& robot) {
     const Field field = root("links", k);
     if (link.parent_joint >= static_cast<int>(robot.joints.size()) ||
         (link.parent_joint >= 0 && robot.joints[static_cast<std::size_t>(link.parent_joint)].child_link != static_cast<int>(k)))
-      fail(field("parent_joint"), "is " + std::to_string(link.parent_joint), "the index of the joint that has this link as its child");
+      fail(field("parent_joint"), "is " + std::to_string(link.parent_joint),
+           "the index of the joint that has this link as its child");
     for (std::size_t i = 0; i < link.collision.size(); ++i) {
       shape(field("collision", i)("shape"), link.collision[i].shape);
       pose(field("collision", i)("pose"), link.collision[i].pose);

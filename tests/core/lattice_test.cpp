@@ -157,7 +157,7 @@ TEST(Lattice, LimitsRoundedUpGiveNoMoreWindings) {
 
 TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
   Random random(seed("Lattice.Sliver"));
-  int tried = 0, connected = 0;
+  int tried = 0, connected = 0, near_limit = 0;
   for (int trial = 0; trial < 40; ++trial) {
     const double limit = trial % 2 ? kPi + random.uniform(1e-6, 0.49e-3) : kTwoPi + random.uniform(1e-6, 0.49e-3);
     const TestRobot robot = wide_iiwa(limit);
@@ -187,9 +187,23 @@ TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
       }
     EXPECT_TRUE(any) << "joint " << joint << " at " << q0[joint] << " of " << limit;
     connected += any;
+    if (trial % 2 == 0) continue;
+    // The turn that is kept ends at the start's limit: nodes lie in the sliver there, and none in the other.
+    small.problem.resolution.dphi = 1e-3;
+    small.rebuild();
+    LayerNodes nodes;
+    small.lattice->solve(1, nodes);
+    for (int label = 0; label < small.lattice->labels(); ++label)
+      for (int j = 0; j < small.lattice->angles(); ++j) {
+        if (!nodes.valid(label, j)) continue;
+        const double from_limit = limit - sign * nodes.q(label, joint)[j];
+        ASSERT_LE(from_limit, kTwoPi + 3e-9);
+        near_limit += from_limit < sliver;
+      }
   }
-  std::printf("%d starts, %d connected\n", tried, connected);
+  std::printf("%d starts, %d connected, %d nodes in the slivers of those of one turn\n", tried, connected, near_limit);
   EXPECT_EQ(connected, tried);
+  EXPECT_GT(near_limit, 10);
 }
 
 TEST(Lattice, RangesOverSixtyFourTurnsAreContinuous) {

@@ -61,10 +61,12 @@ std::vector<Case> all_cases() {
   std::vector<Case> cases;
   const std::vector<double> not_positive{0, -1}, negative{-1}, none;
   const auto limit = [&](const char* name, auto member, const std::vector<double>& values) {
-    add_number(cases, std::string("limits.") + name, [=](Problem& p) -> double& { return p.limits.*member; }, values);
+    add_number(
+        cases, std::string("limits.") + name, [=](Problem& p) -> double& { return p.limits.*member; }, values);
   };
   const auto optional_limit = [&](const char* name, auto member, const std::vector<double>& values) {
-    add_number(cases, std::string("limits.") + name, [=](Problem& p) -> double& { return (p.limits.*member).emplace(); }, values);
+    add_number(
+        cases, std::string("limits.") + name, [=](Problem& p) -> double& { return (p.limits.*member).emplace(); }, values);
   };
   limit("clearance", &Limits::clearance, negative);
   limit("manipulability", &Limits::manipulability, negative);
@@ -78,42 +80,55 @@ std::vector<Case> all_cases() {
   optional_limit("tool_speed", &Limits::tool_speed, not_positive);
   optional_limit("tool_turn_speed", &Limits::tool_turn_speed, not_positive);
   optional_limit("edge_clearance", &Limits::edge_clearance, negative);
-  add_number(cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
+  add_number(
+      cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
   add_number(cases, "resolution.dphi", [](Problem& p) -> double& { return p.resolution.dphi; }, {0, -1, 6.3});
-  add_number(cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; }, not_positive);
+  add_number(
+      cases, "resolution.dalpha", [](Problem& p) -> double& { return p.resolution.dalpha; }, not_positive);
   for (std::size_t k : {0u, 6u}) {
     add_number(cases, "cost.weights[" + std::to_string(k) + "]", [=](Problem& p) -> double& { return p.cost.weights[k]; },
                {-1, 1e-7, 1.1e6, 1e160, 1e-300});
-    add_number(cases, "start[" + std::to_string(k) + "]",
-               [=](Problem& p) -> double& {
-                 if (!p.start) p.start = Config::Zero();
-                 return (*p.start)[static_cast<Eigen::Index>(k)];
-               },
-               none);
+    add_number(
+        cases, "start[" + std::to_string(k) + "]",
+        [=](Problem& p) -> double& {
+          if (!p.start) p.start = Config::Zero();
+          return (*p.start)[static_cast<Eigen::Index>(k)];
+        },
+        none);
   }
   for (int k = 0; k < 3; ++k) {
     const std::string at = "[" + std::to_string(k) + "]";
-    add_number(cases, "waypoints[1].position" + at, [=](Problem& p) -> double& { return p.waypoints[1].position[k]; }, none);
-    add_number(cases, "vary[0].xyz" + at, [=](Problem& p) -> double& { return p.vary[0].xyz[k]; }, negative);
-    add_number(cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; }, negative);
-    add_number(cases, "scene[0].shape.size" + at, [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
-               not_positive);
+    add_number(
+        cases, "waypoints[1].position" + at, [=](Problem& p) -> double& { return p.waypoints[1].position[k]; }, none);
+    add_number(
+        cases, "vary[0].xyz" + at, [=](Problem& p) -> double& { return p.vary[0].xyz[k]; }, negative);
+    add_number(
+        cases, "vary[0].rpy" + at, [=](Problem& p) -> double& { return p.vary[0].rpy[k]; }, negative);
+    add_number(
+        cases, "scene[0].shape.size" + at, [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
+        not_positive);
   }
   for (int k = 0; k < 4; ++k)
-    add_number(cases, "waypoints[0].orientation",
-               [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; }, {3});
-  add_number(cases, "scene[1].shape.radius", [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
-             not_positive);
-  add_number(cases, "scene[2].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
-             not_positive);
-  add_number(cases, "scene[2].shape.length", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
-             not_positive);
-  add_number(cases, "scene[3].shape.radius", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
-             not_positive);
-  add_number(cases, "scene[3].shape.length", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
-             not_positive);
-  add_number(cases, "attached[0].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
-             not_positive);
+    add_number(cases, "waypoints[0].orientation", [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; },
+               {3});
+  add_number(
+      cases, "scene[1].shape.radius", [](Problem& p) -> double& { return std::get<Sphere>(p.scene[1].shape).radius; },
+      not_positive);
+  add_number(
+      cases, "scene[2].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).radius; },
+      not_positive);
+  add_number(
+      cases, "scene[2].shape.length", [](Problem& p) -> double& { return std::get<Cylinder>(p.scene[2].shape).length; },
+      not_positive);
+  add_number(
+      cases, "scene[3].shape.radius", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).radius; },
+      not_positive);
+  add_number(
+      cases, "scene[3].shape.length", [](Problem& p) -> double& { return std::get<Capsule>(p.scene[3].shape).length; },
+      not_positive);
+  add_number(
+      cases, "attached[0].shape.radius", [](Problem& p) -> double& { return std::get<Cylinder>(p.attached[0].shape).radius; },
+      not_positive);
   const std::pair<const char*, std::function<Pose&(Problem&)>> poses[] = {
       {"tool", [](Problem& p) -> Pose& { return p.tool; }},
       {"scene[1].pose", [](Problem& p) -> Pose& { return p.scene[1].pose; }},
@@ -122,37 +137,39 @@ std::vector<Case> all_cases() {
     const auto pose = member;
     for (int row = 0; row < 4; ++row)
       for (int column = 0; column < 4; ++column)
-        add_number(cases, field, [=](Problem& p) -> double& { return pose(p).matrix()(row, column); },
-                   row == 3 || column < 3 ? std::vector<double>{2, 1 - 1e-5 * (row == column)} : none);
+        add_number(
+            cases, field, [=](Problem& p) -> double& { return pose(p).matrix()(row, column); },
+            row == 3 || column < 3 ? std::vector<double>{2, 1 - 1e-5 * (row == column)} : none);
     cases.push_back({field, [=](Problem& p) { pose(p).matrix().topLeftCorner<3, 3>() *= -1; }});  // a mirror
     cases.push_back({field, [=](Problem& p) { pose(p).matrix().setZero(); }});
   }
-  add_number(cases, "hold.joint", [](Problem& p) -> double& { return p.hold["joint"]; }, none);
+  add_number(
+      cases, "hold.joint", [](Problem& p) -> double& { return p.hold["joint"]; }, none);
   const auto mesh = [](Problem& p) {
     auto copy = std::make_shared<TriangleMesh>(*std::get<MeshPtr>(p.scene[4].shape));
     p.scene[4].shape = MeshPtr(copy);
     return copy;
   };
   for (int k = 0; k < 3; ++k)
-    add_number(cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; }, none);
+    add_number(
+        cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; }, none);
   for (const int corner : {-1, 8, std::numeric_limits<int>::max()})
     cases.push_back({"scene[4].shape", [=](Problem& p) { mesh(p)->triangles[3][1] = corner; }});
-  cases.insert(cases.end(),
-               {{"robot", [](Problem& p) { p.robot = nullptr; }},
-                {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "grip"; }},
-                {"scene[1].name", [](Problem& p) { p.scene[1].name = "base_link"; }},
-                {"scene[0].allow[1]", [](Problem& p) { p.scene[0].allow[1] = "hand"; }},
-                {"scene[0].allow[0]", [](Problem& p) { p.scene[0].allow[0] = ""; }},
-                {"attached[0].name", [](Problem& p) { p.attached[0].name = ""; }},
-                {"attached[0].name", [](Problem& p) { p.attached[0].name = "link_3"; }},
-                {"attached[1].name", [](Problem& p) { p.attached.push_back(p.attached[0]); }},
-                {"attached[0].link", [](Problem& p) { p.attached[0].link = ""; }},
-                {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
-                {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
-                {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
+  cases.insert(cases.end(), {{"robot", [](Problem& p) { p.robot = nullptr; }},
+                             {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
+                             {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
+                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
+                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "grip"; }},
+                             {"scene[1].name", [](Problem& p) { p.scene[1].name = "base_link"; }},
+                             {"scene[0].allow[1]", [](Problem& p) { p.scene[0].allow[1] = "hand"; }},
+                             {"scene[0].allow[0]", [](Problem& p) { p.scene[0].allow[0] = ""; }},
+                             {"attached[0].name", [](Problem& p) { p.attached[0].name = ""; }},
+                             {"attached[0].name", [](Problem& p) { p.attached[0].name = "link_3"; }},
+                             {"attached[1].name", [](Problem& p) { p.attached.push_back(p.attached[0]); }},
+                             {"attached[0].link", [](Problem& p) { p.attached[0].link = ""; }},
+                             {"attached[0].link", [](Problem& p) { p.attached[0].link = "hand"; }},
+                             {"path_frame", [](Problem& p) { p.path_frame = "door"; }},
+                             {"vary[0].object", [](Problem& p) { p.vary[0].object = "door"; }}});
   return cases;
 }
 
@@ -219,9 +236,18 @@ TEST(Validate, RobotModelsThatAreNone) {
       {"joints[1].origin", [](RobotModel& r) { r.joints[1].origin.translation()[2] = kNaN; }},
       {"joints[1].parent_link", [](RobotModel& r) { r.joints[1].parent_link = 99; }},
       {"joints[1].child_link", [](RobotModel& r) { r.joints[1].child_link = -1; }},
-      {"joints[1].mimic.joint", [](RobotModel& r) { r.joints[1].mimic = Joint::Mimic{99, 1, 0}; }},
-      {"joints[1].mimic.multiplier", [](RobotModel& r) { r.joints[1].mimic = Joint::Mimic{0, kNaN, 0}; }},
-      {"joints[1].mimic.offset", [](RobotModel& r) { r.joints[1].mimic = Joint::Mimic{0, 1, kInf}; }},
+      {"joints[1].mimic.joint",
+       [](RobotModel& r) {
+         r.joints[1].mimic = Joint::Mimic{99, 1, 0};
+       }},
+      {"joints[1].mimic.multiplier",
+       [](RobotModel& r) {
+         r.joints[1].mimic = Joint::Mimic{0, kNaN, 0};
+       }},
+      {"joints[1].mimic.offset",
+       [](RobotModel& r) {
+         r.joints[1].mimic = Joint::Mimic{0, 1, kInf};
+       }},
       {"joints[1].name", [](RobotModel& r) { r.joints[1].name = r.joints[0].name; }},
       {"links[2].name", [](RobotModel& r) { r.links[2].name = ""; }},
       {"links[2].parent_joint", [](RobotModel& r) { r.links[2].parent_joint = 99; }},
@@ -260,11 +286,17 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
       {"tip_link", [](Problem& p) { p.tip_link = "link_7"; }},
       {"tool", [](Problem& p) { p.tool.translation().z() += 1e-9; }},
       {"hold", [](Problem& p) { p.hold["joint"] = 0; }},
-      {"attached", [](Problem& p) { p.attached[0].shape = Cylinder{0.01, 0.3}; }},
+      {"attached",
+       [](Problem& p) {
+         p.attached[0].shape = Cylinder{0.01, 0.3};
+       }},
       {"attached", [](Problem& p) { p.attached[0].pose.translation().x() += 0.1; }},
       {"attached", [](Problem& p) { p.attached[0].link = "link_7"; }},
       {"attached", [](Problem& p) { p.attached[0].name = "hand", p.scene[0].allow = {}; }},
-      {"attached", [](Problem& p) { p.attached.push_back({"more", Sphere{0.01}, Pose::Identity(), "tool0"}); }},
+      {"attached",
+       [](Problem& p) {
+         p.attached.push_back({"more", Sphere{0.01}, Pose::Identity(), "tool0"});
+       }},
       {"attached", [](Problem& p) { p.attached.clear(), p.scene[0].allow = {}; }},
       {"limits.clearance", [](Problem& p) { p.limits.clearance = 0.02; }},
       {"limits.clearance", [](Problem& p) { p.limits.edge_clearance = 0.03; }},
@@ -273,9 +305,9 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   for (const auto& [what, changes] : others) {
     Problem other = good;
     changes(other);
-    for (const std::string& message :
-         {message_of([&] { (void)plan(robot, other); }),
-          message_of([&] { run_campaign(robot, other, {.episodes = 1}, [](const EpisodeRow&) {}); })}) {
+    for (const std::string& message : {message_of([&] { (void)plan(robot, other); }), message_of([&] {
+                                         run_campaign(robot, other, {.episodes = 1}, [](const EpisodeRow&) {});
+                                       })}) {
       EXPECT_NE(message.find(std::string(": ") + what), std::string::npos) << what << ": " << message;
       EXPECT_NE(message.find("prepared for"), std::string::npos) << message;
     }
