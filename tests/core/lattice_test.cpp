@@ -355,6 +355,32 @@ TEST(Lattice, CostsAreMultiplesOfTwoToTheMinusForty) {
   }
 }
 
+TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
+  const TestRobot robot = data_robot("iiwa14");
+  Random random(seed("Lattice.CostUnit"));
+  const Config q0 = random_config(arm_of(robot).chain, random);
+  Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
+  EXPECT_EQ(small.lattice->cost_unit(), 1);
+  for (const CostMetric metric : {CostMetric::kL2, CostMetric::kMax})
+    for (int trial = 0; trial < 100; ++trial) {
+      small.problem.cost.metric = metric;
+      for (double& weight : small.problem.cost.weights) weight = random.coin(0.3) ? 0 : random.uniform(0, 1);
+      small.rebuild();
+      const Lattice plain = *small.lattice;
+      const double factor = std::exp2(random.below(41) - 20);
+      for (double& weight : small.problem.cost.weights) weight *= factor;
+      small.rebuild();
+      const double largest = *std::max_element(small.problem.cost.weights.begin(), small.problem.cost.weights.end());
+      if (largest > 0) {
+        EXPECT_GE(small.lattice->cost_unit(), largest);
+        EXPECT_LT(small.lattice->cost_unit(), 2 * largest);
+      }
+      Config delta;
+      for (int j = 0; j < kDof; ++j) delta[j] = random.uniform(-0.5, 0.5);
+      EXPECT_EQ(small.lattice->edge_cost(delta), factor * plain.edge_cost(delta));
+    }
+}
+
 TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   // Held against differences ten times as wide and a least-squares projection.
   const TestRobot robot = data_robot("iiwa14");

@@ -64,7 +64,7 @@ struct Resolution {
 
 struct Cost {
   CostMetric metric = CostMetric::kL2;
-  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};
+  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};  ///< 0, or 1e-6 to 1e6
 };
 
 /// Uniform offsets of one scene object for campaign episodes, half-widths. design.md 4.
