@@ -7,14 +7,23 @@ import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-/** Calls back with { browser, folder (for files), open, shoot }; ends with code 77 (skipped) where there is no browser. */
+const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
+
+/** Ends with code 77 (skipped), but where CI is set with 1. */
+export function skip(why) {
+  console.log(why);
+  process.exit(process.env.CI ? 1 : 77);
+}
+
+export function needBrowser() {
+  if (!existsSync(browserFile)) skip(`no browser at ${browserFile}`);
+}
+
+/** Calls back with { browser, folder (for files), open, shoot }; skips where there is no browser or nothing to drive it. */
 export async function withBrowser({ packages, shots }, test) {
+  needBrowser();
+  if (!existsSync(join(packages, 'node_modules/playwright-core'))) skip(`no playwright-core in ${packages}: report.packages fetches it`);
   const { chromium } = createRequire(join(packages, 'package.json'))('playwright-core');
-  const browserFile = process.env.CHROMIUM ?? '/usr/bin/chromium';
-  if (!existsSync(browserFile)) {
-    console.log(`no browser at ${browserFile}`);
-    process.exit(process.env.CI ? 1 : 77);
-  }
   const folder = mkdtempSync(join(tmpdir(), 'swivel-page-'));
   const browser = await chromium.launch({ executablePath: browserFile, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
