@@ -76,6 +76,7 @@ function(swivel_install_package)
                                 INSTALL_DESTINATION ${folder})
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(EXPORT swivelTargets NAMESPACE swivel:: DESTINATION ${folder} COMPONENT dev)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/swivelConfig.cmake ${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake DESTINATION ${folder}
           COMPONENT dev)
 endfunction()

@@ -1,12 +1,39 @@
-file(REMOVE_RECURSE ${SCRATCH})
-foreach(step
-    "${CMAKE_COMMAND};--install;${BUILD};--prefix;${SCRATCH}/prefix"
-    "${CMAKE_COMMAND};-G;Ninja;-S;${CONSUMER};-B;${SCRATCH}/build;-DCMAKE_PREFIX_PATH=${SCRATCH}/prefix;-DCMAKE_CXX_COMPILER=${CXX}"
-    "${CMAKE_COMMAND};--build;${SCRATCH}/build"
-    "${SCRATCH}/build/consumer")
-  execute_process(COMMAND ${step} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
+# Installs BUILD under SCRATCH, looks at what was installed, and builds a stranger's project against it.
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT code EQUAL 0)
-    message(FATAL_ERROR "${step}\nended with ${code}:\n${output}")
+    message(FATAL_ERROR "${ARGN}\nended with ${code}:\n${output}")
+  endif()
+endfunction()
+
+file(REMOVE_RECURSE ${SCRATCH})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${SCRATCH}/prefix)
+
+# Targets of other packages: each must be asked for by name, since what one package finds for another differs between systems.
+file(GLOB_RECURSE targets ${SCRATCH}/prefix/*/swivelTargets.cmake)
+file(GLOB_RECURSE config ${SCRATCH}/prefix/*/swivelConfig.cmake)
+file(READ ${targets} text)
+file(READ ${config} asked)
+string(REGEX MATCHALL "[A-Za-z0-9_-]+::" packages "${text}")
+list(TRANSFORM packages REPLACE "::" "")
+list(REMOVE_DUPLICATES packages)
+list(REMOVE_ITEM packages swivel)
+list(LENGTH packages count)
+if(count LESS 5)
+  message(FATAL_ERROR "found but ${count} packages in ${targets}: ${packages}")
+endif()
+foreach(package IN LISTS packages)
+  if(NOT asked MATCHES "find_dependency\\(${package}[ )]")
+    message(SEND_ERROR "swivelTargets.cmake names ${package}::..., which swivelConfig.cmake does not find")
   endif()
 endforeach()
+
+file(GLOB_RECURSE notices RELATIVE ${SCRATCH}/prefix ${SCRATCH}/prefix/share/doc/*)
+if(NOT notices MATCHES "LICENSE" OR (PAGES AND NOT notices MATCHES "THIRD-PARTY.txt"))
+  message(SEND_ERROR "licences are missing among what is installed: ${notices}")
+endif()
+
+run(${CMAKE_COMMAND} -G Ninja -S ${CONSUMER} -B ${SCRATCH}/build -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix -DCMAKE_CXX_COMPILER=${CXX})
+run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
+run(${SCRATCH}/build/consumer)
 file(REMOVE_RECURSE ${SCRATCH})
