@@ -31,7 +31,6 @@ PlanOptions options_for(PlannerKind planner, int threads) {
   PlanOptions options;
   options.planner = planner;
   options.threads = threads;
-  options.report = false;
   return options;
 }
 

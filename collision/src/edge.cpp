@@ -19,7 +19,8 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1) const {
   return n;
 }
 
-std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
+std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
+                                     const Budget& budget) {
   const std::int64_t leaves = rule.midpoints(q0, q1);
   const double step = rule.motion(q0, q1) / static_cast<double>(leaves);
   const Config delta = q1 - q0;
@@ -30,6 +31,7 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
     const double half_bound = step * static_cast<double>(size) / 2;
     next.clear();
     for (const std::int64_t first : open) {
+      budget.poll();
       const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {

@@ -73,7 +73,8 @@ std::vector<BodyPair> candidate_robot_pairs(const RobotModel& robot, const std::
 }
 
 std::vector<BodyPair> drop_always_near(std::vector<BodyPair> pairs, bool has_srdf, const Chain& chain,
-                                       const std::vector<RobotBody>& bodies, const std::vector<FclShape>& shapes, double d) {
+                                       const std::vector<RobotBody>& bodies, const std::vector<FclShape>& shapes, double d,
+                                       const Budget& budget) {
   constexpr int kSamples = 1000;
   const auto body = [&](int i) -> const RobotBody& { return bodies[static_cast<std::size_t>(i)]; };
   const auto split = std::stable_partition(
@@ -87,6 +88,7 @@ std::vector<BodyPair> drop_always_near(std::vector<BodyPair> pairs, bool has_srd
     const auto moved = chain.displacements(random_config(chain, random));
     const auto pose = [&](int i) { return Pose(moved[static_cast<std::size_t>(body(i).group)] * body(i).pose); };
     const auto near = [&](const BodyPair& p) {
+      budget.poll();
       const Pose at_a = pose(p.a), at_b = pose(p.b);
       return test.below({&shapes[static_cast<std::size_t>(p.a)], &at_a}, {&shapes[static_cast<std::size_t>(p.b)], &at_b}, d);
     };

@@ -14,6 +14,6 @@ namespace swivel {
 /// attached body (which no SRDF knows). They are too near by design, not by motion.
 [[nodiscard]] std::vector<BodyPair> drop_always_near(std::vector<BodyPair> pairs, bool has_srdf, const Chain& chain,
                                                      const std::vector<RobotBody>& bodies, const std::vector<FclShape>& shapes,
-                                                     double d);
+                                                     double d, const Budget& budget = {});
 
 }  // namespace swivel

@@ -24,14 +24,17 @@ struct RobotPart {
 };
 
 std::shared_ptr<const RobotPart> make_robot_part(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
-                                                 MeshStore& meshes) {
+                                                 MeshStore& meshes, const Budget& budget) {
   auto part = std::make_shared<RobotPart>();
   part->chain = arm.chain;
   part->bodies = robot_bodies(robot, arm, problem.attached);
-  for (const RobotBody& body : part->bodies) part->shapes.push_back(make_fcl_shape(body.shape, meshes));
+  for (const RobotBody& body : part->bodies) {
+    budget.poll();
+    part->shapes.push_back(make_fcl_shape(body.shape, meshes));
+  }
   const double near = std::max(problem.limits.clearance, problem.limits.d_edge() + problem.limits.edge_tolerance);
-  part->pairs =
-      drop_always_near(candidate_robot_pairs(robot, part->bodies), robot.has_srdf, part->chain, part->bodies, part->shapes, near);
+  part->pairs = drop_always_near(candidate_robot_pairs(robot, part->bodies), robot.has_srdf, part->chain, part->bodies,
+                                 part->shapes, near, budget);
   return part;
 }
 
@@ -51,12 +54,13 @@ struct World::Impl {
   std::vector<std::string> warnings;
 
   Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene,
-       const Impl* like = nullptr)
+       const Budget& budget, const Impl* like = nullptr)
       : robot(std::move(robot_part)), meshes(std::move(store)), pairs(robot->pairs) {
     const Span span("world");
     for (std::size_t i = 0; i < robot->bodies.size(); ++i)
       add(robot->bodies[i].name, {robot->shapes[i], robot->bodies[i].group, robot->bodies[i].pose});
     for (const SceneObject& object : scene) {
+      budget.poll();
       const Body* known = like ? like->scene_body(object.shape) : nullptr;
       add(object.name, {known ? known->shape : make_fcl_shape(object.shape, *meshes), 0, object.pose});
       const int index = static_cast<int>(bodies.size()) - 1;
@@ -107,13 +111,13 @@ struct World::Impl {
   }
 };
 
-World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem) {
+World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
   auto meshes = std::make_shared<MeshStore>();
-  auto part = make_robot_part(robot, arm, problem, *meshes);
-  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene);
+  auto part = make_robot_part(robot, arm, problem, *meshes, budget);
+  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, budget);
 }
-World::World(const World& like, const std::vector<SceneObject>& scene)
-    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_.get())) {}
+World::World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget)
+    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, budget, like.impl_.get())) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

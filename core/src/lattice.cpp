@@ -57,7 +57,7 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem)
+Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
     : id_(next_id()), chain_(&chain), arm_(&arm), path_(&path), limits_(problem.limits), cost_(problem.cost) {
   const Span span("lattice");
   const Resolution& resolution = problem.resolution;
@@ -135,6 +135,7 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   reach_.reserve(m);
   circles_.resize(m);
   for (int i = 0; i < layers(); ++i) {
+    if (i % 64 == 0) budget.poll();
     const Pose& tool = path.layer(i).tool;
     planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
     reach_.push_back(reach_status(arm, planes_.back().reach));
@@ -431,17 +432,18 @@ bool Lattice::manipulable(const Config& q) const {
 Lattice::NodeFault Lattice::fault(int layer, int slot) const {
   NodeFault fault;
   const bool given = layer == 0 && start_;
-  if (given && slot != start_->slot) return {NodeStatus::kNoIk, 0};
+  if (given && slot != start_->slot) return {NodeStatus::kNoIk};
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
-  if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk, 0};
-  if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular, 0};
+  if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
+  if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
   Config q = given ? start_->q : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
   if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine)
-    return {NodeStatus::kSingular, 0};
+    return {NodeStatus::kSingular};
   if (given) return fault;
   const auto polished =
       polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
-  if (!polished) return {NodeStatus::kNoIk, 0};
+  if (!polished) return {NodeStatus::kNoIk};
+  fault.q = *polished;
   const int winding = label_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];

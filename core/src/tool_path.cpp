@@ -27,7 +27,8 @@ Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
 
 }  // namespace
 
-ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source) {
+ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
+                   const Budget& budget) {
   constexpr double kSame = 1e-9;
   constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
   const auto pose = [](const Vector3d& p, const Quaterniond& q) {
@@ -58,6 +59,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
                        " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
     for (int step = 1; step <= steps; ++step) {
+      if (layers_.size() % 1024 == 0) budget.poll();
       PathLayer& previous = layers_.back();
       previous.step_length = length / steps;
       previous.step_angle = angle / steps;

@@ -70,10 +70,11 @@ struct Found {
 struct Visitor : boost::default_astar_visitor {
   int goal_layer;
   std::int64_t* expansions;
-  Visitor(int goal, std::int64_t* count) : goal_layer(goal), expansions(count) {}
+  const Budget* budget;
+  Visitor(int goal, std::int64_t* count, const Budget* b) : goal_layer(goal), expansions(count), budget(b) {}
   void examine_vertex(Vertex v, const ImplicitLattice& g) const {
     if (v == g.root()) return;
-    ++*expansions;
+    if (++*expansions % 16 == 0) budget->poll();
     if (g.layer_of(v) == goal_layer) throw Found{v};  // the one way out of a Boost.Graph search
   }
 };
@@ -95,7 +96,7 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
   record(records, root).distance = 0;
   record(records, root).rank = {cost_to_go.best(), 0};
   try {
-    boost::astar_search_no_init(graph, root, heuristic, Visitor(cost_to_go.goal_layer(), &expansions),
+    boost::astar_search_no_init(graph, root, heuristic, Visitor(cost_to_go.goal_layer(), &expansions, &cost_to_go.budget()),
                                 Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
                                 Field<double, &Record::distance>{&records}, ImplicitCostMap{},
                                 Field<boost::default_color_type, &Record::color>{&records},

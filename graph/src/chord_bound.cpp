@@ -74,8 +74,8 @@ struct Circle {
 
 class Chords {
  public:
-  Chords(const Lattice& lattice, int stride)
-      : lattice_(lattice), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
+  Chords(const Lattice& lattice, int stride, const Budget& budget)
+      : lattice_(lattice), budget_(budget), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task_.wraps = false;
@@ -108,6 +108,7 @@ class Chords {
     for (int label = 0; label < lattice_.labels(); ++label) {
       Circle& here = circle(0, label);
       if (!here.alive) continue;
+      budget_.poll();
       float* best = row + static_cast<std::ptrdiff_t>(label) * n_;
       if (first) std::fill_n(best, n_, 0.0F);
       for (int run = 0; !first && run < runs(); ++run) {
@@ -214,6 +215,7 @@ class Chords {
   }
 
   const Lattice& lattice_;
+  const Budget& budget_;
   int n_, window_;
   RelaxTask<float> task_;
   double lost_ = 0;
@@ -225,9 +227,10 @@ class Chords {
 
 }  // namespace
 
-ChordBound::ChordBound(const Lattice& lattice) : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
+ChordBound::ChordBound(const Lattice& lattice, const Budget& budget)
+    : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const Span span("chord bound");
-  Chords chords(lattice, stride_);
+  Chords chords(lattice, stride_, budget);
   if (!chords.fits()) return;
   const int coarse = (last_ + stride_ - 1) / stride_ + 1;
   rows_.resize(static_cast<std::size_t>(coarse) * static_cast<std::size_t>(width_));

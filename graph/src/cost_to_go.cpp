@@ -23,8 +23,9 @@ void each(int count, const F& f) {
 
 }  // namespace
 
-CostToGo::CostToGo(const Lattice& lattice, Extent extent)
+CostToGo::CostToGo(const Lattice& lattice, Extent extent, const Budget& budget)
     : lattice_(&lattice),
+      budget_(budget),
       bounded_(extent == Extent::kBounded),
       cell_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0),
       verdict_(static_cast<std::size_t>(lattice.nodes()), Verdict::kUnknown) {
@@ -96,24 +97,22 @@ void CostToGo::load(int layer, const Marks& columns, Block& block) {
   settle(block);
 }
 
-bool CostToGo::sweep(int goal_layer, const std::function<bool()>& stop) {
+void CostToGo::sweep(int goal_layer) {
   goal_ = goal_layer;
   limit_ = kUnreachable;
   bool hopeless = false;
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
   if (!hopeless && bounded_ && goal_layer == lattice_->layers() - 1) {
     if (!chords_) {
-      chords_ = std::make_unique<ChordBound>(*lattice_);
+      chords_ = std::make_unique<ChordBound>(*lattice_, budget_);
       ik_nodes_ += chords_->ik_nodes();
     }
     hopeless = chords_->best() == kUnreachable;
     if (!hopeless) raise_limit();
   }
-  if (hopeless) {
-    forget();
-    return true;
-  }
-  return sweep_once(stop) && make_exact(stop);
+  if (hopeless) return forget();
+  sweep_once();
+  make_exact();
 }
 
 void CostToGo::raise_limit() {
@@ -128,12 +127,11 @@ void CostToGo::raise_limit() {
   limit_ = kUnreachable;
 }
 
-bool CostToGo::make_exact(const std::function<bool()>& stop) {
+void CostToGo::make_exact() {
   while (limit_ != kUnreachable && !(best() <= limit_)) {
     raise_limit();
-    if (!sweep_once(stop)) return false;
+    sweep_once();
   }
-  return true;
 }
 
 void CostToGo::start_from(int layer, Block& block) {
@@ -153,7 +151,7 @@ void CostToGo::forget() {
   cells_.resize(1);
 }
 
-bool CostToGo::sweep_once(const std::function<bool()>& stop) {
+void CostToGo::sweep_once() {
   const Span span("sweep");
   forget();
   Block* next = block_[0].get();
@@ -163,7 +161,6 @@ bool CostToGo::sweep_once(const std::function<bool()>& stop) {
   settle(*next);
   store(*next);
   for (int layer = goal_ - 1; layer >= 0 && !next->labels.empty(); --layer) {
-    if (stop && stop()) return false;
     if (layer == 0 && lattice_->has_start()) {
       const double value = relax_one(0, lattice_->start_slot());
       if (value <= limit_) cell_value(0, lattice_->start_slot()) = value;
@@ -179,7 +176,6 @@ bool CostToGo::sweep_once(const std::function<bool()>& stop) {
     store(*here);
     std::swap(here, next);
   }
-  return true;
 }
 
 double CostToGo::best() const {

@@ -5,6 +5,7 @@
 #include <boost/graph/astar_search.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
+#include <boost/iterator/transform_iterator.hpp>
 
 #include "swivel/core/timeline.hpp"
 #include "valid_nodes.hpp"
@@ -30,7 +31,17 @@ struct Built {
   }
 };
 
-Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, EagerOutcome& outcome) {
+struct PollingEdges {
+  using Ends = std::pair<std::size_t, std::size_t>;
+  const Budget* budget;
+  mutable int count = 0;
+  const Ends& operator()(const Ends& edge) const {
+    if (++count % 4096 == 0) budget->poll();
+    return edge;
+  }
+};
+
+Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
   const Span span("all edges");
   Built built;
   std::size_t vertices = 1;
@@ -49,7 +60,7 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
   std::vector<std::uint8_t> answers;
   std::vector<std::pair<std::size_t, std::size_t>> candidate_ends;
   std::vector<EdgeCost> candidate_costs;
-  for (int layer = 0; layer + 1 < lattice.layers() && !validity.stopped(); ++layer) {
+  for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
     const std::vector<int> index = index_by_slot(lattice, next);
@@ -57,6 +68,7 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
     candidate_ends.clear();
     candidate_costs.clear();
     for (std::size_t a = 0; a < valid.layers[i].size(); ++a) {
+      if (a % 16 == 0) budget.poll();
       const ValidNodes::Node& node = valid.layers[i][a];
       for_each_successor(lattice, layer, node, next, index, outcome.edges, [&](int b, const Config& delta) {
         const auto& head = next[static_cast<std::size_t>(b)];
@@ -76,8 +88,9 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
     }
     built.least_before[i + 1] = built.least_before[i] + (least == kUnreachable ? 0.0 : least);
   }
-  if (!validity.stopped())
-    built.graph = Graph(boost::edges_are_unsorted_multi_pass, ends.begin(), ends.end(), costs.begin(), vertices);
+  const PollingEdges polled{&budget};  // Boost reads the edges several times over, which takes seconds where there are many
+  built.graph = Graph(boost::edges_are_unsorted_multi_pass, boost::make_transform_iterator(ends.begin(), polled),
+                      boost::make_transform_iterator(ends.end(), polled), costs.begin(), vertices);
   return built;
 }
 
@@ -88,10 +101,11 @@ struct AStarVisitor : boost::default_astar_visitor {
   const std::vector<double>* distance;
   double* optimum;
   std::int64_t* expansions;
-  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e)
-      : built(b), distance(d), optimum(o), expansions(e) {}
+  const Budget* budget;
+  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e, const Budget* w)
+      : built(b), distance(d), optimum(o), expansions(e), budget(w) {}
   void examine_vertex(Vertex v, const Graph&) const {
-    ++*expansions;
+    if (++*expansions % 256 == 0) budget->poll();
     if (v == 0) return;
     const std::size_t layer = built->layer_of(v);
     const double total = (*distance)[v] + built->least_before[layer];
@@ -100,7 +114,17 @@ struct AStarVisitor : boost::default_astar_visitor {
   }
 };
 
-std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOutcome& outcome) {
+/// Polls as a search goes.
+struct PollingVisitor : boost::default_dijkstra_visitor {
+  const Budget* budget;
+  mutable int count = 0;
+  explicit PollingVisitor(const Budget* b) : budget(b) {}
+  void examine_vertex(Vertex, const Graph&) const {
+    if (++count % 256 == 0) budget->poll();
+  }
+};
+
+std::vector<double> costs_to_go(const Built& built, EagerSearch search, const Budget& budget, EagerOutcome& outcome) {
   const Span span("graph search");
   const Graph& graph = built.graph;
   std::vector<double> distance(num_vertices(graph), kUnreachable);
@@ -108,8 +132,9 @@ std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOut
   const auto distance_map = boost::make_iterator_property_map(distance.begin(), index);
   const auto weight = get(&EdgeCost::cost, graph);
   if (search == EagerSearch::kDijkstra) {
-    boost::dijkstra_shortest_paths(graph, Vertex{0},
-                                   boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable));
+    boost::dijkstra_shortest_paths(
+        graph, Vertex{0},
+        boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable).visitor(PollingVisitor(&budget)));
     outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
     return distance;
   }
@@ -121,7 +146,7 @@ std::vector<double> costs_to_go(const Built& built, EagerSearch search, EagerOut
                         boost::weight_map(weight)
                             .distance_map(distance_map)
                             .distance_inf(kUnreachable)
-                            .visitor(AStarVisitor(&built, &distance, &optimum, &outcome.expansions)));
+                            .visitor(AStarVisitor(&built, &distance, &optimum, &outcome.expansions, &budget)));
   } catch (const OptimumKnown&) {
   }
   return distance;
@@ -150,35 +175,30 @@ SlotPath extract(const Built& built, const ValidNodes& valid, const std::vector<
   }
 }
 
-int deepest_layer(const Built& built, const ValidNodes& valid) {
+std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid, const Budget& budget) {
   std::vector<char> reached(num_vertices(built.graph), 0);
   for (std::size_t k = 0; k < valid.layers[0].size(); ++k) reached[built.first[0] + k] = 1;
   int deepest = valid.layers[0].empty() ? -1 : 0;
   for (std::size_t layer = 1; layer < valid.layers.size() && deepest == static_cast<int>(layer) - 1; ++layer)
-    for (std::size_t k = 0; k < valid.layers[layer].size(); ++k)
+    for (std::size_t k = 0; k < valid.layers[layer].size(); ++k) {
+      if (k % 1024 == 0 && budget.spent()) return std::nullopt;
       for (auto [e, end] = out_edges(built.first[layer] + k, built.graph); e != end; ++e)
         if (reached[target(*e, built.graph)]) {
           reached[built.first[layer] + k] = 1;
           deepest = static_cast<int>(layer);
         }
+    }
   return deepest;
 }
 
 }  // namespace
 
-EagerOutcome eager_search(const Lattice& lattice, Validity& validity, EagerSearch search) {
-  EagerOutcome outcome;
-  const ValidNodes valid = find_valid_nodes(lattice, validity);
-  outcome.ik_nodes = valid.ik_nodes;
-  const Built built = build(lattice, valid, validity, outcome);
-  if (validity.stopped()) {
-    outcome.stopped = true;
-    return outcome;
-  }
-  const std::vector<double> distance = costs_to_go(built, search, outcome);
+void eager_search(const Lattice& lattice, Validity& validity, EagerSearch search, const Budget& budget, EagerOutcome& outcome) {
+  const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
+  const Built built = build(lattice, valid, validity, budget, outcome);
+  const std::vector<double> distance = costs_to_go(built, search, budget, outcome);
   outcome.path = extract(built, valid, distance, outcome.cost);
-  if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid);
-  return outcome;
+  if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid, budget);
 }
 
 }  // namespace swivel

@@ -16,20 +16,23 @@ bool edge_valid(Validity& validity, int layer, const ValidNodes::Node& a, const 
   return answer != 0;
 }
 
-int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& validity, std::int64_t& compared) {
+int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& validity, const Budget& budget,
+                  std::int64_t& compared) {
   std::vector<char> reached(valid.layers[0].size(), 1);
   int deepest = valid.layers[0].empty() ? -1 : 0;
-  for (int layer = 0; layer + 1 < lattice.layers() && deepest == layer && !validity.stopped(); ++layer) {
+  for (int layer = 0; layer + 1 < lattice.layers() && deepest == layer; ++layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
     const std::vector<int> index = index_by_slot(lattice, next);
     std::vector<char> ahead(next.size(), 0);
-    for (std::size_t a = 0; a < reached.size(); ++a)
+    for (std::size_t a = 0; a < reached.size(); ++a) {
+      if (a % 16 == 0) budget.poll();
       if (reached[a])
         for_each_successor(lattice, layer, valid.layers[i][a], next, index, compared, [&](int b, const Config&) {
           const auto k = static_cast<std::size_t>(b);
           if (!ahead[k] && edge_valid(validity, layer, valid.layers[i][a], next[k])) ahead[k] = 1;
         });
+    }
     if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
     reached.swap(ahead);
   }
@@ -38,10 +41,8 @@ int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& val
 
 }  // namespace
 
-EagerOutcome eager_dp(const Lattice& lattice, Validity& validity) {
-  EagerOutcome outcome;
-  const ValidNodes valid = find_valid_nodes(lattice, validity);
-  outcome.ik_nodes = valid.ik_nodes;
+void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
+  const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   // best[layer][node] = index of the best successor; smallest slot among equals.
   std::vector<std::vector<int>> best(valid.layers.size());
   std::vector<double> value(valid.layers.back().size(), 0.0), here;
@@ -50,13 +51,14 @@ EagerOutcome eager_dp(const Lattice& lattice, Validity& validity) {
     int b;
   };
   std::vector<Candidate> candidates;
-  for (int layer = lattice.layers() - 2; layer >= 0 && !validity.stopped(); --layer) {
+  for (int layer = lattice.layers() - 2; layer >= 0; --layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
     const std::vector<int> index = index_by_slot(lattice, next);
     here.assign(valid.layers[i].size(), kUnreachable);
     best[i].assign(valid.layers[i].size(), -1);
     for (std::size_t a = 0; a < valid.layers[i].size(); ++a) {
+      if (a % 16 == 0) budget.poll();
       candidates.clear();
       for_each_successor(lattice, layer, valid.layers[i][a], next, index, outcome.edges, [&](int b, const Config& delta) {
         const double rest = value[static_cast<std::size_t>(b)];
@@ -73,15 +75,14 @@ EagerOutcome eager_dp(const Lattice& lattice, Validity& validity) {
     }
     value.swap(here);
   }
-  if (validity.stopped()) {
-    outcome.stopped = true;
-    return outcome;
-  }
   const auto least = std::min_element(value.begin(), value.end());  // the first among equals
   if (least == value.end() || *least == kUnreachable) {
-    outcome.deepest = deepest_layer(lattice, valid, validity, outcome.edges);
-    outcome.stopped = validity.stopped();
-    return outcome;
+    try {
+      outcome.deepest = deepest_layer(lattice, valid, validity, budget, outcome.edges);
+    } catch (const Stopped&) {  // that there is no path stays known
+      outcome.deepest.reset();
+    }
+    return;
   }
   outcome.cost = *least;
   int at = static_cast<int>(least - value.begin());
@@ -89,7 +90,6 @@ EagerOutcome eager_dp(const Lattice& lattice, Validity& validity) {
     outcome.path.push_back(valid.layers[i][static_cast<std::size_t>(at)].slot);
     if (i + 1 < valid.layers.size()) at = best[i][static_cast<std::size_t>(at)];
   }
-  return outcome;
 }
 
 }  // namespace swivel

@@ -108,6 +108,7 @@ void CostToGo::relax(int step_layer, Block& from, const Block& to) {
     std::fill(row + part.begin(), row + part.end(n), kUnreachable);
   }
   for (std::size_t first = 0, last = 0; first < from.parts.size(); first = last) {
+    budget_.poll();
     const int label = from.parts[first].label;
     while (last < from.parts.size() && from.parts[last].label == label) ++last;
     for (const int other : to.labels) {

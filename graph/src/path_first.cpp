@@ -41,16 +41,15 @@ class Search {
 
   SearchOutcome run(SearchCounters& counters) {
     for (;;) {
-      if (validity_.stopped()) return {.stopped = true, .path = {}, .cost = 0};
+      togo_.budget().poll();
       const SlotPath path = best_path(togo_, counters.expansions);
       if (path.empty()) return {};
       ++counters.iterations;
       fail_first_.next_round();
       const std::int64_t removed = togo_.removed();
-      if (valid(path)) return {.stopped = false, .path = path, .cost = togo_.best()};
-      if (togo_.removed() == removed && !validity_.stopped())
-        throw std::logic_error("a round of the search removed nothing: it would never end");
-      togo_.repair([this] { return validity_.stopped(); });
+      if (valid(path)) return {path, togo_.best()};
+      if (togo_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
+      togo_.repair();
     }
   }
 
@@ -65,7 +64,10 @@ class Search {
     const Span span("candidate path");
     const int layers = static_cast<int>(path.size());
     std::vector<Config> joints;
-    for (int i = 0; i < layers; ++i) joints.push_back(togo_.config(i, path[static_cast<std::size_t>(i)]));
+    for (int i = 0; i < layers; ++i) {
+      if (i % 64 == 0) togo_.budget().poll();
+      joints.push_back(togo_.config(i, path[static_cast<std::size_t>(i)]));
+    }
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     std::vector<NodeQuestion> nodes;
     for (int i = 0; i < layers; ++i)
@@ -74,7 +76,6 @@ class Search {
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
       const std::vector<Failure> failed =
           ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
-      if (validity_.stopped()) return false;
       for (const Failure& node : failed) fail_first_.failed(node.layer);
       if (!failed.empty()) {
         grow(failed);
@@ -90,7 +91,6 @@ class Search {
     for (std::size_t first = 0; first < edges.size(); first += batch()) {
       const std::vector<EdgeQuestion> failed =
           ask(std::span<const EdgeQuestion>(edges).subspan(first, std::min(batch(), edges.size() - first)));
-      if (validity_.stopped()) return false;
       for (const EdgeQuestion& edge : failed) fail_first_.failed(edge.layer);
       if (!failed.empty()) {
         grow(failed);
@@ -113,7 +113,7 @@ class Search {
     };
     for (const Failure& node : failed) suspect_neighbours(node);
     std::vector<NodeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !suspects.empty() && !validity_.stopped();) {
+    for (int left = most_grown(); left > 0 && !suspects.empty();) {
       questions.clear();
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
         const auto [layer, slot, fault] = suspects.front();
@@ -148,7 +148,7 @@ class Search {
     for (const EdgeQuestion& edge : failed) suspect_neighbours(edge);
     std::vector<Suspect> asked;
     std::vector<EdgeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !suspects.empty() && !validity_.stopped();) {
+    for (int left = most_grown(); left > 0 && !suspects.empty();) {
       asked.clear();
       questions.clear();
       while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
@@ -193,7 +193,6 @@ class Search {
     std::vector<EdgeQuestion> failed;
     edge_answers_.assign(questions.size(), 0);
     validity_.edges(questions, edge_answers_);
-    if (validity_.stopped()) return failed;
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const EdgeQuestion& x = questions[k];
       if (edge_answers_[k]) {
@@ -223,16 +222,13 @@ SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFir
   return Search(cost_to_go, validity, options).run(counters);
 }
 
-std::optional<int> deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options,
-                                       SearchCounters& counters) {
+int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
   for (;;) {
     const int optimistic = togo.deepest_reachable();
     if (optimistic < 0) return -1;
     const std::int64_t removed = togo.removed();
-    if (!togo.sweep(optimistic, [&] { return validity.stopped(); })) return std::nullopt;
-    const SearchOutcome outcome = path_first(togo, validity, options, counters);
-    if (outcome.stopped) return std::nullopt;
-    if (!outcome.path.empty()) return optimistic;
+    togo.sweep(optimistic);
+    if (!path_first(togo, validity, options, counters).path.empty()) return optimistic;
     if (togo.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }

@@ -62,15 +62,9 @@ void CostToGo::remove_node(int layer, int slot) {
 }
 
 void CostToGo::remove_alike(int layer, int slot, std::uint8_t depends) {
-  if (depends == kOnNodeAlone) return remove_node(layer, slot);
-  const int n = lattice_->angles(), branch = lattice_->branch_of(slot), angle = lattice_->angle_of(slot);
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    const int other = label / lattice_->windings();
-    if ((other ^ branch) & depends & (kShoulderBit | kWristBit | kElbowBit)) continue;
-    const int first = depends & kOnArmAngle ? angle : 0, last = depends & kOnArmAngle ? angle : n - 1;
-    for (int j = first; j <= last; ++j)
-      if (node_verdict(layer, label * n + j) != Verdict::kRemoved) remove_node(layer, label * n + j);
-  }
+  for_each_alike(*lattice_, slot, depends, [&](int other) {
+    if (node_verdict(layer, other) != Verdict::kRemoved) remove_node(layer, other);
+  });
 }
 
 Verdict CostToGo::edge_verdict(int layer, int a, int b) const {
@@ -92,12 +86,12 @@ void CostToGo::remove_edge(int layer, int a, int b) {
   pending_[layer].tails.push_back(a);
 }
 
-bool CostToGo::repair(const std::function<bool()>& stop) {
+void CostToGo::repair() {
   // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 40 bytes a node.
   constexpr std::int64_t kMostKept = 1'000'000;
   if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));
   repair_once();
-  return make_exact(stop);
+  make_exact();
 }
 
 CostToGo::Marks CostToGo::widened(const Marks& columns) const {
@@ -153,8 +147,10 @@ void CostToGo::repair_once() {
     if (pending != pending_.end()) {
       for (const int slot : pending->second.nodes)
         if (at(layer, slot) != kUnreachable) set(slot, kUnreachable);
-      for (const int slot : pending->second.tails)
+      for (const int slot : pending->second.tails) {
+        budget_.poll();
         if (layer < goal_ && at(layer, slot) != kUnreachable) set(slot, relax_one(layer, slot));
+      }
       pending_.erase(pending);
     }
     changed.swap(here_changed);

@@ -4,16 +4,17 @@
 
 namespace swivel {
 
-ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity) {
+ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes) {
   const Span span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
   LayerNodes nodes;
   std::vector<NodeQuestion> questions;
   std::vector<NodeAnswer> answers;
-  for (int layer = 0; layer < lattice.layers() && !validity.stopped(); ++layer) {
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    budget.poll();
     lattice.solve(layer, nodes);
-    valid.ik_nodes += lattice.width();
+    ik_nodes += lattice.width();
     questions.clear();
     for (int slot = 0; slot < lattice.width(); ++slot)
       if (nodes.valid(lattice.label_of(slot), lattice.angle_of(slot)))

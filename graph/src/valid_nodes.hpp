@@ -14,10 +14,9 @@ struct ValidNodes {
     Config q;
   };
   std::vector<std::vector<Node>> layers;
-  std::int64_t ik_nodes = 0;
 };
-/// Asks about every node that exists. Incomplete once validity.stopped().
-[[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity);
+/// Asks about every node that exists; adds to `ik_nodes` those that were solved. Throws Stopped.
+[[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes);
 
 /// Calls visit(index of b in next, delta) for every node of `next` in the window of `a`, all labels, whose joint steps are allowed.
 template <class Visit>

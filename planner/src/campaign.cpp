@@ -54,7 +54,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
 
   PlanOptions single = options.plan;
   single.threads = 1;
-  single.report = true;  // the tool-path error and the reason are columns
+  single.evidence = {.tool_path_error = true};  // a column
   single.progress = nullptr;
   single.record = nullptr;
 
@@ -70,7 +70,10 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
     const std::uint64_t episode = options.shard.episode(k);
     try {
       const PlanResult result = plan(robot, episode_problem(problem, options.seed, episode), single);
-      if (result.status != PlanStatus::kSolved && result.status != PlanStatus::kInfeasible) {
+      const bool answered = result.status == PlanStatus::kSolved
+                                ? result.evidence.tool_path_error
+                                : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
+      if (!answered) {  // it was stopped, maybe with its verdict known and its columns not
         stopped = true;
         return;
       }

@@ -13,8 +13,8 @@ EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) 
 }
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
-                                     Executor& executor, int lanes, const Stop& stop, const Progress& progress)
-    : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), stop_(&stop), progress_(progress) {
+                                     Executor& executor, int lanes, const Budget& budget, const Progress& progress)
+    : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), budget_(budget), progress_(progress) {
   for (int lane = 0; lane < lanes; ++lane) lanes_.emplace_back(world, certificates);
   queries_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world, certificates);
@@ -48,29 +48,32 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
 
 NodeAnswer CollisionValidity::node(const NodeQuestion& question, World::Query& query) const {
   const Span span("node");
+  budget_.poll();
   if (!lattice_->manipulable(question.q)) return {};
   const int bodies = static_cast<int>(world_->body_names().size());
   std::optional<BodyPair> suspect;
   if (question.suspect != kNoFault) suspect = {question.suspect / bodies, question.suspect % bodies};
   const auto pair = query.next_below(question.q, lattice_->limits().clearance, suspect);
   if (!pair) return {.valid = true};
-  return {false, dependence(query, question.q, *pair), pair->a * bodies + pair->b};
+  return {false, dependence(*lattice_, *world_, query, question.q, *pair), pair->a * bodies + pair->b};
 }
 
 /// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
 /// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
-std::uint8_t CollisionValidity::dependence(World::Query& query, const Config& q, const BodyPair& pair) const {
-  if (!lattice_->arm().exact) return kOnNodeAlone;
-  if (!query.surely_below() && !query.pair_below(q, pair, lattice_->limits().clearance - kVerdictBand)) return kOnNodeAlone;
+/// On arms that are not exact only the last link and the tool stand alike: polished joints place them to 1e-10 m, the others by the
+/// fitted arm's misfit.
+std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query& query, const Config& q, const BodyPair& pair) {
   std::uint8_t depends = 0;
   for (const int body : {pair.a, pair.b}) {
     constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
     constexpr std::array<std::uint8_t, kDof + 1> kOfGroup{
         0,          kElbowPart | kOnShoulder, kElbowPart | kOnShoulder, kElbowPart,
         kElbowPart, kElbowPart | kOnWrist,    kElbowPart | kOnWrist,    0};
-    if (body < static_cast<int>(world_->bodies().size()))
-      depends |= kOfGroup[static_cast<std::size_t>(world_->bodies()[static_cast<std::size_t>(body)].group)];
+    if (body < static_cast<int>(world.bodies().size()))
+      depends |= kOfGroup[static_cast<std::size_t>(world.bodies()[static_cast<std::size_t>(body)].group)];
   }
+  if (!lattice.arm().exact && depends != 0) return kOnNodeAlone;
+  if (!query.surely_below() && !query.pair_below(q, pair, lattice.limits().clearance - kVerdictBand)) return kOnNodeAlone;
   return depends;
 }
 
@@ -81,20 +84,18 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   report();
   executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
     const Span span("edge");
+    budget_.poll();
     const EdgeQuestion& x = questions[static_cast<std::size_t>(index)];
     const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
-    answers[static_cast<std::size_t>(index)] = lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&
-                                               (lattice_->limits().edges == EdgeMode::kNodes ||
-                                                !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, x.qa, unwrapped));
+    answers[static_cast<std::size_t>(index)] =
+        lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&
+        (lattice_->limits().edges == EdgeMode::kNodes ||
+         !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, x.qa, unwrapped, budget_));
   });
 }
 
 bool CollisionValidity::asks_edges() const {
   return lattice_->asks_path_error() || (lattice_->limits().edges == EdgeMode::kContinuous && !world_->pairs().empty());
-}
-
-bool CollisionValidity::stopped() const {
-  return stop_->reason() != Stop::Reason::kNone;
 }
 
 CollisionCounters CollisionValidity::counters() const {

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/budget.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/graph/validity.hpp"
 #include "swivel/parallel/executor.hpp"
-#include "swivel/parallel/stop.hpp"
 
 namespace swivel {
 
@@ -19,12 +19,11 @@ class CollisionValidity final : public Validity {
  public:
   using Progress = std::function<void(const std::string&)>;
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates, Executor& executor,
-                    int lanes, const Stop& stop, const Progress& progress);
+                    int lanes, const Budget& budget, const Progress& progress);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
-  [[nodiscard]] bool stopped() const override;
 
   [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
   [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
@@ -34,18 +33,21 @@ class CollisionValidity final : public Validity {
  private:
   void report() const;
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, World::Query& query) const;
-  [[nodiscard]] std::uint8_t dependence(World::Query& query, const Config& q, const BodyPair& pair) const;
 
   const Lattice* lattice_;
   const World* world_;
   EdgeRule rule_;
   Executor* executor_;
-  const Stop* stop_;
+  Budget budget_;
   Progress progress_;
   std::vector<World::Query> queries_;  // one per worker
   std::vector<World::Query> lanes_;    // for nodes; empty: each node is shared out for itself
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
+
+/// What the failure of a pair that the query has just named at q depends on (Dependence).
+[[nodiscard]] std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query& query, const Config& q,
+                                      const BodyPair& pair);
 
 /// The edge rule of a problem.
 [[nodiscard]] EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii);

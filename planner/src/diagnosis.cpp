@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <limits>
+
+#include "collision_validity.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -17,16 +21,220 @@ std::string most_frequent(const Reasons& reasons) {
   return most == reasons.end() ? "" : most->first;
 }
 
+struct Cause {
+  std::string reason;
+  std::optional<Shortfall> shortfall;
+};
+
+constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
+
+/// What blocks the nodes of one layer: manipulability, or a pair of bodies. A failure tells of every node whose failing bodies
+/// stand alike (Dependence), so that most nodes need no question, or a short one.
+class LayerBlockers {
+ public:
+  LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
+      : lattice_(lattice), world_(world), query_(query), known_(static_cast<std::size_t>(lattice.width())), asked_(known_.size()) {}
+
+  void start() {
+    std::fill(known_.begin(), known_.end(), kUnknown);
+    std::fill(asked_.begin(), asked_.end(), 0);
+    all_ = false;
+  }
+  /// The first of World::pairs() that is too near, or kManipulability, or kFree.
+  int first(int slot, const Config& q) {
+    const auto k = static_cast<std::size_t>(slot);
+    if (known_[k] == kUnknown) return ask(slot, q);
+    for (int pair = 0; !asked_[k] && pair < known_[k]; ++pair)
+      if (query_.pair_below(q, world_.pairs()[static_cast<std::size_t>(pair)], lattice_.limits().clearance)) known_[k] = pair;
+    asked_[k] = 1;
+    if (!lattice_.manipulable(q)) return kManipulability;
+    return known_[k];
+  }
+  /// One of those that are too near.
+  int any(int slot, const Config& q) {
+    const int known = known_[static_cast<std::size_t>(slot)];
+    return known == kUnknown ? ask(slot, q) : known;
+  }
+  /// Every node of the layer is blocked by the pair that was named last.
+  [[nodiscard]] bool all() const { return all_; }
+
+ private:
+  int ask(int slot, const Config& q) {
+    const auto k = static_cast<std::size_t>(slot);
+    asked_[k] = 1;
+    if (!lattice_.manipulable(q)) return known_[k] = kManipulability;
+    const auto pair = query_.first_below(q, lattice_.limits().clearance);
+    if (!pair) return known_[k] = kFree;
+    const auto& pairs = world_.pairs();
+    known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());
+    const std::uint8_t depends = dependence(lattice_, world_, query_, q, *pair);
+    all_ = depends == 0;
+    if (depends != kOnNodeAlone)
+      for_each_alike(lattice_, slot, depends, [&](int other) {
+        int& known = known_[static_cast<std::size_t>(other)];
+        if (!asked_[static_cast<std::size_t>(other)]) known = known < 0 ? known_[k] : std::min(known, known_[k]);
+      });
+    return known_[k];
+  }
+
+  const Lattice& lattice_;
+  const World& world_;
+  World::Query& query_;
+  std::vector<int> known_;   // [slot] kUnknown, or what is known to block it
+  std::vector<char> asked_;  // [slot] known_ is the first that does
+  bool all_ = false;
+};
+
 class Inspector {
  public:
-  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule)
-      : lattice_(lattice), world_(world), query_(world, Certificates::kOn), rule_(rule) {}
+  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget)
+      : lattice_(lattice),
+        world_(world),
+        rule_(rule),
+        budget_(budget),
+        query_(world, Certificates::kOn),
+        blockers_(lattice, world, query_),
+        blockers_before_(lattice, world, query_) {
+    const auto is_mesh = [&](const RobotBody& body) { return std::holds_alternative<MeshPtr>(body.shape); };
+    const auto& bodies = world.bodies();
+    question_us_ = std::any_of(bodies.begin(), bodies.end(), is_mesh) ? 300 : 3;
+    ik_us_ = lattice.arm().exact ? 0.3 : 5;
+  }
 
-  /// Empty string where the node is valid.
-  std::string node_reason(const Config& q) {
-    if (!lattice_.manipulable(q)) return "manipulability";
-    const auto pair = query_.first_below(q, lattice_.limits().clearance);
-    return pair ? name(*pair) : "";
+  /// An estimate of the time spent, that is the same on every machine.
+  [[nodiscard]] bool affordable() const {
+    constexpr double kMost = 1e6;  // us
+    const CollisionCounters c = query_.counters();
+    return question_us_ * static_cast<double>(c.certified_free + c.certified_colliding + c.fcl_calls) +
+               ik_us_ * static_cast<double>(ik_) <
+           kMost;
+  }
+
+  /// What blocks the nodes of the layer that exist, by count. `left`: those that are valid.
+  Reasons blocked(int layer, std::vector<int>& left) {
+    lattice_.solve(layer, nodes_);
+    ik_ += lattice_.width();
+    blockers_.start();
+    std::map<int, std::int64_t> counts;
+    for (int slot = 0; slot < lattice_.width(); ++slot) {
+      if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
+      budget_.poll();
+      const int blocker = blockers_.first(slot, config(nodes_, slot));
+      ++counts[blocker];
+      if (blocker == kFree) left.push_back(slot);
+    }
+    Reasons reasons;
+    for (const auto& [blocker, count] : counts)
+      if (blocker != kFree) reasons[name(blocker)] += count;
+    return reasons;
+  }
+
+  /// Why no node of the layer is valid; none where one is. Asks around `hint`, a slot valid in a layer before, angle by angle.
+  std::optional<Cause> why_empty(int layer, int& hint) {
+    budget_.poll();
+    if (!lattice_.alive(layer)) return kinematic_cause(layer);
+    blockers_.start();
+    std::map<int, std::int64_t> counts;
+    const int n = lattice_.angles(), hint_label = lattice_.label_of(hint), hint_angle = lattice_.angle_of(hint);
+    for (int k = 0; k < n; ++k) {
+      const int j = (hint_angle + (k % 2 ? n - (k + 1) / 2 : k / 2)) % n;  // at the hint, then on either side
+      lattice_.solve(layer, j, 1, nodes_);
+      ik_ += lattice_.labels();
+      for (int l = 0; l < lattice_.labels(); ++l) {
+        const int label = (hint_label + l) % lattice_.labels(), slot = label * n + j;
+        if (!nodes_.valid(label, 0)) continue;
+        budget_.poll();
+        const int blocker = blockers_.any(slot, nodes_.config(label, 0));
+        if (blocker == kFree) {
+          hint = slot;
+          return std::nullopt;
+        }
+        if (blockers_.all()) return Cause{name(blocker), {}};
+        ++counts[blocker];
+      }
+    }
+    if (counts.empty()) return kinematic_cause(layer);
+    Reasons reasons;
+    for (const auto& [blocker, count] : counts) reasons[name(blocker)] += count;
+    return Cause{most_frequent(reasons), {}};
+  }
+
+  /// What every node of the layer fails, or the joint whose release alone would help; and by how little.
+  Cause kinematic_cause(int layer) {
+    Reasons released, statuses;
+    std::map<std::string, Shortfall> least;  // by the reason that it belongs to
+    const auto add = [&](const std::string& reason, const Shortfall& shortfall) {
+      const auto [at, fresh] = least.try_emplace(reason, shortfall);
+      if (!fresh && shortfall.by() < at->second.by()) at->second = shortfall;
+    };
+    for (int slot = 0; slot < lattice_.width(); ++slot) {
+      if (slot % 64 == 0) budget_.poll();
+      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      ++statuses[status_name(fault)];
+      if (fault.status != NodeStatus::kLimit) continue;
+      ++ik_;
+      const auto shortfall = limit_shortfall(fault);
+      if (shortfall) add("joint limits", *shortfall);
+      if (std::popcount(fault.joints) != 1) continue;
+      const std::string reason = joint_name(std::countr_zero(fault.joints));
+      ++released[reason];
+      if (shortfall) add(reason, *shortfall);
+    }
+    Cause cause{"no IK", {}};
+    for (const char* status : {"no IK", "singular", "joint limits"})
+      if (statuses.contains(status)) cause.reason = status;
+    if (!released.empty()) cause.reason = most_frequent(released);
+    if (cause.reason == "no IK")
+      cause.shortfall = reach_shortfall(layer);
+    else if (const auto found = least.find(cause.reason); found != least.end())
+      cause.shortfall = found->second;
+    return cause;
+  }
+
+  /// The nodes that closed form and limits take out of the layer.
+  void add_missing(int layer, Reasons& reasons) {
+    for (int slot = 0; slot < lattice_.width(); ++slot) {
+      if (nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
+      if (slot % 64 == 0) budget_.poll();
+      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      if (fault.status != NodeStatus::kLimit) ++reasons[status_name(fault)];
+      for (int k = 0; k < kDof; ++k)
+        if ((fault.joints >> k) & 1) ++reasons[joint_name(k)];
+    }
+  }
+
+  /// What removes edges from valid nodes of `layer` to the nodes `left` of the next, whose joints blocked() has solved.
+  Reasons removed_edges(int layer, const std::vector<int>& left) {
+    Reasons reasons;
+    if (left.empty()) return reasons;
+    std::vector<char> is_left(static_cast<std::size_t>(lattice_.width()), 0);
+    for (const int b : left) is_left[static_cast<std::size_t>(b)] = 1;
+    LayerNodes before;
+    lattice_.solve(layer, before);
+    blockers_before_.start();
+    constexpr int kMostEdges = 300;  // collision checks of edges are the slow part of a report
+    int edges = 0;
+    for (int a = 0; a < lattice_.width() && edges < kMostEdges && affordable(); ++a) {
+      if (!before.valid(lattice_.label_of(a), lattice_.angle_of(a))) continue;
+      budget_.poll();
+      const Config qa = config(before, a);
+      if (blockers_before_.any(a, qa) != kFree) continue;
+      const Lattice::Run run = lattice_.successors(layer, a);
+      for (int label = 0; label < lattice_.labels(); ++label)
+        for (int k = 0; k < run.count; ++k) {
+          const int b = label * lattice_.angles() + (run.first + k) % lattice_.angles();
+          if (!is_left[static_cast<std::size_t>(b)]) continue;
+          const std::string reason = edge_reason(layer, a, qa, b, config(nodes_, b));
+          if (!reason.empty()) ++reasons[reason];
+          edges += reason != "joint step";
+        }
+    }
+    return reasons;
+  }
+
+ private:
+  [[nodiscard]] Config config(const LayerNodes& nodes, int slot) const {
+    return nodes.config(lattice_.label_of(slot), lattice_.angle_of(slot));
   }
 
   std::string edge_reason(int layer, int a, const Config& qa, int b, const Config& qb) {
@@ -34,93 +242,44 @@ class Inspector {
     if (!lattice_.step_allowed(layer, delta)) return "joint step";
     if (!lattice_.follows_path(layer, a, qa, b, qb)) return "tool-path error";
     if (lattice_.limits().edges == EdgeMode::kContinuous) {
-      const auto pair = edge_blocked(query_, rule_, qa, qa + delta);
+      const auto pair = edge_blocked(query_, rule_, qa, qa + delta, budget_);
       if (pair) return name(*pair) + " between layers";
     }
     return "";
   }
 
-  /// Reasons why no node of the layer is valid, by count; empty when one is. Starts at `hint`, a slot valid in a neighbouring
-  /// layer.
-  Reasons why_empty(int layer, int& hint) {
-    lattice_.solve(layer, nodes_);
-    Reasons reasons;
-    const int width = lattice_.width();
-    for (int k = 0; k < width; ++k) {
-      const int slot = (hint + k) % width;
-      if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
-      const std::string reason = node_reason(nodes_.config(lattice_.label_of(slot), lattice_.angle_of(slot)));
-      if (reason.empty()) {
-        hint = slot;
-        return {};
-      }
-      ++reasons[reason];
-    }
-    if (reasons.empty()) reasons[kinematic_reason(layer)] = width;
-    return reasons;
+  [[nodiscard]] std::optional<Shortfall> reach_shortfall(int layer) const {
+    const SrsArm& arm = lattice_.arm();
+    const double reach = lattice_.plane(layer).reach, most = arm.upper + arm.fore, least = std::abs(arm.upper - arm.fore);
+    if (reach > most) return Shortfall{Shortfall::Kind::kTooFar, reach, most, {}};
+    if (reach < least) return Shortfall{Shortfall::Kind::kTooNear, reach, least, {}};
+    return std::nullopt;
   }
 
-  /// What every node of the layer fails, or the joint whose release alone would help.
-  std::string kinematic_reason(int layer) const {
-    Reasons released, statuses;
-    for (int slot = 0; slot < lattice_.width(); ++slot) {
-      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
-      if (fault.status == NodeStatus::kLimit && std::popcount(fault.joints) == 1)
-        ++released[joint_name(std::countr_zero(fault.joints))];
-      ++statuses[status_name(fault)];
+  /// The joint that is furthest outside, each taken at the winding where it is nearest to its limits.
+  [[nodiscard]] std::optional<Shortfall> limit_shortfall(const Lattice::NodeFault& fault) const {
+    std::optional<Shortfall> worst;
+    for (int k = 0; k < kDof; ++k) {
+      if (((fault.joints >> k) & 1) == 0) continue;
+      const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(k)];
+      const double margin = lattice_.limits().joint_margin, lower = limit.lower + margin, upper = limit.upper - margin;
+      const double above = fault.q[k] + kTwoPi * std::ceil((lower - fault.q[k]) / kTwoPi), below = above - kTwoPi;
+      if (above <= upper) continue;  // inside, at another winding than this node's
+      const bool high = above - upper < lower - below;
+      const Shortfall shortfall{high ? Shortfall::Kind::kUpperLimit : Shortfall::Kind::kLowerLimit, high ? above : below,
+                                high ? upper : lower, lattice_.chain().joint_names[static_cast<std::size_t>(k)]};
+      if (!worst || shortfall.by() > worst->by()) worst = shortfall;
     }
-    if (!released.empty()) return most_frequent(released);
-    for (const char* status : {"joint limits", "singular", "no IK"})
-      if (statuses.contains(status)) return status;
-    return "no IK";
+    return worst;
   }
 
-  /// What removed every node of the layer and the edges into those that are left.
-  Reasons removed_past(int layer) {
-    Reasons reasons;
-    LayerNodes before;
-    lattice_.solve(layer, before);
-    lattice_.solve(layer + 1, nodes_);
-    std::vector<int> left;
-    for (int slot = 0; slot < lattice_.width(); ++slot) {
-      const int label = lattice_.label_of(slot), j = lattice_.angle_of(slot);
-      if (!nodes_.valid(label, j)) {
-        const Lattice::NodeFault fault = lattice_.fault(layer + 1, slot);
-        if (fault.status == NodeStatus::kLimit)
-          for (int k = 0; k < kDof; ++k) reasons[joint_name(k)] += (fault.joints >> k) & 1;
-        else
-          ++reasons[status_name(fault)];
-        continue;
-      }
-      const std::string reason = node_reason(nodes_.config(label, j));
-      if (reason.empty())
-        left.push_back(slot);
-      else
-        ++reasons[reason];
-    }
-    std::erase_if(reasons, [](const auto& reason) { return reason.second == 0; });
-    constexpr int kMostEdges = 300;  // collision checks of edges are the slow part of a report
-    int edges = 0;
-    for (int a = 0; a < lattice_.width() && edges < kMostEdges; ++a) {
-      const int label = lattice_.label_of(a), j = lattice_.angle_of(a);
-      if (left.empty() || !before.valid(label, j)) continue;
-      const Config qa = before.config(label, j);
-      if (!node_reason(qa).empty()) continue;
-      for (const int b : left) {
-        if (!lattice_.in_window(layer, a, b)) continue;
-        const std::string reason = edge_reason(layer, a, qa, b, nodes_.config(lattice_.label_of(b), lattice_.angle_of(b)));
-        if (!reason.empty()) ++reasons[reason];
-        edges += reason != "joint step";
-      }
-    }
-    return reasons;
-  }
-
- private:
-  std::string name(const BodyPair& pair) const {
+  [[nodiscard]] std::string name(const BodyPair& pair) const {
     return world_.body_names()[static_cast<std::size_t>(pair.a)] + " - " + world_.body_names()[static_cast<std::size_t>(pair.b)];
   }
-  std::string joint_name(int k) const { return "joint " + lattice_.chain().joint_names[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] std::string name(int blocker) const {
+    return blocker == kManipulability ? "manipulability" : name(world_.pairs()[static_cast<std::size_t>(blocker)]);
+  }
+  [[nodiscard]] std::string joint_name(int k) const { return "joint " + lattice_.chain().joint_names[static_cast<std::size_t>(k)]; }
   static const char* status_name(const Lattice::NodeFault& fault) {
     switch (fault.status) {
       case NodeStatus::kNoIk:
@@ -134,41 +293,61 @@ class Inspector {
 
   const Lattice& lattice_;
   const World& world_;
-  World::Query query_;
   EdgeRule rule_;
+  const Budget& budget_;
+  World::Query query_;
+  LayerBlockers blockers_, blockers_before_;
   LayerNodes nodes_;
+  double question_us_ = 0, ik_us_ = 0;
+  std::int64_t ik_ = 0;
 };
+
+EmptyLayer empty_layer(const Lattice& lattice, int layer, const Cause& cause) {
+  const PathLayer& at = lattice.path().layer(layer);
+  return {layer, at.waypoint, at.s, cause.reason, cause.shortfall};
+}
 
 }  // namespace
 
-Diagnosis diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer) {
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+              const Budget& budget, Diagnosis& diagnosis) {
   const Span span("diagnosis");
-  Inspector inspector(lattice, world, rule);
-  Diagnosis diagnosis;
-  int hint = 0;
-  for (int layer = 0; layer < lattice.layers(); ++layer) {
-    const Reasons reasons = inspector.why_empty(layer, hint);
-    if (reasons.empty()) continue;
-    const PathLayer& at = lattice.path().layer(layer);
-    diagnosis.empty_layers.push_back({layer, at.waypoint, at.s, most_frequent(reasons)});
-  }
+  diagnosis.complete = false;
   if (deepest_layer >= 0) {
     diagnosis.reached_layer = deepest_layer;
     diagnosis.reached_s = lattice.path().layer(deepest_layer).s;
   }
-  const auto empty = std::find_if(diagnosis.empty_layers.begin(), diagnosis.empty_layers.end(),
-                                  [&](const EmptyLayer& e) { return e.layer == deepest_layer + 1; });
-  if (deepest_layer >= 0 && deepest_layer + 1 < lattice.layers()) diagnosis.removed = inspector.removed_past(deepest_layer);
-  if (empty != diagnosis.empty_layers.end()) {
-    diagnosis.reason = empty->reason;
+  diagnosis.layers_known = deepest_layer + 1;  // those before have a node: a path leads through them
+  Inspector inspector(lattice, world, rule, budget);
+
+  const int next = deepest_layer + 1;
+  std::vector<int> left;
+  Reasons removed = inspector.blocked(next, left);
+  if (left.empty()) {
+    const Cause cause = removed.empty() ? inspector.kinematic_cause(next) : Cause{most_frequent(removed), {}};
+    diagnosis.reason = cause.reason;
+    diagnosis.shortfall = cause.shortfall;
+    if (layers) diagnosis.empty_layers.push_back(empty_layer(lattice, next, cause));
   } else {
-    // The next layer has nodes, but no edge into them is left.
-    Reasons edges;
-    for (const auto& [reason, count] : diagnosis.removed)
-      if (reason == "joint step" || reason == "tool-path error" || reason.ends_with(" between layers")) edges[reason] = count;
+    const Reasons edges = inspector.removed_edges(deepest_layer, left);
     diagnosis.reason = edges.empty() ? "arm slope" : most_frequent(edges);
+    for (const auto& [reason, count] : edges) removed[reason] += count;
   }
-  return diagnosis;
+  diagnosis.layers_known = next + 1;
+  if (layers) {
+    if (deepest_layer >= 0) {
+      inspector.add_missing(next, removed);
+      diagnosis.removed = removed;
+    }
+    int hint = left.empty() ? 0 : left.front();
+    for (int layer = next + 1; layer < lattice.layers(); ++layer) {
+      if (!inspector.affordable()) return;
+      if (const auto cause = inspector.why_empty(layer, hint))
+        diagnosis.empty_layers.push_back(empty_layer(lattice, layer, *cause));
+      diagnosis.layers_known = layer + 1;
+    }
+  }
+  diagnosis.complete = true;
 }
 
 }  // namespace swivel

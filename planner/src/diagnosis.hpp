@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/collision/world.hpp"
+#include "swivel/core/budget.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
 
 namespace swivel {
 
-/// Why there is no path: the layers without nodes, and what removed nodes and edges just past the deepest layer reached.
-/// Looks at layers one by one and stops in each at the first valid node, so it is cheap where most layers are fine.
-[[nodiscard]] Diagnosis diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer);
+/// Why no path goes beyond the deepest layer that one reaches (-1: none has a node in layer 0), and with `layers` what removed the
+/// nodes and edges just past it and which later layers are empty. A function of the problem and that layer alone: the same for all
+/// planners. Later layers are looked at until they would take more than about a second by a fixed estimate. Throws Stopped;
+/// `diagnosis` then holds what was found, and `complete` is false.
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+              const Budget& budget, Diagnosis& diagnosis);
 
 }  // namespace swivel

@@ -41,14 +41,19 @@ constexpr std::pair<PlannerKind, const char*> kNames[] = {{PlannerKind::kEager, 
                                                           {PlannerKind::kParallel, "parallel"}};
 
 struct Found {
+  bool decided = false;  // whether there is a path
   SearchOutcome outcome;
-  int deepest = -1;  // where there is no path
+  std::optional<int> deepest;  // where there is no path: of the layers reached; none where that was not found in time
 };
 
 /// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
 Certificates certificates_of(const PlanOptions& options) {
   if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp) return Certificates::kOff;
   return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
+}
+
+void say(const PlanOptions& options, const char* phrase) {
+  if (options.progress) options.progress(phrase);
 }
 
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
@@ -67,48 +72,67 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
-Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, PlanResult& result) {
-  Found found;
-  Counters& counters = result.counters;
-  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp) {
-    const EagerOutcome eager = options.planner == PlannerKind::kEager ? eager_search(lattice, validity, options.eager_search)
-                                                                      : eager_dp(lattice, validity);
-    found = {eager, eager.deepest};
-    if (options.record) options.record->path = eager.path;
-    counters.ik_nodes = eager.ik_nodes;
-    counters.edges = eager.edges;
-    counters.expansions = eager.expansions;
-    return found;
+void search_eagerly(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+                    Found& found, Counters& counters) {
+  EagerOutcome eager;
+  try {
+    if (options.planner == PlannerKind::kEager)
+      eager_search(lattice, validity, options.eager_search, budget, eager);
+    else
+      eager_dp(lattice, validity, budget, eager);
+    found = {true, eager, eager.deepest};
+  } catch (const Stopped&) {
   }
+  if (options.record) options.record->path = eager.path;
+  counters.ik_nodes = eager.ik_nodes;
+  counters.edges = eager.edges;
+  counters.expansions = eager.expansions;
+}
+
+void search_lazily(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+                   Found& found, PlanResult& result) {
   Stopwatch watch;
   constexpr int kFewLayers = 64;  // where chords are too long to bound much
-  CostToGo togo(lattice, lattice.layers() < kFewLayers ? CostToGo::Extent::kWhole : CostToGo::Extent::kBounded);
-  found.outcome.stopped = !togo.sweep(lattice.layers() - 1, [&] { return validity.stopped(); });
-  result.time_ms["sweep"] = watch.lap();
-  if (found.outcome.stopped) return found;
-  // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
-  const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
+  CostToGo togo(lattice, lattice.layers() < kFewLayers ? CostToGo::Extent::kWhole : CostToGo::Extent::kBounded, budget);
   SearchCounters searched;
-  found.outcome = path_first(togo, validity, path_first_options, searched);
-  result.time_ms["search"] = watch.lap();
-  if (found.outcome.path.empty() && !found.outcome.stopped) {
-    const auto deepest = deepest_valid_layer(togo, validity, path_first_options, searched);
-    found.outcome.stopped = !deepest.has_value();
-    found.deepest = deepest.value_or(-1);
-    result.time_ms["reach"] = watch.lap();
+  try {
+    say(options, "sweeping the lattice");
+    togo.sweep(lattice.layers() - 1);
+    result.time_ms["sweep"] = watch.lap();
+    // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
+    const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
+    found.outcome = path_first(togo, validity, path_first_options, searched);
+    found.decided = true;
+    result.time_ms["search"] = watch.lap();
+    if (found.outcome.path.empty()) {
+      say(options, "no path; seeking the furthest layer");
+      found.deepest = deepest_valid_layer(togo, validity, path_first_options, searched);
+      result.time_ms["reach"] = watch.lap();
+    }
+    if (options.record) {
+      watch.lap();
+      options.record->nodes = togo.node_verdicts();
+      options.record->path = found.outcome.path;
+      std::int64_t expansions = 0;  // no part of the search
+      if (found.deepest && *found.deepest >= 0) options.record->path = best_path(togo, expansions);
+      result.time_ms["record"] = watch.lap();
+    }
+  } catch (const Stopped&) {
   }
-  if (options.record) {
-    watch.lap();
-    options.record->nodes = togo.node_verdicts();
-    options.record->path = found.outcome.path;
-    std::int64_t expansions = 0;  // no part of the search
-    if (found.deepest >= 0) options.record->path = best_path(togo, expansions);
-    result.time_ms["record"] = watch.lap();
-  }
+  Counters& counters = result.counters;
   counters.ik_nodes = togo.ik_nodes();
   counters.edges = togo.edges();
   counters.expansions = searched.expansions;
   counters.iterations = searched.iterations;
+}
+
+Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+             PlanResult& result) {
+  Found found;
+  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
+    search_eagerly(lattice, validity, options, budget, found, result.counters);
+  else
+    search_lazily(lattice, validity, options, budget, found, result);
   return found;
 }
 
@@ -134,19 +158,12 @@ void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& r
   }
 }
 
-void fill_report(const PreparedRobot& robot, const Lattice& lattice, const World& world, PlanResult& result) {
-  const Span span("report");
-  World::Query query(world);
+void fill_tool_path_error(const PreparedRobot& robot, const Lattice& lattice, const Budget& budget, PlanResult& result) {
   double sum = 0;
   std::int64_t samples = 0;
-  result.min_manipulability = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
+  for (std::size_t i = 0; i + 1 < result.trajectory.size(); ++i) {
+    if (i % 64 == 0) budget.poll();
     const Config& q = result.trajectory[i].q;
-    result.min_manipulability = std::min(result.min_manipulability, robot.arm().chain.manipulability(q));
-    result.arm_angle.push_back(conventional_arm_angle(robot.srs(), lattice.path().layer(static_cast<int>(i)).tool, q));
-    const auto clearance = query.clearance(q);
-    if (clearance) result.min_clearance = std::min(result.min_clearance.value_or(clearance->distance), clearance->distance);
-    if (i + 1 == result.trajectory.size()) break;
     const auto deviation =
         path_deviation(robot.arm().chain, lattice.path(), static_cast<int>(i), q, result.trajectory[i + 1].q - q);
     for (const double error : deviation) {
@@ -156,6 +173,121 @@ void fill_report(const PreparedRobot& robot, const Lattice& lattice, const World
     }
   }
   result.tool_path_error_mm.mean = 1e3 * sum / static_cast<double>(samples);
+  result.evidence.tool_path_error = true;
+}
+
+void fill_postures(const PreparedRobot& robot, const Lattice& lattice, const World& world, const Budget& budget,
+                   PlanResult& result) {
+  World::Query query(world);
+  std::optional<double> least;
+  double manipulability = std::numeric_limits<double>::infinity();
+  std::vector<double> arm_angle;
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
+    budget.poll();
+    const Config& q = result.trajectory[i].q;
+    manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
+    arm_angle.push_back(conventional_arm_angle(robot.srs(), lattice.path().layer(static_cast<int>(i)).tool, q));
+    const auto clearance = query.clearance(q);
+    if (clearance) least = std::min(least.value_or(clearance->distance), clearance->distance);
+  }
+  result.min_clearance = least;
+  result.min_manipulability = manipulability;
+  result.arm_angle = std::move(arm_angle);
+  result.evidence.postures = true;
+}
+
+/// What the options ask for, as far as the budget goes.
+void fill_evidence(const PreparedRobot& robot, const Lattice& lattice, const World& world, const EdgeRule& rule, const Found& found,
+                   const PlanOptions& options, const Budget& budget, PlanResult& result) {
+  const Span span("report");
+  try {
+    if (result.status == PlanStatus::kSolved) {
+      say(options, "measuring the trajectory");
+      if (options.evidence.tool_path_error) fill_tool_path_error(robot, lattice, budget, result);
+      if (options.evidence.postures) fill_postures(robot, lattice, world, budget, result);
+    } else if (!found.deepest) {
+      result.diagnosis.complete = false;
+    } else {
+      say(options, "no path; finding out why");
+      diagnose(lattice, world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis);
+      result.evidence.layers = options.evidence.layers;
+    }
+  } catch (const Stopped&) {
+  }
+}
+
+PlanStatus stopped_status(const Budget& budget) {
+  return budget.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
+}
+
+Executor make_executor(const PlanOptions& options) {
+  return Executor(options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend);
+}
+
+/// What is known before anything is done.
+PlanResult blank_result(const PlanOptions& options, const Executor& executor) {
+  PlanResult result;
+  result.planner = to_string(options.planner);
+  result.threads = executor.threads();
+  result.time_ms["prepare"] = 0;
+  return result;
+}
+
+void find(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options, Executor& executor, const Budget& budget,
+          PlanResult& result) {
+  Stopwatch watch, whole;
+  say(options, "laying out the lattice");
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  result.time_ms["lattice"] = watch.lap();
+  const World world(robot.world(), problem.scene, budget);
+  result.time_ms["world"] = watch.lap();
+  result.warnings = limit_warnings(robot.arm().chain);
+  result.warnings.insert(result.warnings.end(), world.warnings().begin(), world.warnings().end());
+  result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
+                    lattice.nodes(),  path.merged_waypoints()};
+
+  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
+  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, lanes_of(options), budget, options.progress);
+  const Found found = search(lattice, validity, options, budget, result);
+  const double record = result.time_ms.contains("record") ? result.time_ms["record"] : 0;
+  result.time_ms["find"] = watch.lap() - record;
+  result.counters.nodes_checked = validity.nodes_checked();
+  result.counters.edges_checked = validity.edges_checked();
+  const CollisionCounters collision = validity.counters();
+  result.counters.fcl_calls = collision.fcl_calls;
+  result.counters.certified_free = collision.certified_free;
+  result.counters.certified_colliding = collision.certified_colliding;
+  if (collision.contradictions > 0)
+    throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
+  if (!found.decided) throw Stopped();
+  result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
+  if (result.status == PlanStatus::kSolved) {
+    result.cost = found.outcome.cost;
+    fill_trajectory(lattice, found.outcome.path, result);
+  }
+  result.time_ms["plan"] = whole.lap() - record;
+  watch.lap();
+  fill_evidence(robot, lattice, world, rule, found, options, budget, result);
+  result.time_ms["report"] = watch.lap();
+}
+
+PlanResult plan_within(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options, const Budget& budget) {
+  const Span span("plan");
+  validate(problem);
+  robot.require_prepared_for(problem);
+  Stopwatch watch;
+  Executor executor = make_executor(options);
+  PlanResult result = blank_result(options, executor);
+  result.joint_names = robot.arm().chain.joint_names;
+  try {
+    find(robot, problem, options, executor, budget, result);
+  } catch (const Stopped&) {
+    result.status = stopped_status(budget);
+    result.time_ms["plan"] = watch.lap();
+  }
+  return result;
 }
 
 }  // namespace
@@ -173,70 +305,28 @@ PlannerKind planner_from_string(const std::string& name) {
 }
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
+  const Budget budget(options.timeout_s, options.cancel);
   Stopwatch watch;
-  const PreparedRobot robot = [&] {
+  std::optional<PreparedRobot> robot;
+  PlanResult result;
+  double prepare = 0;
+  try {
     const Span span("prepare");
-    return PreparedRobot(problem);
-  }();
-  const double prepare = watch.lap();
-  PlanResult result = plan(robot, problem, options);
+    say(options, "preparing the robot");
+    robot.emplace(problem, budget);
+    prepare = watch.lap();
+    result = plan_within(*robot, problem, options, budget);
+  } catch (const Stopped&) {
+    prepare = watch.lap();
+    result = blank_result(options, make_executor(options));
+    result.status = stopped_status(budget);
+  }
   result.time_ms["prepare"] += prepare;
   return result;
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
-  const Span span("plan");
-  validate(problem);
-  robot.require_prepared_for(problem);
-  Stopwatch watch;
-  PlanResult result;
-  result.planner = to_string(options.planner);
-  result.joint_names = robot.arm().chain.joint_names;
-  const Stop stop(options.timeout_s ? std::optional(std::chrono::duration<double>(*options.timeout_s)) : std::nullopt,
-                  options.cancel);
-  Executor executor(options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend);
-  result.threads = executor.threads();
-  result.time_ms["prepare"] = 0;
-
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  result.time_ms["lattice"] = watch.lap();
-  const World world(robot.world(), problem.scene);
-  result.time_ms["world"] = watch.lap();
-  result.warnings = limit_warnings(robot.arm().chain);
-  result.warnings.insert(result.warnings.end(), world.warnings().begin(), world.warnings().end());
-  result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
-                    lattice.nodes(),  path.merged_waypoints()};
-
-  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
-  if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, lanes_of(options), stop, options.progress);
-  const Found found = search(lattice, validity, options, result);
-  result.time_ms["find"] = watch.lap() - (result.time_ms.contains("record") ? result.time_ms["record"] : 0);
-  result.counters.nodes_checked = validity.nodes_checked();
-  result.counters.edges_checked = validity.edges_checked();
-  const CollisionCounters collision = validity.counters();
-  result.counters.fcl_calls = collision.fcl_calls;
-  result.counters.certified_free = collision.certified_free;
-  result.counters.certified_colliding = collision.certified_colliding;
-  if (collision.contradictions > 0)
-    throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
-  if (found.outcome.stopped) {
-    result.status = stop.reason() == Stop::Reason::kCancelled ? PlanStatus::kCancelled : PlanStatus::kTimeout;
-  } else if (found.outcome.path.empty()) {
-    result.status = PlanStatus::kInfeasible;
-  } else {
-    result.status = PlanStatus::kSolved;
-    result.cost = found.outcome.cost;
-    fill_trajectory(lattice, found.outcome.path, result);
-  }
-  result.time_ms["plan"] = result.time_ms["lattice"] + result.time_ms["world"] + result.time_ms["find"] + watch.lap();
-  if (options.report) {
-    if (result.status == PlanStatus::kSolved) fill_report(robot, lattice, world, result);
-    if (result.status == PlanStatus::kInfeasible) result.diagnosis = diagnose(lattice, world, rule, found.deepest);
-  }
-  result.time_ms["report"] = watch.lap();
-  return result;
+  return plan_within(robot, problem, options, Budget(options.timeout_s, options.cancel));
 }
 
 }  // namespace swivel

@@ -33,11 +33,11 @@ PreparedRobot::Basis::Basis(const Problem& problem) {
   pair_distance = pair_distance_of(problem);
 }
 
-PreparedRobot::PreparedRobot(const Problem& problem)
+PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
     : basis_(problem),
       arm_(build_arm(*problem.robot, problem.base_link, problem.tip_link, problem.hold, problem.tool)),
       srs_(fit_srs(arm_.chain, problem.robot->source)),
-      world_(*problem.robot, arm_, problem),
+      world_(*problem.robot, arm_, problem, budget),
       radii_(motion_radii(arm_.chain, world_.bodies())) {}
 
 void PreparedRobot::require_prepared_for(const Problem& problem) const {

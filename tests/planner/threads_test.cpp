@@ -84,7 +84,6 @@ TEST_P(Backends, KeptClearancesCountTheSame) {
       PlanOptions options;
       options.threads = threads;
       options.backend = GetParam();
-      options.report = false;
       const PlanResult result = plan(robot, problem, options);
       if (!first) {
         first = result;

@@ -102,7 +102,6 @@ Work measured(const Work& expected) {
   PlanOptions options;
   options.planner = expected.planner;
   options.threads = 1;
-  options.report = false;
   static_cast<void>(plan(robot, problem, options));
   const std::int64_t before = allocations;
   const PlanResult result = plan(robot, problem, options);

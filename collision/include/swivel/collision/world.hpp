@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/budget.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel {
@@ -56,12 +57,12 @@ class World {
  public:
   /// Which pairs count (design.md 1): not disabled by the SRDF, not rigid to each other, not parent and child, not allowed to
   /// touch; without an SRDF, and for attached bodies, also not below max(d_safe, d_edge + h) in all of many seeded samples. Throws
-  /// InputError for a mesh without triangles.
-  World(const RobotModel& robot, const ArmModel& arm, const Problem& problem);
+  /// InputError for a mesh without triangles, and Stopped.
+  World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
   /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that a
   /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on
   /// one `like`.
-  World(const World& like, const std::vector<SceneObject>& scene);
+  World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -129,8 +130,9 @@ struct EdgeRule {
 };
 /// None when every midpoint t = (m + 1/2) / N has clearance >= d_edge + h; else a pair that comes too near. By bisection, coarse to
 /// fine: an interval is free when its middle is clear by as much as the interval can move, blocked when its middle is below d_edge.
-/// Forgets what the query kept before, so that counters depend on the edge alone.
-[[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1);
+/// Forgets what the query kept before, so that counters depend on the edge alone. Throws Stopped.
+[[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
+                                                   const Budget& budget = {});
 /// The same by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint that fails.
 [[nodiscard]] std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0,
                                                          const Config& q1);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/budget.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/core/tool_path.hpp"
@@ -70,8 +71,8 @@ class LayerNodes {
 class Lattice {
  public:
   /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
-  /// of the machine.
-  Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem);
+  /// of the machine. Throws Stopped.
+  Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {});
 
   [[nodiscard]] int layers() const { return path_->size(); }
   [[nodiscard]] int angles() const { return angles_; }
@@ -119,7 +120,8 @@ class Lattice {
   /// Why nodes of a layer are missing: what each node fails first, and for limits which joints.
   struct NodeFault {
     NodeStatus status = NodeStatus::kValid;
-    std::uint8_t joints = 0;  ///< bit k: joint k is outside its limits
+    std::uint8_t joints = 0;    ///< bit k: joint k is outside its limits
+    Config q = Config::Zero();  ///< of kLimit: the joints of the closed form, of any winding
   };
   [[nodiscard]] NodeFault fault(int layer, int slot) const;
 

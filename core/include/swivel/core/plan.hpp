@@ -41,19 +41,47 @@ struct LatticeInfo {
   int merged_waypoints = 0;
 };
 
+/// By how much a layer has no closed form within reach and limits, at the node where that is least.
+struct Shortfall {
+  enum class Kind {
+    kTooFar,      ///< the wrist centre is further from the shoulder than the arm is long
+    kTooNear,     ///< nearer than the arm folds
+    kLowerLimit,  ///< a joint is below its lower limit
+    kUpperLimit
+  };
+  Kind kind = Kind::kTooFar;
+  double value = 0, limit = 0;  ///< m, or rad; limits less the margin
+  std::string joint;            ///< of limits
+  [[nodiscard]] bool is_reach() const { return kind == Kind::kTooFar || kind == Kind::kTooNear; }
+  [[nodiscard]] double by() const { return value > limit ? value - limit : limit - value; }
+};
+
 /// Why a layer has no node left, or why the search stopped. design.md 1 "Answer".
 struct EmptyLayer {
   int layer = 0;
   int waypoint = -1;  ///< 0-based row of the path file when the layer is a waypoint, else -1
   double s = 0;
   std::string reason;  ///< "no IK", "joint <name>", "joint limits", "singular", "manipulability", "<body> - <body>"
+  std::optional<Shortfall> shortfall = {};  ///< of "no IK", "joint <name>" and "joint limits"
 };
 struct Diagnosis {
   std::optional<int> reached_layer;  ///< furthest layer that a valid path from layer 0 reaches; null where layer 0 is empty
   std::optional<double> reached_s;
-  std::string reason;  ///< what stops every path there, one phrase
+  std::string reason;                  ///< what stops every path there, one phrase; empty where that was not found in time
+  std::optional<Shortfall> shortfall;  ///< of that reason, where the next layer is empty for it
   std::vector<EmptyLayer> empty_layers;
   std::map<std::string, std::int64_t> removed;  ///< reason -> nodes or edges it removed just past the furthest layer
+  /// False where time ran out, or the layers were too many or too costly to look at all. What is said is true nevertheless.
+  bool complete = true;
+  int layers_known = 0;  ///< layers, from the first on, of which it is known whether they are empty
+};
+
+/// What a plan is to find besides verdict, trajectory, counters, and where and why every path ends. Each costs time of its own.
+struct Evidence {
+  bool tool_path_error = false;  ///< PlanResult::tool_path_error_mm
+  bool postures = false;         ///< exact clearances of all rows (more time than many a plan), manipulability, arm angle
+  bool layers = false;           ///< Diagnosis::empty_layers and removed
+  [[nodiscard]] static Evidence all() { return {true, true, true}; }
 };
 
 struct PlanResult {
@@ -63,10 +91,11 @@ struct PlanResult {
   int threads = 1;
   LatticeInfo lattice;
   Counters counters;
+  Evidence evidence;                      ///< what was asked for, and is known; the rest of this means nothing
   std::map<std::string, double> time_ms;  ///< load, prepare, plan, report, and stages
   struct {
     double mean = 0, max = 0;
-  } tool_path_error_mm;
+  } tool_path_error_mm;                 ///< of solved problems, where asked for; so are the next three
   std::optional<double> min_clearance;  ///< m; null when nothing is near
   double min_manipulability = 0;
   std::vector<double> arm_angle;          ///< conventional arm angle of each row, rad

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/budget.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/types.hpp"
 
@@ -23,7 +24,9 @@ struct PathLayer {
 class ToolPath {
  public:
   /// Throws InputError: fewer than two distinct waypoints, a turn of 180 deg between neighbours, more layers than fit in memory.
-  ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source);
+  /// Throws Stopped.
+  ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
+           const Budget& budget = {});
 
   [[nodiscard]] int size() const { return static_cast<int>(layers_.size()); }
   [[nodiscard]] const PathLayer& layer(int i) const { return layers_[static_cast<std::size_t>(i)]; }

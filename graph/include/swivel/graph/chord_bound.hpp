@@ -13,7 +13,8 @@ namespace swivel {
 /// of one layer a stride. In single precision, less what that may lose. Memory: one byte per lattice node or less.
 class ChordBound {
  public:
-  explicit ChordBound(const Lattice& lattice);
+  /// Throws Stopped.
+  explicit ChordBound(const Lattice& lattice, const Budget& budget = {});
 
   /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
   [[nodiscard]] double best() const { return best_; }

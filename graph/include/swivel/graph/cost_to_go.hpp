@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -30,17 +29,19 @@ inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 /// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
 /// nodes: there they are kept, 40 bytes a node of the layers that were visited; up to 64 MB of that stays with the process for the
 /// next search.
+///
+/// Whatever takes long throws Stopped once the budget is spent; verdicts are kept, and at() means nothing then.
 class CostToGo {
  public:
   enum class Extent { kWhole, kBounded };
-  explicit CostToGo(const Lattice& lattice, Extent extent = Extent::kWhole);
+  explicit CostToGo(const Lattice& lattice, Extent extent = Extent::kWhole, const Budget& budget = {});
   ~CostToGo();
 
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
+  [[nodiscard]] const Budget& budget() const { return budget_; }
 
-  /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept. False when `stop`, asked once a layer, said so.
-  /// Bounded only where the goal is the last layer.
-  bool sweep(int goal_layer, const std::function<bool()>& stop = {});
+  /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept. Bounded only where the goal is the last layer.
+  void sweep(int goal_layer);
   [[nodiscard]] int goal_layer() const { return goal_; }
   [[nodiscard]] double at(int layer, int slot) const {
     const int j = lattice_->angle_of(slot);
@@ -61,8 +62,8 @@ class CostToGo {
   void remove_edge(int layer, int a, int b);
   /// Nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
-  /// Makes best() exact again after removals. False when `stop`, as in sweep(), said so.
-  bool repair(const std::function<bool()>& stop = {});
+  /// Makes best() exact again after removals.
+  void repair();
 
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
   [[nodiscard]] int deepest_reachable();
@@ -151,12 +152,13 @@ class CostToGo {
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Block& before);
   void relax_removed(Block& block);
   void forget();  // everything is unreachable
-  bool sweep_once(const std::function<bool()>& stop);
+  void sweep_once();
   void raise_limit();
-  bool make_exact(const std::function<bool()>& stop);
+  void make_exact();
   void repair_once();
 
   const Lattice* lattice_;
+  Budget budget_;
   bool bounded_;
   std::unique_ptr<ChordBound> chords_;  // made by the first bounded sweep
   double limit_ = kUnreachable;

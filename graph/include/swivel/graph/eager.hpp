@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
+
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {
@@ -7,16 +9,18 @@ namespace swivel {
 /// The paper's method: every node and every edge validated first, edges stored, then a search by Boost.Graph. The baseline.
 enum class EagerSearch { kDijkstra, kAStar };
 struct EagerOutcome : SearchOutcome {
-  int deepest = -1;        ///< deepest layer that layer 0 reaches when there is no path; -1 when layer 0 is empty
+  /// Deepest layer that layer 0 reaches when there is no path; -1 when layer 0 is empty; none where it was stopped before it knew.
+  std::optional<int> deepest;
   std::int64_t edges = 0;  ///< candidate edges compared
   std::int64_t ik_nodes = 0;
   std::int64_t expansions = 0;
 };
-/// Explicit graph. Throws std::bad_alloc beyond the machine's memory.
-[[nodiscard]] EagerOutcome eager_search(const Lattice& lattice, Validity& validity, EagerSearch search);
+/// Explicit graph. Throws std::bad_alloc beyond the machine's memory, and Stopped, like eager_dp: the counts are then those of what
+/// was done.
+void eager_search(const Lattice& lattice, Validity& validity, EagerSearch search, const Budget& budget, EagerOutcome& outcome);
 
 /// Same validity, a layered dynamic program over the window, no stored edges: the strong baseline. An edge is asked about only when
 /// it would be its tail's best so far.
-[[nodiscard]] EagerOutcome eager_dp(const Lattice& lattice, Validity& validity);
+void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome);
 
 }  // namespace swivel

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "swivel/graph/cost_to_go.hpp"
@@ -17,8 +16,7 @@ using SlotPath = std::vector<int>;
 [[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions);
 
 struct SearchOutcome {
-  bool stopped = false;  ///< deadline or cancel; nothing below is known
-  SlotPath path;         ///< empty: no path exists
+  SlotPath path;  ///< empty: no path exists
   double cost = 0;
 };
 
@@ -36,12 +34,13 @@ struct SearchCounters {
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid
 /// is the least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
+/// Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                        SearchCounters& counters);
 
-/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node; none
-/// when stopped. Leaves the cost-to-go with that layer as its goal.
-[[nodiscard]] std::optional<int> deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                                     SearchCounters& counters);
+/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
+/// the cost-to-go with that layer as its goal. Throws Stopped.
+[[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
+                                      SearchCounters& counters);
 
 }  // namespace swivel

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "swivel/core/lattice.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/core/types.hpp"
 
@@ -37,13 +38,27 @@ enum Dependence : std::uint8_t {
   kOnEverything = 15,  ///< this branch and arm angle, in all windings
   kOnNodeAlone = 31,
 };
+/// Calls visit(slot) for every node of the layer of `slot` that agrees with it in what `depends` names, itself included.
+template <class Visit>
+void for_each_alike(const Lattice& lattice, int slot, std::uint8_t depends, const Visit& visit) {
+  if (depends == kOnNodeAlone) return visit(slot);
+  const int n = lattice.angles(), branch = lattice.branch_of(slot), angle = lattice.angle_of(slot);
+  for (int label = 0; label < lattice.labels(); ++label) {
+    const int other = label / lattice.windings();
+    if ((other ^ branch) & depends & (kShoulderBit | kWristBit | kElbowBit)) continue;
+    const int first = depends & kOnArmAngle ? angle : 0, last = depends & kOnArmAngle ? angle : n - 1;
+    for (int j = first; j <= last; ++j) visit(label * n + j);
+  }
+}
+
 struct NodeAnswer {
   bool valid = false;
   std::uint8_t depends = kOnNodeAlone;  ///< of a failure
   Fault fault = kNoFault;               ///< of a failure
 };
 
-/// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once.
+/// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once. A batch throws
+/// Stopped where the budget of the caller is spent.
 /// Nodes: manipulability, clearance. Edges (both ends valid, joint steps allowed): tool-path error, clearance of the motion.
 class Validity {
  public:
@@ -54,8 +69,6 @@ class Validity {
   virtual void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) = 0;
   /// False when every edge is valid as it stands, so that none need be asked.
   [[nodiscard]] virtual bool asks_edges() const = 0;
-  /// True once the caller's deadline has passed or it was cancelled; polled between batches.
-  [[nodiscard]] virtual bool stopped() const = 0;
 };
 
 }  // namespace swivel

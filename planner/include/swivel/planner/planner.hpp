@@ -8,6 +8,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/arm.hpp"
+#include "swivel/core/budget.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/srs.hpp"
@@ -39,9 +40,11 @@ struct SearchRecord {
 struct PlanOptions {
   PlannerKind planner = PlannerKind::kParallel;
   int threads = 0;  ///< 0: all cores; kLazy always uses one
+  /// s, any positive number, for everything from the call on. Where it passes after the verdict is known, the verdict stays, and
+  /// what was asked for besides may be missing (PlanResult::evidence, Diagnosis::complete).
   std::optional<double> timeout_s;
-  const std::atomic<bool>* cancel = nullptr;  ///< set from elsewhere to stop
-  bool report = true;  ///< fill what only a report needs: min_clearance, tool-path error, arm_angle, diagnosis
+  const std::atomic<bool>* cancel = nullptr;  ///< set from elsewhere to stop, as a time-out does
+  Evidence evidence;                          ///< what to find besides the verdict
   EagerSearch eager_search = EagerSearch::kDijkstra;
   /// lazy, parallel: FCL is asked about every pair as well; std::logic_error where a certificate contradicts it. For tests.
   bool compare_with_fcl = false;
@@ -55,8 +58,9 @@ struct PlanOptions {
 /// Immutable and safe to share between threads.
 class PreparedRobot {
  public:
-  /// Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ... InvalidArgument: see validate().
-  explicit PreparedRobot(const Problem& problem);
+  /// Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ...; InvalidArgument: see validate();
+  /// Stopped, only with a budget.
+  explicit PreparedRobot(const Problem& problem, const Budget& budget = {});
   /// Throws InvalidArgument for a problem that another robot would have to be prepared for: another model, base_link, tip_link,
   /// tool, hold or attached body; and, where pairs are left out by sampling (no SRDF, or attached bodies), other distances to be
   /// kept.
