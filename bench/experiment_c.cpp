@@ -59,6 +59,7 @@ PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind plan
   PlanOptions options;
   options.planner = planner;
   options.threads = threads;
+  options.evidence = {.tool_path_error = true};
   return plan(robot, problem, options);
 }
 

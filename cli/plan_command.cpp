@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "diagnosis_text.hpp"
 #include "progress.hpp"
 #include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
@@ -40,30 +41,16 @@ double ms(const PlanResult& result, const char* key) {
 void print_summary(const PlanResult& result) {
   switch (result.status) {
     case PlanStatus::kSolved: {
-      std::printf("solved: %d layers, cost %.6g, tool-path error %.3f mm mean %.3f mm max", result.lattice.layers, result.cost,
-                  result.tool_path_error_mm.mean, result.tool_path_error_mm.max);
+      std::printf("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
+      if (result.evidence.tool_path_error)
+        std::printf(", tool-path error %.3f mm mean %.3f mm max", result.tool_path_error_mm.mean, result.tool_path_error_mm.max);
       if (result.min_clearance) std::printf(", clearance at least %.1f mm", 1e3 * *result.min_clearance);
       std::printf("\n");
       break;
     }
-    case PlanStatus::kInfeasible: {
-      const Diagnosis& d = result.diagnosis;
-      if (d.reached_layer)
-        std::printf("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where %s stops it\n",
-                    *d.reached_layer, result.lattice.layers - 1, *d.reached_s, d.reason.c_str());
-      else
-        std::printf("no path at this resolution: the first layer has no valid node (%s)\n", d.reason.c_str());
-      constexpr std::size_t kMostLines = 40;
-      for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) {
-        const EmptyLayer& empty = d.empty_layers[k];
-        std::printf("  layer %d%s, s = %.4f m: no valid node: %s\n", empty.layer,
-                    empty.waypoint >= 0 ? (" (waypoint " + std::to_string(empty.waypoint) + ")").c_str() : "", empty.s,
-                    empty.reason.c_str());
-      }
-      if (d.empty_layers.size() > kMostLines)
-        std::printf("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
+    case PlanStatus::kInfeasible:
+      std::fputs(diagnosis_text(result).c_str(), stdout);
       break;
-    }
     default:
       std::printf("stopped: %s\n", to_string(result.status));
   }
@@ -110,15 +97,24 @@ int run(const PlanArguments& arguments) {
     throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
   SearchRecord record;
   if (draws) options.record = &record;
+  if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
+  const Budget budget(options.timeout_s, options.cancel);  // of what is drawn; plan() begins with it
   PlanResult result = plan(problem, options);
-  std::optional<PreparedRobot> robot;
+  result.time_ms["load"] = load;
   std::optional<LatticeMap> map;
+  std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
-    robot.emplace(problem);
-    map = make_map(*robot, problem, record, arguments.full_map);
+    try {
+      progress.show("drawing");
+      const PreparedRobot robot(problem, budget);
+      map = make_map(robot, problem, record, arguments.full_map, budget);
+      if (!arguments.report.empty()) page = to_page(robot, problem, record, *map, io::to_json(result), budget);
+    } catch (const Stopped&) {
+      map.reset();
+      result.warnings.push_back("stopped before the map was drawn: there is none, and no report");
+    }
   }
   progress.clear();
-  result.time_ms["load"] = load;
 
   if (!arguments.out.empty()) {
     if (result.status == PlanStatus::kSolved)
@@ -128,7 +124,7 @@ int run(const PlanArguments& arguments) {
   }
   if (!arguments.report.empty()) {
     if (map)
-      io::write_file(arguments.report, to_page(*robot, problem, record, *map, io::to_json(result)));
+      io::write_file(arguments.report, page);
     else
       std::filesystem::remove(arguments.report);
   }

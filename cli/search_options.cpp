@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "search_options.hpp"
 
+#include <unistd.h>
+
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -68,7 +70,10 @@ double positive(double value, const char* option) {
 std::atomic<bool> interrupted{false};
 
 void catch_interrupts() {
-  std::signal(SIGINT, [](int) { interrupted = true; });
+  for (const int caught : {SIGINT, SIGTERM})
+    std::signal(caught, [](int signal) {
+      if (interrupted.exchange(true)) _exit(128 + signal);
+    });
 }
 
 }  // namespace swivel::cli

@@ -30,7 +30,7 @@ void require_pages();
 /// Throws InputError in the name of the option.
 double positive(double value, const char* option);
 
-/// Set by Ctrl-C, once interrupts are caught.
+/// Set by Ctrl-C (SIGINT) and SIGTERM, once they are caught; a second one ends the program at once.
 extern std::atomic<bool> interrupted;
 void catch_interrupts();
 

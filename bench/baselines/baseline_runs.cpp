@@ -58,6 +58,7 @@ void run_swivel(const char* name, const PreparedRobot& robot, const Problem& pro
                 const std::filesystem::path& rows) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
+  options.evidence = Evidence::all();
   const PlanResult planned = plan(robot, problem, options);
   std::printf("  %-18s %s", name, to_string(planned.status));
   if (planned.status == PlanStatus::kSolved) {

@@ -44,18 +44,33 @@ Json time_json(const std::map<std::string, double>& time_ms) {
   return json;
 }
 
+Json shortfall_json(const std::optional<Shortfall>& shortfall) {
+  if (!shortfall) return nullptr;
+  constexpr const char* kKinds[] = {"too far", "too near", "lower limit", "upper limit"};
+  return {{"kind", kKinds[static_cast<std::size_t>(shortfall->kind)]},
+          {"joint", shortfall->joint.empty() ? Json(nullptr) : Json(shortfall->joint)},
+          {"by", shortfall->by()},
+          {"value", shortfall->value},
+          {"limit", shortfall->limit},
+          {"unit", shortfall->is_reach() ? "m" : "rad"}};
+}
+
 Json diagnosis_json(const Diagnosis& diagnosis) {
   Json layers = Json::array();
   for (const EmptyLayer& layer : diagnosis.empty_layers)
     layers.push_back({{"layer", layer.layer},
                       {"waypoint", layer.waypoint < 0 ? Json(nullptr) : Json(layer.waypoint)},
                       {"s", layer.s},
-                      {"reason", layer.reason}});
+                      {"reason", layer.reason},
+                      {"shortfall", shortfall_json(layer.shortfall)}});
   return {{"reached_layer", or_null(diagnosis.reached_layer)},
           {"reached_s", or_null(diagnosis.reached_s)},
           {"reason", diagnosis.reason},
+          {"shortfall", shortfall_json(diagnosis.shortfall)},
           {"empty_layers", std::move(layers)},
-          {"removed", diagnosis.removed}};
+          {"removed", diagnosis.removed},
+          {"complete", diagnosis.complete},
+          {"layers_known", diagnosis.layers_known}};
 }
 
 Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
@@ -86,19 +101,20 @@ std::string to_json(const CampaignSummary& summary) {
 std::string to_json(const PlanResult& result) {
   const bool solved = result.status == PlanStatus::kSolved;
   // Numbers about a trajectory are null where there is none: a zero would read as a perfect one.
-  const auto if_solved = [&](double value) { return solved ? Json(value) : Json(nullptr); };
+  const auto if_known = [&](bool known, double value) { return solved && known ? Json(value) : Json(nullptr); };
+  const Evidence& evidence = result.evidence;
   Json json;
   json["status"] = to_string(result.status);
-  json["cost"] = if_solved(result.cost);
+  json["cost"] = if_known(true, result.cost);
   json["planner"] = result.planner;
   json["threads"] = result.threads;
   json["lattice"] = lattice_json(result.lattice);
   json["counters"] = counters_json(result.counters);
   json["time_ms"] = time_json(result.time_ms);
-  json["tool_path_error_mm"] = {{"mean", if_solved(result.tool_path_error_mm.mean)},
-                                {"max", if_solved(result.tool_path_error_mm.max)}};
+  json["tool_path_error_mm"] = {{"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},
+                                {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
   json["min_clearance"] = or_null(result.min_clearance);
-  json["min_manipulability"] = if_solved(result.min_manipulability);
+  json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);

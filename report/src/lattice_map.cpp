@@ -30,12 +30,13 @@ std::string LatticeMap::label_name(int label) const {
   return name;
 }
 
-LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full) {
+LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full,
+                    const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World world(robot.world(), problem.scene);
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const World world(robot.world(), problem.scene, budget);
   World::Query query(world, Certificates::kOn);
 
   LatticeMap map;
@@ -51,6 +52,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
   std::size_t k = 0;
   for (int layer = 0; layer < map.layers; ++layer) {
     map.s.push_back(path.layer(layer).s);
+    budget.poll();
     lattice.solve(layer, nodes);
     for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
       LatticeMap::Node& node = map.nodes[k];
@@ -64,6 +66,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
       const Verdict verdict = record.nodes.empty() ? Verdict::kUnknown : record.nodes[k];
       node.state = NodeState::kNotLookedAt;
       if (verdict == Verdict::kUnknown && !map.complete) continue;
+      budget.poll();
       const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
       if (!lattice.manipulable(q)) {
         node.state = NodeState::kSingular;

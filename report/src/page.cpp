@@ -95,11 +95,12 @@ Json chain_json(const Chain& chain) {
 }
 
 /// The answer layer by layer, or the way to the furthest layer.
-Json rows_json(const World& world, const Lattice& lattice, const std::vector<int>& slots) {
+Json rows_json(const World& world, const Lattice& lattice, const std::vector<int>& slots, const Budget& budget) {
   World::Query query(world);
   Json rows = Json::array();
   Config previous = Config::Zero();
   for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
+    budget.poll();
     const int slot = slots[static_cast<std::size_t>(layer)];
     LayerNodes nodes;
     lattice.solve(layer, lattice.angle_of(slot), 1, nodes);
@@ -213,7 +214,7 @@ class Clearances {
 };
 
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
-Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world) {
+Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> labels = map.inhabited_labels();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
@@ -234,6 +235,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world)
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
     std::vector<Config> shown(labels.size() * static_cast<std::size_t>(cells.rows), Config::Constant(2 * reach));
     for (int layer = first; layer < last; ++layer) {
+      budget.poll();
       lattice.solve(layer, nodes);
       std::size_t k = 0;
       for (const int label : labels)
@@ -255,6 +257,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world)
             static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
         causes.push_back(cell.cause);
         if (!posed) continue;
+        budget.poll();
         if (looked_at(cell))
           clearances.add(shown[k], cells.on_path(label, column, row));
         else
@@ -287,10 +290,10 @@ bool page_available() {
 }
 
 std::string to_page(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, const LatticeMap& map,
-                    const std::string& result_json) {
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World world(robot.world(), problem.scene);
+                    const std::string& result_json, const Budget& budget) {
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const World world(robot.world(), problem.scene, budget);
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   const std::string reason = diagnosis.is_object() ? diagnosis.value("reason", "") : "";
@@ -313,9 +316,9 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                      {"bodies", std::move(bodies.bodies)},
                      {"meshes", std::move(bodies.meshes)},
                      {"tool_path", std::move(tool_path)},
-                     {"rows", rows_json(world, lattice, record.path)},
+                     {"rows", rows_json(world, lattice, record.path, budget)},
                      {"cut", cut_json(map, lattice, reason)},
-                     {"map", map_json(map, lattice, world)}};
+                     {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump());
 }
 

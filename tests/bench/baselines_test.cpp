@@ -24,6 +24,7 @@ Problem experiment(const std::string& name) {
 PlanOptions lazy() {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
+  options.evidence = Evidence::all();
   return options;
 }
 

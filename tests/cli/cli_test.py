@@ -288,6 +288,60 @@ limits: {{clearance: 0.005}}
             self.assertIn("t.csv", done.stderr)
 
 
+class Stopping(WithFolder):
+    LONG = (PROBLEMS / "experiment_b.yaml", "--planner", "eager_dp", "--ds", "0.0005", "--dphi", "0.005")  # minutes
+
+    def start(self, *options):
+        process = subprocess.Popen([SWIVEL, "plan", *map(str, self.LONG), *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        time.sleep(1.5)
+        self.assertIsNone(process.poll())
+        return process
+
+    def test_terminated_it_leaves_its_result(self):
+        for sent in (signal.SIGINT, signal.SIGTERM):
+            process = self.start("--json", self.folder / "r.json")
+            process.send_signal(sent)
+            said, _ = process.communicate(timeout=20)
+            self.assertEqual(process.returncode, 3)
+            self.assertIn("stopped: cancelled", said)
+            self.assertEqual(json.loads((self.folder / "r.json").read_text())["status"], "cancelled")
+
+    def test_the_second_time_it_ends_at_once(self):
+        process = self.start("--json", self.folder / "r.json")
+        process.send_signal(signal.SIGSTOP)  # so that both are there before it can act on the first
+        process.send_signal(signal.SIGINT)
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGCONT)
+        self.assertIn(process.wait(timeout=20), (130, 143))
+        self.assertFalse((self.folder / "r.json").exists())
+
+    def test_a_time_out_of_centuries(self):
+        done = run("plan", PROBLEMS / "experiment_a.yaml", "--ds", "0.05", "--dphi", "0.2", "--timeout", "1e10")
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_quiet_measures_nothing(self):
+        for quiet in ((), ("--quiet",)):
+            trace = self.folder / "trace.json"
+            self.assertEqual(run("plan", PROBLEMS / "experiment_c.yaml", "--out", self.folder / "t.csv", "--trace", trace, *quiet).returncode, 0)
+            spans = [e for e in json.loads(trace.read_text())["traceEvents"] if e["ph"] == "X"]
+            report = next(e for e in spans if e["name"] == "report")
+            asked = [e for e in spans if e["name"].startswith("fcl::") and e["ts"] >= report["ts"] and e["ts"] <= report["ts"] + report["dur"]]
+            self.assertEqual(asked == [], quiet != ())
+
+    def test_layers_of_one_reason_on_one_line(self):
+        problem = self.folder / "p.yaml"
+        problem.write_text((PROBLEMS / "experiment_a.yaml").read_text().replace("../robots", str(DATA / "robots")).replace("{xyz: [0.6, 0.4, 0.9]", "{xyz: [1.4, -0.1, 0.9]"))
+        done, _, result = self.plan(problem, "--ds", "0.02", "--dphi", "0.2")
+        self.assertEqual(done.returncode, 1)
+        self.assertTrue(result["diagnosis"]["complete"])
+        last = result["diagnosis"]["empty_layers"][-1]
+        self.assertEqual((last["reason"], last["shortfall"]["kind"], last["shortfall"]["unit"], last["waypoint"]), ("no IK", "too far", "m", 1))
+        lines = [line for line in done.stdout.splitlines() if "no valid node" in line]
+        self.assertLess(len(lines), 5)
+        self.assertRegex(lines[-1], r"  layers \d+ to 40 \(waypoint 1\), s = [0-9.]+ to 0.8000 m: no valid node: no IK \(out of reach by [0-9.]+ to %.3g mm\)" % (1e3 * last["shortfall"]["by"]))
+
+
 class Campaign(WithFolder):
     PROBLEM = PROBLEMS / "experiment_c.yaml"
     QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")

@@ -23,6 +23,7 @@ PlanResult solved() {
   result.lattice = {101, 126, 8, 2, 2, 203616, 1};
   result.counters = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   result.time_ms = {{"load", 1.5}, {"plan", 2.5}, {"search", 0.25}};
+  result.evidence = Evidence::all();
   result.tool_path_error_mm = {0.1, 0.2};
   result.min_clearance = 0.012;
   result.min_manipulability = 0.05;
@@ -79,20 +80,50 @@ TEST(Result, Infeasible) {
   result.diagnosis.reason = "joint j5";
   result.diagnosis.reached_layer = 12;
   result.diagnosis.reached_s = 0.34;
-  result.diagnosis.empty_layers = {{13, 4, 0.35, "no IK"}, {14, -1, 0.36, "link_3 - table"}};
+  result.diagnosis.empty_layers = {{13, 4, 0.35, "no IK", Shortfall{Shortfall::Kind::kTooFar, 0.75, 0.5, ""}},
+                                   {14, -1, 0.36, "link_3 - table"},
+                                   {15, -1, 0.37, "joint j5", Shortfall{Shortfall::Kind::kLowerLimit, -2.5, -2.0, "j5"}}};
   result.diagnosis.removed = {{"no IK", 9}};
+  result.diagnosis.complete = false;
+  result.diagnosis.layers_known = 16;
   const Json json = Json::parse(to_json(result));
   EXPECT_EQ(json["status"], "infeasible");
   for (const char* key : {"cost", "min_clearance", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   const Json& diagnosis = json["diagnosis"];
-  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "empty_layers", "removed"}));
+  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "shortfall", "empty_layers",
+                                                          "removed", "complete", "layers_known"}));
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
-  EXPECT_EQ(diagnosis["empty_layers"][0], Json({{"layer", 13}, {"waypoint", 4}, {"s", 0.35}, {"reason", "no IK"}}));
+  EXPECT_EQ(diagnosis["empty_layers"][0],
+            Json({{"layer", 13},
+                  {"waypoint", 4},
+                  {"s", 0.35},
+                  {"reason", "no IK"},
+                  {"shortfall",
+                   {{"kind", "too far"}, {"joint", nullptr}, {"by", 0.25}, {"value", 0.75}, {"limit", 0.5}, {"unit", "m"}}}}));
+  EXPECT_TRUE(diagnosis["empty_layers"][1]["shortfall"].is_null());
+  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["by"], 0.5);
+  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["joint"], "j5");
+  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["unit"], "rad");
+  EXPECT_TRUE(diagnosis["shortfall"].is_null());
+  EXPECT_EQ(diagnosis["complete"], false);
+  EXPECT_EQ(diagnosis["layers_known"], 16);
   EXPECT_TRUE(diagnosis["empty_layers"][1]["waypoint"].is_null());
   EXPECT_EQ(diagnosis["removed"]["no IK"], 9);
   EXPECT_EQ(json["trajectory"], Json::array());
+}
+
+TEST(Result, WhatWasNotAskedForIsNull) {
+  PlanResult result = solved();
+  result.evidence = {};
+  result.min_clearance.reset();
+  const Json json = Json::parse(to_json(result));
+  EXPECT_FALSE(json["cost"].is_null());
+  EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
+  EXPECT_TRUE(json["tool_path_error_mm"]["max"].is_null());
+  EXPECT_TRUE(json["min_clearance"].is_null());
+  EXPECT_TRUE(json["min_manipulability"].is_null());
 }
 
 TEST(Result, EmptyFirstLayerAndTimeOut) {

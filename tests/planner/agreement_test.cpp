@@ -21,6 +21,7 @@ struct Answer {
   double cost = 0;
   std::vector<int> slots;
   int deepest = -1;
+  std::vector<int> empty;  // layers without a valid node
 };
 
 /// The definition: every pair of nodes of neighbouring layers, own window, own steps, plain edge rule; dynamic program; ties by
@@ -86,6 +87,9 @@ Answer brute_force(const Problem& problem) {
     }
     return answer;
   }
+  for (std::size_t i = 0; i < layers; ++i)
+    if (std::none_of(nodes[i].begin(), nodes[i].end(), [](const auto& node) { return node.has_value(); }))
+      answer.empty.push_back(static_cast<int>(i));
   std::vector<char> reached(width, 0);
   for (std::size_t slot = 0; slot < width; ++slot) reached[slot] = nodes[0][slot].has_value();
   for (std::size_t i = 0; i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
@@ -112,7 +116,13 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
   }
   ASSERT_EQ(a.diagnosis.reached_layer, b.diagnosis.reached_layer) << what;
   ASSERT_EQ(a.diagnosis.reason, b.diagnosis.reason) << what;
+  ASSERT_EQ(a.diagnosis.removed, b.diagnosis.removed) << what;
+  ASSERT_EQ(a.diagnosis.complete, b.diagnosis.complete) << what;
   ASSERT_EQ(a.diagnosis.empty_layers.size(), b.diagnosis.empty_layers.size()) << what;
+  for (std::size_t k = 0; k < a.diagnosis.empty_layers.size(); ++k) {
+    ASSERT_EQ(a.diagnosis.empty_layers[k].layer, b.diagnosis.empty_layers[k].layer) << what;
+    ASSERT_EQ(a.diagnosis.empty_layers[k].reason, b.diagnosis.empty_layers[k].reason) << what;
+  }
 }
 
 TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
@@ -132,14 +142,17 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       PlanOptions options;
       options.planner = planner;
       options.threads = 2;
+      options.evidence = Evidence::all();
       results.push_back(plan(problem, options));
     }
     PlanOptions astar;
     astar.planner = PlannerKind::kEager;
+    astar.evidence = Evidence::all();
     astar.eager_search = EagerSearch::kAStar;
     results.push_back(plan(problem, astar));
     PlanOptions compared;
     compared.planner = PlannerKind::kLazy;
+    compared.evidence = Evidence::all();
     compared.compare_with_fcl = true;  // throws where a certificate contradicts FCL
     results.push_back(plan(problem, compared));
     ASSERT_EQ(results.back().counters.certified_free, results[2].counters.certified_free) << what;
@@ -174,6 +187,10 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       ++infeasible;
       ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
       ASSERT_FALSE(results[0].diagnosis.reason.empty()) << what;
+      ASSERT_TRUE(results[0].diagnosis.complete) << what;
+      std::vector<int> empty;
+      for (const EmptyLayer& layer : results[0].diagnosis.empty_layers) empty.push_back(layer.layer);
+      ASSERT_EQ(empty, truth.empty) << what;
     }
   }
   std::printf(

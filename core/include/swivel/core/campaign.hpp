@@ -33,7 +33,7 @@ struct EpisodeRow {
   std::string reason;  ///< what ends them there; empty when solved
 
   EpisodeRow() = default;
-  /// The result must have its report.
+  /// Evidence::tool_path_error must have been asked for.
   EpisodeRow(std::uint64_t episode, const PlanResult& result);
 };
 

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Deadlines and Ctrl-C: every stage hears them, soon, and what is known by then stays.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "collision_validity.hpp"
+#include "diagnosis.hpp"
+#include "random_problem.hpp"
+#include "swivel/graph/eager.hpp"
+#include "swivel/graph/path_first.hpp"
+#include "swivel/planner/campaign.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+Problem experiment(const std::string& name) {
+  return io::load_problem(data_dir() / "problems" / (name + ".yaml"));
+}
+
+/// Experiment A with a plate before the tool half way: no path, for a cause that must be searched for.
+Problem infeasible() {
+  Problem problem = experiment("experiment_a");
+  SceneObject plate;
+  plate.name = "plate";
+  plate.shape = Box{Vector3d(0.02, 0.1, 0.4)};
+  plate.pose.translation() = Vector3d(0.6, 0.2, 0.9);
+  problem.scene.push_back(plate);
+  return problem;
+}
+
+TEST(Budget, EveryPositiveTimeOutHolds) {
+  for (const double seconds : {1.0, 1e8, 9.2e9, 9.3e9, 1e10, 1e300, std::numeric_limits<double>::infinity()})
+    EXPECT_FALSE(Budget(seconds).spent()) << seconds;
+  EXPECT_FALSE(Budget().spent());
+  EXPECT_TRUE(Budget(1e-300).spent());
+  Problem problem = experiment("experiment_a");
+  problem.resolution = {.ds = 0.05, .dphi = 0.2};
+  PlanOptions options;
+  options.timeout_s = 1e10;
+  EXPECT_EQ(plan(problem, options).status, PlanStatus::kSolved);
+}
+
+TEST(Budget, AFlagComesBeforeTheDeadline) {
+  const std::atomic<bool> cancel{true};
+  EXPECT_TRUE(Budget(1e-9, &cancel).cancelled());
+  EXPECT_TRUE(Budget({}, &cancel).spent());
+  EXPECT_FALSE(Budget(1e-9).cancelled());
+}
+
+TEST(Budget, NoStageGoesOnWhenItIsSpent) {
+  const Problem problem = infeasible();
+  const Budget spent(1e-12);
+  const PreparedRobot robot(problem);
+  const auto waypoints = waypoints_in_base(problem);
+  const ToolPath path(waypoints, problem.resolution, problem.source);
+  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const World world(robot.world(), problem.scene);
+  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  Executor executor(2);
+  const auto validity = [&] { return CollisionValidity(lattice, world, rule, Certificates::kOn, executor, 4, spent, {}); };
+  const auto long_path = [&] {
+    Resolution fine = problem.resolution;
+    fine.ds = 1e-5;
+    return ToolPath(waypoints, fine, problem.source, spent);
+  };
+  Config q = Config::Zero(), away = Config::Constant(0.5);
+  CostToGo togo(lattice, CostToGo::Extent::kBounded, spent);
+  SearchCounters counters;
+  EagerOutcome eager;
+  Diagnosis diagnosis;
+  const std::pair<const char*, std::function<void()>> stages[] = {
+      {"robot", [&] { PreparedRobot(problem, spent); }},
+      {"tool path", [&] { long_path(); }},
+      {"lattice", [&] { Lattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
+      {"scene", [&] { World(robot.world(), problem.scene, spent); }},
+      {"chord bound", [&] { ChordBound(lattice, spent); }},
+      {"sweep", [&] { togo.sweep(lattice.layers() - 1); }},
+      {"search", [&] {
+         auto asked = validity();
+         path_first(togo, asked, {}, counters);
+       }},
+      {"furthest layer", [&] {
+         auto asked = validity();
+         static_cast<void>(deepest_valid_layer(togo, asked, {}, counters));
+       }},
+      {"nodes", [&] {
+         auto asked = validity();
+         const NodeQuestion question{0, 0, q};
+         NodeAnswer answer;
+         asked.nodes({&question, 1}, {&answer, 1});
+       }},
+      {"edges", [&] {
+         auto asked = validity();
+         const EdgeQuestion question{0, 0, 1, q, q};
+         std::uint8_t answer = 0;
+         asked.edges({&question, 1}, {&answer, 1});
+       }},
+      {"one edge", [&] {
+         World::Query query(world, Certificates::kOn);
+         static_cast<void>(edge_blocked(query, rule, q, away, spent));
+       }},
+      {"eager", [&] {
+         auto asked = validity();
+         eager_search(lattice, asked, EagerSearch::kDijkstra, spent, eager);
+       }},
+      {"eager_dp", [&] {
+         auto asked = validity();
+         eager_dp(lattice, asked, spent, eager);
+       }},
+      {"diagnosis", [&] { diagnose(lattice, world, rule, 3, true, spent, diagnosis); }},
+  };
+  for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
+  EXPECT_EQ(togo.edges(), 0);
+  EXPECT_EQ(eager.ik_nodes, 0);
+  EXPECT_FALSE(diagnosis.complete);
+  EXPECT_EQ(diagnosis.reached_layer, 3);
+}
+
+/// Cancelled at the beginning of one stage after the other, which progress tells.
+TEST(Budget, APlanStopsInTheStageThatItIsIn) {
+  int stopped = 0, verdicts_kept = 0;
+  for (const Problem& problem : {experiment("experiment_b"), infeasible()})
+    for (const PlannerKind planner : {PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+      Problem coarse = problem;
+      if (planner == PlannerKind::kEagerDp) coarse.resolution = {.ds = 0.02, .dphi = 0.2};
+      const PreparedRobot robot(coarse);
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.evidence = Evidence::all();
+      int calls = 0;
+      options.progress = [&](const std::string&) { ++calls; };
+      const PlanResult whole = plan(robot, coarse, options);
+      ASSERT_GT(calls, 3);
+      for (int call = 0; call < calls; call = call < calls - 6 ? call + std::max(1, calls / 12) : call + 1) {
+        std::atomic<bool> cancel{false};
+        options.cancel = &cancel;
+        int heard = 0, after = 0;
+        std::string phrase;
+        options.progress = [&](const std::string& said) {
+          after += cancel;
+          if (heard++ == call) {
+            phrase = said;
+            cancel = true;
+          }
+        };
+        const PlanResult result = plan(robot, coarse, options);
+        const std::string what = result.planner + " cancelled at '" + phrase + "'";
+        EXPECT_LE(after, 1) << what;  // a verdict that is just known begins one more stage
+        EXPECT_LE(result.counters.nodes_checked, whole.counters.nodes_checked) << what;
+        if (result.status == PlanStatus::kCancelled) {
+          ++stopped;
+          EXPECT_TRUE(result.trajectory.empty()) << what;
+          if (phrase.starts_with("laying")) EXPECT_EQ(result.lattice.layers, 0) << what;
+          if (phrase.starts_with("sweeping")) EXPECT_EQ(result.counters.edges, 0) << what;
+          continue;
+        }
+        ++verdicts_kept;
+        ASSERT_EQ(result.status, whole.status) << what;
+        EXPECT_EQ(result.cost, whole.cost) << what;
+        EXPECT_EQ(result.trajectory.size(), whole.trajectory.size()) << what;
+        EXPECT_FALSE(result.evidence.postures) << what;
+        if (whole.status == PlanStatus::kInfeasible) EXPECT_FALSE(result.diagnosis.complete) << what;
+      }
+      options.cancel = nullptr;
+    }
+  std::printf("%d plans stopped before their verdict, %d after it\n", stopped, verdicts_kept);
+  EXPECT_GE(stopped, 20);
+  EXPECT_GE(verdicts_kept, 6);
+}
+
+TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
+  Problem problem = experiment("experiment_a");
+  problem.resolution = {.ds = 0.05, .dphi = 0.2};
+  const PlanResult least = plan(problem);
+  ASSERT_EQ(least.status, PlanStatus::kSolved);
+  EXPECT_FALSE(least.min_clearance.has_value());
+  EXPECT_TRUE(least.arm_angle.empty());
+  PlanOptions options;
+  options.evidence = {.tool_path_error = true};
+  const PlanResult error = plan(problem, options);
+  EXPECT_GT(error.tool_path_error_mm.max, 0);
+  EXPECT_TRUE(error.arm_angle.empty());
+  options.evidence = Evidence::all();
+  const PlanResult all = plan(problem, options);
+  EXPECT_EQ(all.tool_path_error_mm.max, error.tool_path_error_mm.max);
+  EXPECT_TRUE(all.min_clearance.has_value());
+  EXPECT_EQ(all.arm_angle.size(), all.trajectory.size());
+  EXPECT_GT(all.min_manipulability, 0);
+
+  Problem blocked = infeasible();
+  blocked.resolution = {.ds = 0.02, .dphi = 0.2};
+  const PlanResult cause = plan(blocked), evidence = plan(blocked, options);
+  ASSERT_EQ(cause.status, PlanStatus::kInfeasible);
+  EXPECT_EQ(cause.diagnosis.reason, evidence.diagnosis.reason);
+  EXPECT_EQ(cause.diagnosis.reached_layer, evidence.diagnosis.reached_layer);
+  EXPECT_TRUE(cause.diagnosis.complete);
+  EXPECT_TRUE(cause.diagnosis.empty_layers.empty());
+  EXPECT_TRUE(cause.diagnosis.removed.empty());
+  EXPECT_FALSE(evidence.diagnosis.empty_layers.empty());
+  EXPECT_FALSE(evidence.diagnosis.removed.empty());
+}
+
+/// Large allocations, long loops and destructors between the polls are what could make a stop late. Generous for busy machines; by
+/// hand, in milliseconds, it is the figure that counts.
+TEST(Budget, ADeadlineHoldsOnLargeLattices) {
+  struct Size {
+    double ds, dphi;
+  };
+  for (const auto& [name, problem] : {std::pair("solved", experiment("experiment_a")), std::pair("infeasible", infeasible())})
+    for (const Size size : {Size{0.005, 0.05}, Size{0.001, 0.01}, Size{0.0005, 0.003}, Size{1e-6, 0.5}}) {
+      Problem fine = problem;
+      fine.resolution = {.ds = size.ds, .dphi = size.dphi};
+      const PreparedRobot robot(fine);
+      for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+        if (planner == PlannerKind::kEager && size.dphi < 0.01) continue;  // refused for its memory on small machines
+        PlanOptions options;
+        options.planner = planner;
+        options.evidence = Evidence::all();
+        options.timeout_s = 0.005;
+        const auto start = std::chrono::steady_clock::now();
+        const PlanResult result = plan(robot, fine, options);
+        const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        std::printf("%s, ds %g, dphi %g, %s: %s after %.1f ms\n", name, size.ds, size.dphi, result.planner.c_str(),
+                    to_string(result.status), ms);
+        EXPECT_LT(ms, 250) << result.planner << " ds " << size.ds << " dphi " << size.dphi;
+      }
+    }
+}
+
+/// A row without its columns would be a wrong answer.
+TEST(Budget, ACampaignLeavesOutTheEpisodeThatWasStopped) {
+  Problem problem = infeasible();
+  problem.resolution = {.ds = 0.02, .dphi = 0.2};
+  const PreparedRobot robot(problem);
+  CampaignOptions options;
+  options.episodes = 1;
+  options.plan.planner = PlannerKind::kLazy;
+  std::vector<EpisodeRow> rows;
+  run_campaign(robot, problem, options, [&](const EpisodeRow& row) { rows.push_back(row); });
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_FALSE(rows[0].reason.empty());
+  const std::atomic<bool> cancelled{true};
+  options.plan.cancel = &cancelled;
+  rows.clear();
+  run_campaign(robot, problem, options, [&](const EpisodeRow& row) { rows.push_back(row); });
+  EXPECT_TRUE(rows.empty());
+}
+
+}  // namespace
+}  // namespace swivel

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "diagnosis.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "collision_validity.hpp"
+#include "random_problem.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// Everything that a problem's lattice needs.
+struct Laid {
+  Problem problem;
+  PreparedRobot robot;
+  ToolPath path;
+  Lattice lattice;
+  explicit Laid(const Problem& p)
+      : problem(p),
+        robot(problem),
+        path(waypoints_in_base(problem), problem.resolution, problem.source),
+        lattice(robot.arm().chain, robot.srs(), path, problem) {}
+  Diagnosis diagnose_from(int deepest) const {
+    Diagnosis diagnosis;
+    diagnose(lattice, robot.world(), edge_rule(problem.limits, robot.radii()), deepest, true, {}, diagnosis);
+    return diagnosis;
+  }
+};
+
+/// What first_below says of every node of a layer, one by one: "" is counted where a node is valid.
+std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
+  World::Query query(laid.robot.world());
+  std::map<std::string, std::int64_t> reasons;
+  for (int slot = 0; slot < laid.lattice.width(); ++slot) {
+    const auto q = laid.lattice.node(layer, slot);
+    if (!q) continue;
+    const auto pair = query.first_below(*q, laid.problem.limits.clearance);
+    const auto& names = laid.robot.world().body_names();
+    const auto name = [&](int body) { return names[static_cast<std::size_t>(body)]; };
+    ++reasons[!laid.lattice.manipulable(*q) ? "manipulability" : pair ? name(pair->a) + " - " + name(pair->b) : ""];
+  }
+  return reasons;
+}
+
+/// Verdicts are shared among nodes whose bodies stand alike; the counts and the reason must be those of asking about every node.
+TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
+  const std::uint64_t base = seed("Diagnosis");
+  const auto robots = all_robots();
+  int layers = 0, empty = 0, blocked = 0;
+  for (int trial = 0; trial < trials(120); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Laid laid(random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random));
+    const int layer = 1 + random.below(laid.lattice.layers() - 1);
+    auto plain = plain_reasons(laid, layer);
+    const bool any_valid = plain.erase("") > 0;
+    const Diagnosis diagnosis = laid.diagnose_from(layer - 1);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    ++layers;
+    for (const auto& [reason, count] : plain) {
+      const auto found = diagnosis.removed.find(reason);
+      ASSERT_TRUE(found != diagnosis.removed.end()) << what << ": " << reason;
+      ASSERT_EQ(found->second, count) << what << ": " << reason;
+      ++blocked;
+    }
+    if (any_valid || plain.empty()) continue;
+    ++empty;
+    const auto most = std::max_element(plain.begin(), plain.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    ASSERT_EQ(diagnosis.reason, most->first) << what;
+    ASSERT_EQ(diagnosis.empty_layers.at(0).layer, layer) << what;
+  }
+  std::printf("%d layers, %d pairs that block nodes, %d layers empty for them\n", layers, blocked, empty);
+  EXPECT_GE(blocked, 40);
+  EXPECT_GE(empty, 5);
+}
+
+/// A straight line that leaves the reach of the arm.
+Problem leaving(double to) {
+  Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  problem.waypoints[1].position = problem.waypoints[0].position + Vector3d(to, 0, 0);
+  problem.resolution = {.ds = 0.02, .dphi = 0.2};
+  return problem;
+}
+
+TEST(Diagnosis, SaysByHowMuchAPoseIsOutOfReach) {
+  PlanOptions options;
+  options.evidence = Evidence::all();
+  int checked = 0;
+  for (const double to : {0.8, -0.8}) {
+    const Problem problem = leaving(to);
+    const Laid laid(problem);
+    const PlanResult result = plan(laid.robot, problem, options);
+    ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+    EXPECT_TRUE(result.diagnosis.complete);
+    const SrsArm& arm = laid.robot.srs();
+    for (const EmptyLayer& empty : result.diagnosis.empty_layers) {
+      if (empty.reason != "no IK") continue;
+      const double reach = (wrist_centre(arm, laid.path.layer(empty.layer).tool) - arm.S).norm();
+      ASSERT_TRUE(empty.shortfall.has_value()) << empty.layer;
+      EXPECT_TRUE(empty.shortfall->is_reach());
+      const bool far = empty.shortfall->kind == Shortfall::Kind::kTooFar;
+      EXPECT_NEAR(empty.shortfall->by(), far ? reach - arm.upper - arm.fore : std::abs(arm.upper - arm.fore) - reach, 1e-12);
+      EXPECT_GT(empty.shortfall->by(), 0);
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, 5);
+}
+
+/// Widening the joint named by what is missing lets the layer have a node; a little less does not.
+TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
+  PlanOptions options;
+  options.evidence = Evidence::all();
+  int checked = 0;
+  for (const double to : {0.8, -0.3, -0.8}) {
+    const Problem problem = leaving(to);
+    const Laid laid(problem);
+    const PlanResult result = plan(laid.robot, problem, options);
+    if (result.status != PlanStatus::kInfeasible) continue;
+    for (const EmptyLayer& empty : result.diagnosis.empty_layers) {
+      if (!empty.reason.starts_with("joint ") || empty.reason == "joint limits") continue;
+      ASSERT_TRUE(empty.shortfall.has_value());
+      ASSERT_EQ("joint " + empty.shortfall->joint, empty.reason);
+      ASSERT_FALSE(empty.shortfall->is_reach());
+      const auto exists_with = [&](double more) {
+        Chain chain = laid.robot.arm().chain;
+        for (std::size_t k = 0; k < kDof; ++k) {
+          if (chain.joint_names[k] != empty.shortfall->joint) continue;
+          chain.limit[k].lower -= empty.shortfall->kind == Shortfall::Kind::kLowerLimit ? more : 0;
+          chain.limit[k].upper += empty.shortfall->kind == Shortfall::Kind::kUpperLimit ? more : 0;
+        }
+        const Lattice wider(chain, laid.robot.srs(), laid.path, problem);
+        for (int slot = 0; slot < wider.width(); ++slot)
+          if (wider.node(empty.layer, slot)) return true;
+        return false;
+      };
+      EXPECT_TRUE(exists_with(empty.shortfall->by() + 1e-8)) << empty.layer << " " << empty.reason;
+      EXPECT_FALSE(exists_with(empty.shortfall->by() - 1e-8)) << empty.layer << " " << empty.reason;
+      ++checked;
+    }
+  }
+  std::printf("%d layers\n", checked);
+  EXPECT_GE(checked, 3);
+}
+
+/// The layers that are looked at end at a count, not at a clock, and the answer says where.
+TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
+  Problem problem = leaving(0.8);
+  problem.resolution = {.ds = 2e-5, .dphi = 1.0};
+  auto model = std::make_shared<RobotModel>(*problem.robot);  // with a mesh, whose questions count for more
+  const auto shaped = std::find_if(model->links.begin(), model->links.end(), [](const Link& link) { return !link.collision.empty(); });
+  shaped->collision[0].shape = box_mesh(Vector3d::Constant(0.05));
+  problem.robot = model;
+  const Laid laid(problem);
+  const Diagnosis first = laid.diagnose_from(0), again = laid.diagnose_from(0);
+  EXPECT_FALSE(first.complete);
+  EXPECT_GT(first.layers_known, 1000);
+  EXPECT_LT(first.layers_known, laid.lattice.layers());
+  EXPECT_EQ(first.layers_known, again.layers_known);
+  EXPECT_EQ(first.empty_layers.size(), again.empty_layers.size());
+}
+
+}  // namespace
+}  // namespace swivel
