@@ -133,14 +133,14 @@ Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, co
   const auto m = static_cast<std::size_t>(layers());
   planes_.reserve(m);
   reach_.reserve(m);
-  circles_.resize(m);
+  circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {
     if (i % 64 == 0) budget.poll();
     const Pose& tool = path.layer(i).tool;
     planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
     reach_.push_back(reach_status(arm, planes_.back().reach));
     const bool reachable = reach_.back() == ReachStatus::kReachable;
-    auto& circles = circles_[static_cast<std::size_t>(i)];
+    auto& circles = circles_.emplace_back();
     if (reachable) circles = elbow_circles(arm, planes_.back(), tool);
     const Images& images = images_[kElbowJoint];
     for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it

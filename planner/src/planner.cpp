@@ -110,11 +110,9 @@ void search_lazily(const Lattice& lattice, CollisionValidity& validity, const Pl
       result.time_ms["reach"] = watch.lap();
     }
     if (options.record) {
-      watch.lap();
-      options.record->nodes = togo.node_verdicts();
-      options.record->path = found.outcome.path;
       std::int64_t expansions = 0;  // no part of the search
-      if (found.deepest && *found.deepest >= 0) options.record->path = best_path(togo, expansions);
+      options.record->path = found.deepest.value_or(-1) >= 0 ? best_path(togo, expansions) : found.outcome.path;
+      options.record->nodes = togo.node_verdicts();
       result.time_ms["record"] = watch.lap();
     }
   } catch (const Stopped&) {

@@ -293,6 +293,7 @@ class Stopping(WithFolder):
 
     def start(self, *options):
         process = subprocess.Popen([SWIVEL, "plan", *map(str, self.LONG), *map(str, options)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         time.sleep(1.5)
         self.assertIsNone(process.poll())
@@ -302,7 +303,7 @@ class Stopping(WithFolder):
         for sent in (signal.SIGINT, signal.SIGTERM):
             process = self.start("--json", self.folder / "r.json")
             process.send_signal(sent)
-            said, _ = process.communicate(timeout=20)
+            said = process.communicate(timeout=20)[0]
             self.assertEqual(process.returncode, 3)
             self.assertIn("stopped: cancelled", said)
             self.assertEqual(json.loads((self.folder / "r.json").read_text())["status"], "cancelled")
@@ -313,11 +314,12 @@ class Stopping(WithFolder):
         process.send_signal(signal.SIGINT)
         process.send_signal(signal.SIGTERM)
         process.send_signal(signal.SIGCONT)
-        self.assertIn(process.wait(timeout=20), (130, 143))
+        process.communicate(timeout=20)
+        self.assertIn(process.returncode, (130, 143))
         self.assertFalse((self.folder / "r.json").exists())
 
     def test_a_time_out_of_centuries(self):
-        done = run("plan", PROBLEMS / "experiment_a.yaml", "--ds", "0.05", "--dphi", "0.2", "--timeout", "1e10")
+        done = run("plan", PROBLEMS / "experiment_a.yaml", "--ds", "0.02", "--dphi", "0.2", "--timeout", "1e10")
         self.assertEqual(done.returncode, 0, done.stdout)
 
     def test_quiet_measures_nothing(self):

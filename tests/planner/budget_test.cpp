@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -41,7 +42,7 @@ TEST(Budget, EveryPositiveTimeOutHolds) {
   EXPECT_FALSE(Budget().spent());
   EXPECT_TRUE(Budget(1e-300).spent());
   Problem problem = experiment("experiment_a");
-  problem.resolution = {.ds = 0.05, .dphi = 0.2};
+  problem.resolution = {.ds = 0.02, .dphi = 0.2};
   PlanOptions options;
   options.timeout_s = 1e10;
   EXPECT_EQ(plan(problem, options).status, PlanStatus::kSolved);
@@ -82,35 +83,42 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
       {"scene", [&] { World(robot.world(), problem.scene, spent); }},
       {"chord bound", [&] { ChordBound(lattice, spent); }},
       {"sweep", [&] { togo.sweep(lattice.layers() - 1); }},
-      {"search", [&] {
+      {"search",
+       [&] {
          auto asked = validity();
          path_first(togo, asked, {}, counters);
        }},
-      {"furthest layer", [&] {
+      {"furthest layer",
+       [&] {
          auto asked = validity();
          static_cast<void>(deepest_valid_layer(togo, asked, {}, counters));
        }},
-      {"nodes", [&] {
+      {"nodes",
+       [&] {
          auto asked = validity();
          const NodeQuestion question{0, 0, q};
          NodeAnswer answer;
          asked.nodes({&question, 1}, {&answer, 1});
        }},
-      {"edges", [&] {
+      {"edges",
+       [&] {
          auto asked = validity();
          const EdgeQuestion question{0, 0, 1, q, q};
          std::uint8_t answer = 0;
          asked.edges({&question, 1}, {&answer, 1});
        }},
-      {"one edge", [&] {
+      {"one edge",
+       [&] {
          World::Query query(world, Certificates::kOn);
          static_cast<void>(edge_blocked(query, rule, q, away, spent));
        }},
-      {"eager", [&] {
+      {"eager",
+       [&] {
          auto asked = validity();
          eager_search(lattice, asked, EagerSearch::kDijkstra, spent, eager);
        }},
-      {"eager_dp", [&] {
+      {"eager_dp",
+       [&] {
          auto asked = validity();
          eager_dp(lattice, asked, spent, eager);
        }},
@@ -178,7 +186,7 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
 
 TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   Problem problem = experiment("experiment_a");
-  problem.resolution = {.ds = 0.05, .dphi = 0.2};
+  problem.resolution = {.ds = 0.02, .dphi = 0.2};
   const PlanResult least = plan(problem);
   ASSERT_EQ(least.status, PlanStatus::kSolved);
   EXPECT_FALSE(least.min_clearance.has_value());
@@ -208,8 +216,8 @@ TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   EXPECT_FALSE(evidence.diagnosis.removed.empty());
 }
 
-/// Large allocations, long loops and destructors between the polls are what could make a stop late. Generous for busy machines; by
-/// hand, in milliseconds, it is the figure that counts.
+/// Large allocations, long loops and destructors between the polls are what could make a stop late. Processor time, since on a busy
+/// machine the clock measures others.
 TEST(Budget, ADeadlineHoldsOnLargeLattices) {
   struct Size {
     double ds, dphi;
@@ -219,18 +227,23 @@ TEST(Budget, ADeadlineHoldsOnLargeLattices) {
       Problem fine = problem;
       fine.resolution = {.ds = size.ds, .dphi = size.dphi};
       const PreparedRobot robot(fine);
-      for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+      for (const auto& [planner, timeout_s] :
+           {std::pair(PlannerKind::kEager, 0.005), std::pair(PlannerKind::kEagerDp, 0.005), std::pair(PlannerKind::kLazy, 0.005),
+            std::pair(PlannerKind::kParallel, 0.005), std::pair(PlannerKind::kLazy, 0.1)}) {
         if (planner == PlannerKind::kEager && size.dphi < 0.01) continue;  // refused for its memory on small machines
         PlanOptions options;
         options.planner = planner;
         options.evidence = Evidence::all();
-        options.timeout_s = 0.005;
+        options.threads = 1;
+        options.timeout_s = timeout_s;
         const auto start = std::chrono::steady_clock::now();
+        const std::clock_t used = std::clock();
         const PlanResult result = plan(robot, fine, options);
+        const double cpu_ms = 1e3 * static_cast<double>(std::clock() - used) / CLOCKS_PER_SEC;
         const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-        std::printf("%s, ds %g, dphi %g, %s: %s after %.1f ms\n", name, size.ds, size.dphi, result.planner.c_str(),
-                    to_string(result.status), ms);
-        EXPECT_LT(ms, 250) << result.planner << " ds " << size.ds << " dphi " << size.dphi;
+        std::printf("%s, ds %g, dphi %g, %s, %g s: %s after %.1f ms, of which %.1f ms worked\n", name, size.ds, size.dphi,
+                    result.planner.c_str(), timeout_s, to_string(result.status), ms, cpu_ms);
+        EXPECT_LT(cpu_ms, 1e3 * timeout_s + 250) << result.planner << " ds " << size.ds << " dphi " << size.dphi;
       }
     }
 }

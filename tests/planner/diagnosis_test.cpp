@@ -70,7 +70,8 @@ TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
     }
     if (any_valid || plain.empty()) continue;
     ++empty;
-    const auto most = std::max_element(plain.begin(), plain.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    const auto most =
+        std::max_element(plain.begin(), plain.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
     ASSERT_EQ(diagnosis.reason, most->first) << what;
     ASSERT_EQ(diagnosis.empty_layers.at(0).layer, layer) << what;
   }
@@ -153,7 +154,8 @@ TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
   Problem problem = leaving(0.8);
   problem.resolution = {.ds = 2e-5, .dphi = 1.0};
   auto model = std::make_shared<RobotModel>(*problem.robot);  // with a mesh, whose questions count for more
-  const auto shaped = std::find_if(model->links.begin(), model->links.end(), [](const Link& link) { return !link.collision.empty(); });
+  const auto shaped =
+      std::find_if(model->links.begin(), model->links.end(), [](const Link& link) { return !link.collision.empty(); });
   shaped->collision[0].shape = box_mesh(Vector3d::Constant(0.05));
   problem.robot = model;
   const Laid laid(problem);
