@@ -131,6 +131,10 @@ const std::vector<BodyPair>& World::pairs() const {
 const std::vector<RobotBody>& World::bodies() const {
   return impl_->robot->bodies;
 }
+bool World::has_meshes() const {
+  const auto is_mesh = [](const Impl::Body& body) { return std::holds_alternative<MeshPtr>(body.shape.shape); };
+  return std::any_of(impl_->bodies.begin(), impl_->bodies.end(), is_mesh);
+}
 const std::vector<std::string>& World::warnings() const {
   return impl_->warnings;
 }

@@ -95,9 +95,7 @@ class Inspector {
         query_(world, Certificates::kOn),
         blockers_(lattice, world, query_),
         blockers_before_(lattice, world, query_) {
-    const auto is_mesh = [&](const RobotBody& body) { return std::holds_alternative<MeshPtr>(body.shape); };
-    const auto& bodies = world.bodies();
-    question_us_ = std::any_of(bodies.begin(), bodies.end(), is_mesh) ? 300 : 3;
+    question_us_ = world.has_meshes() ? 300 : 3;
     ik_us_ = lattice.arm().exact ? 0.3 : 5;
   }
 

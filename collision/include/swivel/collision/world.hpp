@@ -73,6 +73,8 @@ class World {
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
+  /// Of the robot or the scene: questions then take a hundred times as long.
+  [[nodiscard]] bool has_meshes() const;
   /// Open meshes (treated as surfaces) and the like.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
