@@ -173,6 +173,12 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
+CampaignOptions one_episode() {
+  CampaignOptions options;
+  options.episodes = 1;
+  return options;
+}
+
 std::string message_of(const std::function<void()>& call) {
   try {
     call();
@@ -204,7 +210,7 @@ TEST(Validate, EveryMemberBrokenInEveryWayIsNamed) {
     for (const std::string& message :
          {message_of([&] { (void)plan(bad); }), message_of([&] { (void)plan(robot, bad); }),
           message_of([&] { PreparedRobot prepared(bad); }), message_of([&] { (void)check_trajectory(bad, {}); }),
-          message_of([&] { run_campaign(robot, bad, {.episodes = 1}, [](const EpisodeRow&) {}); })})
+          message_of([&] { run_campaign(robot, bad, one_episode(), [](const EpisodeRow&) {}); })})
       EXPECT_EQ(message, message_of([&] { validate(bad); }));
     ++broken;
   }
@@ -305,9 +311,8 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   for (const auto& [what, changes] : others) {
     Problem other = good;
     changes(other);
-    for (const std::string& message : {message_of([&] { (void)plan(robot, other); }), message_of([&] {
-                                         run_campaign(robot, other, {.episodes = 1}, [](const EpisodeRow&) {});
-                                       })}) {
+    for (const std::string& message : {message_of([&] { (void)plan(robot, other); }),
+                                       message_of([&] { run_campaign(robot, other, one_episode(), [](const EpisodeRow&) {}); })}) {
       EXPECT_NE(message.find(std::string(": ") + what), std::string::npos) << what << ": " << message;
       EXPECT_NE(message.find("prepared for"), std::string::npos) << message;
     }
