@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "search_options.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
@@ -13,20 +14,41 @@ namespace {
 
 struct CheckArguments {
   std::string problem, trajectory;
+  LatticeOptions lattice;
   EpisodeChoice episode;
 };
 
+/// What was proved, and how near to failing.
+void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
+  std::printf("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position, result.worst_angle,
+              1e3 * result.worst_path_error);
+  if (problem.limits.tool_path_error) std::printf(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
+  std::printf(" and %.3g rad", result.worst_path_angle);
+  if (problem.limits.tool_angle_error) std::printf(" (allowed %.3g)", *problem.limits.tool_angle_error);
+  std::printf(" between, joint moves within %.0f %% of what is allowed", 100 * result.largest_step);
+  if (result.nearest_limit)
+    std::printf(", '%s' %.2f deg from its limit at row %zu",
+                chain.joint_names[static_cast<std::size_t>(result.nearest_limit->joint)].c_str(),
+                result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
+  if (result.min_clearance)
+    std::printf(", clearance at least %.3f mm (asked %.3f)", 1e3 * *result.min_clearance, 1e3 * problem.limits.clearance);
+  std::printf(", cost %.9g\n", result.cost);
+}
+
 int run(const CheckArguments& arguments) {
-  const Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  arguments.lattice.apply(problem);
   const PreparedRobot robot(problem);
-  const auto rows = io::load_trajectory(arguments.trajectory, robot.arm().chain.joint_names);
-  const CheckResult result = check_trajectory(problem, rows);
+  const Chain& chain = robot.arm().chain;
+  const auto rows = io::load_trajectory(arguments.trajectory, chain.joint_names);
+  const CheckResult result = check_trajectory(robot, problem, rows);
   for (const std::string& failure : result.failures) std::printf("%s\n", failure.c_str());
-  std::printf("%s: %zu rows, tool within %.2g m and %.2g rad of the path at rows, within %.3f mm between, cost %.9g",
-              result.passed ? "passed" : "failed", rows.size(), result.worst_position, result.worst_angle,
-              1e3 * result.worst_path_error, result.cost);
-  if (result.min_clearance) std::printf(", clearance at least %.3f mm", 1e3 * *result.min_clearance);
-  std::printf("\n");
+  const auto shown = static_cast<std::int64_t>(result.failures.size());
+  if (result.failure_count > shown) std::printf("and %lld more\n", static_cast<long long>(result.failure_count - shown));
+  std::printf("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
+  if (!result.passed) std::printf(", %lld failures", static_cast<long long>(result.failure_count));
+  std::printf("; ");
+  print_margins(problem, chain, result);
   return result.passed ? kOk : kNo;
 }
 
@@ -37,6 +59,7 @@ void add_check(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, "trajectory file (CSV)")->required();
+  arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

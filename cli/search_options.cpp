@@ -16,6 +16,10 @@ namespace swivel::cli {
 void SearchOptions::add_to(CLI::App& command) {
   command.add_option("--planner", planner, "eager | eager_dp | lazy | parallel")->capture_default_str();
   command.add_option("--threads", threads, "0: all cores")->capture_default_str();
+  LatticeOptions::add_to(command);
+}
+
+void LatticeOptions::add_to(CLI::App& command) {
   command.add_option("--ds", ds, "resolution along the path, m");
   command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
   command.add_option("--edges", edges, "continuous | nodes");
@@ -30,7 +34,7 @@ PlanOptions SearchOptions::plan_options() const {
   return options;
 }
 
-void SearchOptions::apply(Problem& problem) const {
+void LatticeOptions::apply(Problem& problem) const {
   if (ds) problem.resolution.ds = positive(*ds, "--ds");
   if (dphi) {
     problem.resolution.dphi = positive(*dphi, "--dphi");

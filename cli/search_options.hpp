@@ -10,16 +10,22 @@
 
 namespace swivel::cli {
 
-/// How to search, the same words for `plan` and `campaign`.
-struct SearchOptions {
-  std::string planner = "parallel", edges;
-  int threads = 0;
+/// Which lattice, the same words for `plan`, `campaign` and `check`.
+struct LatticeOptions {
+  std::string edges;
   std::optional<double> ds, dphi;
+  void add_to(CLI::App& command);
+  /// What the command line says instead of the problem file.
+  void apply(Problem& problem) const;
+};
+
+/// How to search, the same words for `plan` and `campaign`.
+struct SearchOptions : LatticeOptions {
+  std::string planner = "parallel";
+  int threads = 0;
   void add_to(CLI::App& command);
   /// Planner and threads, and Ctrl-C as the cancel flag.
   [[nodiscard]] PlanOptions plan_options() const;
-  /// What the command line says instead of the problem file.
-  void apply(Problem& problem) const;
   /// The options that change answers, as words of a command line, with a space before each; the planner always.
   [[nodiscard]] std::string words() const;
 };

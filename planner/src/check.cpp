@@ -5,172 +5,492 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <optional>
 
 #include "collision_validity.hpp"
+#include "path_following.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/lattice.hpp"
 #include "swivel/core/tool_path.hpp"
-#include "swivel/planner/planner.hpp"
 
 namespace swivel {
 
 namespace {
 
-constexpr double kPose = 1e-6, kLimit = 1e-9;
+constexpr double kPose = 1e-6;      // m and rad
+constexpr double kLimit = 1e-9;     // rad
+constexpr double kSame = 1e-9;      // m along the path
+constexpr double kArmAngle = 1e-3;  // rad
+constexpr PoseTolerance kAtWaypoints{1e-3, 0.02};
 
-/// The waypoints' own straight segments: a path cut at waypoints alone.
-ToolPath segments_of(const Problem& problem) {
-  const Resolution coarse{.ds = 1e9, .dphi = 1, .dalpha = 1e9};
-  return ToolPath(waypoints_in_base(problem), coarse, problem.source);
+double angle_between(const Pose& a, const Pose& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-struct Place {
-  int segment = 0;
-  double fraction = 0;
-  double position_error = 1e9, angle_error = 1e9;
-  [[nodiscard]] double along() const { return segment + fraction; }
+/// Distance of two poses, m or rad, whichever is more.
+double apart(const Pose& a, const Pose& b) {
+  return std::max((a.translation() - b.translation()).norm(), angle_between(a, b));
+}
+
+/// What each joint may move on each step of a path, added up: entry i is the sum before layer i.
+std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, const ToolPath& path) {
+  const Limits& limits = problem.limits;
+  const bool timed = limits.tool_speed || limits.tool_turn_speed;
+  for (std::size_t j = 0; j < kDof; ++j)
+    if ((timed || problem.cost.metric == CostMetric::kTime) && chain.limit[j].velocity <= 0)
+      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
+                       chain.joint_names[j] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+  std::vector<Config> allowed{Config::Zero()};
+  for (int i = 0; i + 1 < path.size(); ++i) {
+    double dt = 0;
+    if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
+    if (limits.tool_turn_speed) dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
+    Config bound = Config::Constant(limits.joint_step);
+    for (std::size_t j = 0; dt > 0 && j < kDof; ++j) {
+      double& joint = bound[static_cast<Eigen::Index>(j)];
+      joint = std::min(joint, chain.limit[j].velocity * dt);
+    }
+    allowed.push_back(allowed.back() + bound);
+  }
+  return allowed;
+}
+
+/// Every question about collisions.
+class Contacts {
+ public:
+  Contacts(const PreparedRobot& robot, const Problem& problem)
+      : world_(robot.world(), problem.scene), query_(world_), rule_(edge_rule(problem.limits, robot.radii())) {
+    rule_.d_edge = std::max(0.0, rule_.d_edge - kVerdictBand);
+  }
+  std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
+  std::optional<BodyPair> on_the_way(const Config& from, const Config& to) { return edge_blocked(query_, rule_, from, to); }
+  [[nodiscard]] std::string names(const BodyPair& pair) const {
+    const auto& name = world_.body_names();
+    return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" + name[static_cast<std::size_t>(pair.b)] + "'";
+  }
+  [[nodiscard]] std::int64_t fcl_calls() const { return query_.counters().fcl_calls; }
+
+ private:
+  World world_;
+  World::Query query_;
+  EdgeRule rule_;
 };
 
-/// The place on the path at arc length s that the tool is at, not before `from`. Where the path only turns, s repeats and the
-/// tool's orientation tells the place.
-Place locate(const ToolPath& path, double s, const Pose& tool, double from) {
-  Place best;
-  for (int i = std::max(0, static_cast<int>(std::floor(from - 1e-9))); i + 1 < path.size(); ++i) {
-    const PathLayer& segment = path.layer(i);
-    if (segment.s > s + 1e-9) break;
-    if (segment.s + segment.step_length < s - 1e-9) continue;
-    Place place;
-    place.segment = i;
-    if (segment.step_length > 1e-9) {
-      place.fraction = std::clamp((s - segment.s) / segment.step_length, 0.0, 1.0);
-    } else {
-      const Eigen::AngleAxisd turned(segment.tool.linear().transpose() * tool.linear());
-      const Vector3d axis = segment.step_rotation / segment.step_angle;
-      place.fraction = std::clamp(turned.angle() * turned.axis().dot(axis) / segment.step_angle, 0.0, 1.0);
-    }
-    const Pose there = path.at(i, place.fraction);
-    place.position_error = (there.translation() - tool.translation()).norm();
-    place.angle_error = Eigen::AngleAxisd(there.linear().transpose() * tool.linear()).angle();
-    if (place.along() < from - 1e-9) continue;
-    if (std::max(place.position_error, place.angle_error) < std::max(best.position_error, best.angle_error)) best = place;
-  }
-  return best;
-}
-
-double distance_to_segment(const Vector3d& x, const Vector3d& a, const Vector3d& b) {
-  const Vector3d d = b - a;
-  const double length2 = d.squaredNorm();
-  const double t = length2 < 1e-18 ? 0 : std::clamp((x - a).dot(d) / length2, 0.0, 1.0);
-  return (x - a - t * d).norm();
-}
-
-/// Distance of a point from the path between two places.
-double distance_to_path(const ToolPath& path, const Place& from, const Place& to, const Vector3d& x) {
-  double least = 1e9;
-  for (int i = from.segment; i <= to.segment; ++i) {
-    const double t0 = i == from.segment ? from.fraction : 0, t1 = i == to.segment ? to.fraction : 1;
-    least = std::min(least, distance_to_segment(x, path.at(i, t0).translation(), path.at(i, t1).translation()));
-  }
-  return least;
-}
-
-class Report {
+class Check {
  public:
-  explicit Report(CheckResult& result) : result_(result) {}
+  Check(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows)
+      : problem_(problem),
+        limits_(problem.limits),
+        chain_(robot.arm().chain),
+        arm_(robot.srs()),
+        rows_(rows),
+        path_(waypoints_in_base(problem), problem.resolution, problem.source),
+        allowed_(allowed_moves(problem, chain_, path_)),
+        contacts_(robot, problem),
+        along_{limits_.tool_path_error.value_or(kNone), limits_.tool_angle_error.value_or(kNone)},
+        at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
+                      limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
+    for (int i = 0; i < path_.size(); ++i)
+      planes_.push_back(i == 0 ? first_plane(arm_, path_.layer(i).tool) : carry_plane(arm_, planes_.back(), path_.layer(i).tool));
+    if (limits_.step_error) lattice_.emplace(chain_, arm_, path_, problem);
+  }
+
+  CheckResult run() {
+    if (rows_.size() < 2) fail("%zu row(s): at least two are needed", rows_.size());
+    if (problem_.start && !rows_.empty() && !((rows_[0].q - *problem_.start).lpNorm<Eigen::Infinity>() <= kPose))
+      fail("row 0: joints are not the given start");
+    for (std::size_t k = 0; k < rows_.size(); ++k) candidates_.push_back(sound(k) ? places_of(k) : std::vector<Candidate>{});
+    choose_places();
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (k > 0 && rows_[k].q.allFinite() && rows_[k - 1].q.allFinite()) result_.cost += cost_of(rows_[k].q - rows_[k - 1].q);
+      if (!examined(k)) continue;
+      examine_row(k);
+      if (k > 0 && examined(k - 1)) examine_move(k);
+    }
+    examine_travel();
+    result_.fcl_calls = contacts_.fcl_calls();
+    result_.passed = result_.failure_count == 0;
+    return std::move(result_);
+  }
+
+ private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  /// A place of the path that a row can be at, and the least number of failing moves on the way there.
+  struct Candidate {
+    double place = 0;
+    int failures = 0;
+    int before = -1;  // candidate of the row before
+  };
+
   [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
-    char line[300];
+    constexpr std::int64_t kMostLines = 20;
+    if (++result_.failure_count > kMostLines) return;
+    char line[400];
     std::va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    if (result_.failures.size() < 20) result_.failures.emplace_back(line);
-    failed_ = true;
+    result_.failures.emplace_back(line);
   }
-  [[nodiscard]] bool failed() const { return failed_; }
 
- private:
-  CheckResult& result_;
-  bool failed_ = false;
+  [[nodiscard]] bool examined(std::size_t k) const { return !candidates_[k].empty(); }
+  [[nodiscard]] double place(std::size_t k) const { return candidates_[k][static_cast<std::size_t>(chosen_[k])].place; }
+  [[nodiscard]] const char* joint_name(std::size_t j) const { return chain_.joint_names[j].c_str(); }
+
+  /// Values and limits of a row.
+  bool sound(std::size_t k) {
+    const TrajectoryRow& row = rows_[k];
+    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !row.q.allFinite()) {
+      fail("row %zu: has values that are not finite", k);
+      return false;
+    }
+    bool inside = true;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain_.limit[j];
+      if (limit.continuous) continue;
+      const double value = row.q[static_cast<Eigen::Index>(j)];
+      const double by = std::min(value - limit.lower, limit.upper - value) - limits_.joint_margin;
+      if (!(by >= -kLimit)) {
+        fail("row %zu: joint '%s' at %.9g is outside its limits", k, joint_name(j), value);
+        inside = false;
+      } else if (!result_.nearest_limit || by < result_.nearest_limit->by) {
+        result_.nearest_limit = {static_cast<int>(j), by, k};
+      }
+    }
+    return inside;
+  }
+
+  /// The places at a row's s at which the path has the tool's pose, in order. Fails the row where there is none.
+  std::vector<Candidate> places_of(std::size_t k) {
+    const double s = rows_[k].s;
+    const double length = path_.layer(path_.size() - 1).s;
+    if (!(s >= -kSame && s <= length + kSame)) {
+      fail("row %zu: s = %.9g lies outside the path: allowed are 0 to %.9g", k, s, length);
+      return {};
+    }
+    const Pose tool = chain_.tool(rows_[k].q);
+    std::vector<Candidate> found;
+    double position = kNone, angle = kNone;  // of the nearest
+    const auto try_place = [&](double place) {
+      const Pose there = pose_at(path_, place);
+      const double position_error = (there.translation() - tool.translation()).norm(), angle_error = angle_between(there, tool);
+      if (std::max(position_error, angle_error) < std::max(position, angle)) position = position_error, angle = angle_error;
+      if (!(position_error <= kPose && angle_error <= kPose)) return false;
+      if (found.empty() || found.back().place < place) found.push_back({.place = place});
+      return true;
+    };
+    const auto at_s = [&](int layer) { return std::abs(path_.layer(layer).s - s) <= kSame; };
+    for (int i = first_step_to(s - kSame); i + 1 < path_.size() && path_.layer(i).s <= s + kSame; ++i) {
+      // The tool's place on the step, as far as s leaves it open: all of it where the step only turns. Layers are met exactly.
+      bool at_layer = at_s(i) && try_place(i);
+      if (at_s(i + 1)) at_layer = try_place(i + 1) || at_layer;
+      if (at_layer) continue;
+      const PathLayer& step = path_.layer(i);
+      const Vector3d along = path_.layer(i + 1).tool.translation() - step.tool.translation();
+      const Eigen::AngleAxisd turn(step.tool.linear().transpose() * tool.linear());
+      double t = ((tool.translation() - step.tool.translation()).dot(along) + turn.angle() * turn.axis().dot(step.step_rotation)) /
+                 (along.squaredNorm() + step.step_rotation.squaredNorm());
+      if (step.step_length > 0) t = std::clamp(t, (s - kSame - step.s) / step.step_length, (s + kSame - step.s) / step.step_length);
+      try_place(i + std::clamp(t, 0.0, 1.0));
+    }
+    result_.worst_position = std::max(result_.worst_position, position);
+    result_.worst_angle = std::max(result_.worst_angle, angle);
+    if (found.empty()) fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, position, angle, s);
+    return found;
+  }
+
+  /// The first step that ends at s or later.
+  [[nodiscard]] int first_step_to(double s) const {
+    int low = 0, high = path_.size() - 2;
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      if (path_.layer(middle + 1).s >= s)
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return low;
+  }
+
+  /// Matches rows to places such that the fewest moves fail. A row has one place, save where the path comes back to a pose while s
+  /// stands still.
+  void choose_places() {
+    chosen_.assign(rows_.size(), 0);
+    std::optional<std::size_t> before;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      if (!examined(k)) continue;
+      if (before && candidates_[*before].size() * candidates_[k].size() == 1)
+        candidates_[k][0].before = 0;
+      else if (before)
+        reach(*before, k);
+      else
+        for (Candidate& candidate : candidates_[k]) candidate.failures = k == 0 && candidate.place > 0;
+      before = k;
+    }
+    if (!before) return;
+    const auto& last = candidates_[*before];
+    int best = 0;
+    const auto failures = [&](int c) {
+      const Candidate& candidate = last[static_cast<std::size_t>(c)];
+      return candidate.failures + (candidate.place < path_.size() - 1);
+    };
+    for (int c = 1; c < static_cast<int>(last.size()); ++c)
+      if (failures(c) < failures(best)) best = c;
+    for (std::size_t k = *before + 1; k-- > 0;) {
+      if (!examined(k)) continue;
+      chosen_[k] = best;
+      best = candidates_[k][static_cast<std::size_t>(best)].before;
+    }
+  }
+
+  /// Of each place of row k, the best place of the row examined before it.
+  void reach(std::size_t before, std::size_t k) {
+    std::vector<Candidate>& to = candidates_[k];
+    const std::vector<Candidate>& from = candidates_[before];
+    const bool neighbours = before + 1 == k;
+    const Config move = rows_[k].q - rows_[before].q;
+    std::vector<double> ends;
+    for (const Candidate& candidate : to) ends.push_back(candidate.place);
+    std::optional<ToolMotion> motion;
+    for (int f = 0; f < static_cast<int>(from.size()); ++f) {
+      const Candidate& start = from[static_cast<std::size_t>(f)];
+      const auto later = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), start.place) - ends.begin());
+      std::vector<bool> reached(ends.size() - later, false);
+      if (neighbours && !reached.empty() && excess(move, start.place, ends.back()).by <= 0) {
+        if (!motion) motion = tool_motion(chain_, rows_[before].q, rows_[k].q, at_waypoints_);
+        reached = follows(*motion, path_, start.place, std::span(ends).subspan(later), along_, at_waypoints_);
+      }
+      for (std::size_t c = 0; c < to.size(); ++c) {
+        const auto passes = [&](double end) {
+          return excess(move, start.place, end).by <= 0 &&
+                 (is_step(start.place, end) ? within(step_deviation(k, start.place), along_) : reached[c - later]);
+        };
+        const bool good = neighbours ? c >= later && passes(ends[c]) : ends[c] >= start.place;
+        const int failures = start.failures + !good;
+        // Of equally good ones the latest: the path between is the shortest.
+        if (to[c].before < 0 || failures <= to[c].failures) to[c].failures = failures, to[c].before = f;
+      }
+    }
+  }
+
+  /// From a layer to the next.
+  static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
+  static bool within(const PoseTolerance& deviation, const PoseTolerance& tolerance) {
+    return deviation.position <= tolerance.position + kPose && deviation.angle <= tolerance.angle + kPose;
+  }
+  /// What the lattice's rule bounds on the move from row k - 1, at a layer, to row k, at the next.
+  [[nodiscard]] PoseTolerance step_deviation(std::size_t k, double layer) const {
+    const auto most = [](const std::array<double, 3>& deviation) { return *std::max_element(deviation.begin(), deviation.end()); };
+    const Config &from = rows_[k - 1].q, move = rows_[k].q - from;
+    return {most(path_deviation(chain_, path_, static_cast<int>(layer), from, move)),
+            most(angle_deviation(chain_, path_, static_cast<int>(layer), from, move))};
+  }
+
+  struct Excess {
+    double by = -kNone;  // rad, beyond what is allowed
+    double share = 0;    // of what is allowed
+    std::size_t joint = 0;
+  };
+  /// What a joint moves beyond the sum over the steps between two places; a step that is touched counts whole.
+  [[nodiscard]] Excess excess(const Config& move, double from, double to) const {
+    const auto first = static_cast<std::size_t>(std::min(std::floor(from), path_.size() - 2.0));
+    const auto last = std::max(first + 1, static_cast<std::size_t>(std::ceil(to)));
+    Excess worst;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const auto joint = static_cast<Eigen::Index>(j);
+      const double allowed = allowed_[last][joint] - allowed_[first][joint];
+      const double by = std::abs(move[joint]) - allowed * (1 + 1e-12) - kLimit;
+      if (by > worst.by) worst.by = by, worst.joint = j;
+      worst.share = std::max(worst.share, std::abs(move[joint]) / allowed);
+    }
+    return worst;
+  }
+
+  void examine_row(std::size_t k) {
+    const TrajectoryRow& row = rows_[k];
+    ++result_.rows_examined;
+    if (k == 0 && place(k) > 0) fail("row 0: begins at s = %.9g, not with the path", row.s);
+    if (k + 1 == rows_.size() && place(k) < path_.size() - 1) fail("row %zu: ends at s = %.9g, before the path", k, row.s);
+    examine_labels(k);
+    if (limits_.manipulability > 0) {
+      const double w = chain_.manipulability(row.q);
+      if (!(w >= limits_.manipulability - 1e-9)) fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
+    }
+    const auto clearance = contacts_.clearance(row.q);
+    if (!clearance) return;
+    result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->distance), clearance->distance);
+    if (!(clearance->distance > 0))
+      fail("row %zu: %s touch", k, contacts_.names(clearance->pair).c_str());
+    else if (!(clearance->distance >= limits_.clearance - kVerdictBand))
+      fail("row %zu: clearance %.3f mm between %s is below %.3f mm", k, 1e3 * clearance->distance,
+           contacts_.names(clearance->pair).c_str(), 1e3 * limits_.clearance);
+  }
+
+  /// Arm angle and branch of a row are those of its joints.
+  void examine_labels(std::size_t k) {
+    const TrajectoryRow& row = rows_[k];
+    const int layer = static_cast<int>(std::floor(place(k)));
+    ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
+    if (layer < place(k)) plane = carry_plane(arm_, plane, pose_at(path_, place(k)));
+    const double phi = plane.angle_of(arm_.elbow_axis(row.q));
+    if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle)) fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
+
+    const double sign_tells = std::sin(arm_.exact ? 0.01 : 0.05);
+    const std::pair<BranchBit, double> angles[] = {
+        {kShoulderBit, arm_.shoulder_angle(row.q)}, {kWristBit, arm_.wrist_angle(row.q)}, {kElbowBit, arm_.elbow_angle(row.q)}};
+    bool agrees = row.branch >= 0 && row.branch < kBranches;
+    for (const auto& [bit, angle] : angles)
+      if (std::abs(std::sin(angle)) > sign_tells) agrees = agrees && ((row.branch & bit) != 0) == (std::sin(angle) < 0);
+    if (!agrees) fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_.branch(row.q));
+  }
+
+  /// From row k - 1 to row k. A move that its joints may not make is not examined further.
+  void examine_move(std::size_t k) {
+    const Config &from = rows_[k - 1].q, &to = rows_[k].q;
+    const double begin = place(k - 1), end = place(k);
+    ++result_.moves_examined;
+    if (end < begin)
+      return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k, rows_[k - 1].s, rows_[k].s);
+    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(chain_.tool(from), chain_.tool(to)) <= 1e-9)
+      return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
+    if (!may_move(k)) return;
+    examine_path(k);
+    examine_step_error(k);
+    if (limits_.edges != EdgeMode::kContinuous) return;
+    if (const auto pair = contacts_.on_the_way(from, to))
+      fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(), 1e3 * limits_.d_edge());
+  }
+
+  bool may_move(std::size_t k) {
+    const Config move = rows_[k].q - rows_[k - 1].q;
+    const Excess worst = excess(move, place(k - 1), place(k));
+    result_.largest_step = std::max(result_.largest_step, worst.share);
+    if (worst.by > 0) {
+      const double moved = std::abs(move[static_cast<Eigen::Index>(worst.joint)]);
+      fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k, joint_name(worst.joint), moved,
+           moved - worst.by);
+      return false;
+    }
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double moved = std::abs(move[static_cast<Eigen::Index>(j)]);
+      if (!chain_.limit[j].continuous || moved < kPi) continue;
+      fail("rows %zu-%zu: continuous joint '%s' moves by %.6g rad: allowed is less than pi", k - 1, k, joint_name(j), moved);
+      return false;
+    }
+    return true;
+  }
+
+  void examine_path(std::size_t k) {
+    const Config &from = rows_[k - 1].q, &to = rows_[k].q;
+    const double begin = place(k - 1), end = place(k);
+    const ToolMotion motion = tool_motion(chain_, from, to, at_waypoints_);
+    const PoseTolerance worst = largest_deviation(motion, path_, begin, end);
+    result_.worst_path_error = std::max(result_.worst_path_error, worst.position);
+    result_.worst_path_angle = std::max(result_.worst_path_angle, worst.angle);
+
+    if (is_step(begin, end)) {
+      const PoseTolerance off = step_deviation(k, begin);
+      if (!within(off, along_)) stray(k, off);
+      return;
+    }
+    const std::array<double, 1> ends{end};
+    const auto passes = [&](const PoseTolerance& along, const PoseTolerance& waypoints) -> bool {
+      return follows(motion, path_, begin, ends, along, waypoints)[0];
+    };
+    if (passes(along_, at_waypoints_)) return;
+    // By how much: the least tolerance of the position, then of the angle, with which it would pass.
+    const auto needed = [](double allowed, auto pass) {
+      double low = 0, high = allowed;
+      while (!pass(high) && high < 1e3) low = high, high *= 2;
+      for (int step = 0; step < 12; ++step) (pass((low + high) / 2) ? high : low) = (low + high) / 2;
+      return high;
+    };
+    const auto position = [&](double x) { return passes({limits_.tool_path_error ? x : kNone, kNone}, {x, kNone}); };
+    const auto angle = [&](double x) { return passes({kNone, limits_.tool_angle_error ? x : kNone}, {kNone, x}); };
+    stray(k, {needed(at_waypoints_.position, position), needed(at_waypoints_.angle, angle)});
+  }
+
+  void stray(std::size_t k, const PoseTolerance& off) {
+    result_.worst_path_error = std::max(result_.worst_path_error, off.position);
+    result_.worst_path_angle = std::max(result_.worst_path_angle, off.angle);
+    fail("rows %zu-%zu: the tool leaves the path by %.3g mm and %.3g rad: allowed are %.3g mm and %.3g rad%s", k - 1, k,
+         1e3 * off.position, off.angle, 1e3 * at_waypoints_.position, at_waypoints_.angle,
+         within(off, at_waypoints_) ? ", both at once" : "");
+  }
+
+  void examine_step_error(std::size_t k) {
+    if (!lattice_ || !is_step(place(k - 1), place(k))) return;
+    const int layer = static_cast<int>(place(k - 1));
+    const auto phi = [&](std::size_t row, int at) {
+      return planes_[static_cast<std::size_t>(at)].angle_of(arm_.elbow_axis(rows_[row].q));
+    };
+    const double phi0 = phi(k - 1, layer), phi1 = phi(k, layer + 1), dphi = wrap_angle(phi1 - phi0);
+    const double error = std::max(step_error(*lattice_, layer, 0, rows_[k - 1].branch & (kBranches - 1), phi0, dphi),
+                                  step_error(*lattice_, layer, 1, rows_[k].branch & (kBranches - 1), phi1, dphi));
+    if (!(error <= *limits_.step_error * (1 + 1e-6)))
+      fail("rows %zu-%zu: step error %.6g is above %.6g", k - 1, k, error, *limits_.step_error);
+  }
+
+  /// Many small moves in one step could add up to a large one. So between any two rows a joint may come no further than the steps
+  /// touched allow, and one step more, since it may overshoot inside the first and the last.
+  void examine_travel() {
+    for (std::size_t j = 0; j < kDof; ++j)
+      for (const double sign : {1.0, -1.0}) {
+        const auto joint = static_cast<Eigen::Index>(j);
+        double least = kNone;  // of sign * q less what was allowed up to there
+        std::size_t since = 0;
+        for (std::size_t k = 0; k < rows_.size(); ++k) {
+          if (!examined(k)) continue;
+          const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
+          const auto last = static_cast<std::size_t>(std::ceil(place(k)));
+          const double q = sign * rows_[k].q[joint], step = allowed_[first + 1][joint] - allowed_[first][joint];
+          if (q - allowed_[last][joint] - step > least + kLimit) {
+            fail("rows %zu-%zu: joint '%s' comes %.6g rad far, joint_step and speeds allow %.6g", since, k, joint_name(j),
+                 q - sign * rows_[since].q[joint], least + allowed_[last][joint] + step - sign * rows_[since].q[joint]);
+            least = kNone;
+          }
+          if (q - allowed_[first][joint] < least) least = q - allowed_[first][joint], since = k;
+        }
+      }
+  }
+
+  [[nodiscard]] double cost_of(const Config& move) const {
+    double l2 = 0, most = 0;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double dq = move[static_cast<Eigen::Index>(j)];
+      const double scaled =
+          problem_.cost.metric == CostMetric::kTime ? dq / chain_.limit[j].velocity : problem_.cost.weights[j] * dq;
+      l2 += scaled * scaled;
+      most = std::max(most, std::abs(scaled));
+    }
+    return problem_.cost.metric == CostMetric::kL2 ? std::sqrt(l2) : most;
+  }
+
+  const Problem& problem_;
+  const Limits& limits_;
+  const Chain& chain_;
+  const SrsArm& arm_;
+  const std::vector<TrajectoryRow>& rows_;
+  ToolPath path_;
+  std::vector<Config> allowed_;
+  std::vector<ArmPlane> planes_;
+  std::optional<Lattice> lattice_;  // for the estimate of the step error alone
+  Contacts contacts_;
+  PoseTolerance along_, at_waypoints_;
+  std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined
+  std::vector<int> chosen_;
+  CheckResult result_;
 };
 
 }  // namespace
 
+CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows) {
+  return Check(robot, problem, rows).run();
+}
+
 CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
-  CheckResult result;
-  Report report(result);
-  const PreparedRobot robot(problem);
-  const Chain& chain = robot.arm().chain;
-  const ToolPath path = segments_of(problem);
-  const World& world = robot.world();
-  World::Query query(world);
-  const Limits& limits = problem.limits;
-  EdgeRule rule = edge_rule(limits, robot.radii());
-  rule.d_edge = std::max(0.0, rule.d_edge - kVerdictBand);
-
-  if (rows.size() < 2) report.fail("%zu row(s): at least two are needed", rows.size());
-  if (problem.start && !rows.empty() && (rows[0].q - *problem.start).lpNorm<Eigen::Infinity>() > kPose)
-    report.fail("row 0: joints are not the given start");
-
-  Place before;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const Config& q = rows[k].q;
-    const Pose tool = chain.tool(q);
-    const Place place = locate(path, rows[k].s, tool, k == 0 ? 0 : before.along());
-    result.worst_position = std::max(result.worst_position, place.position_error);
-    result.worst_angle = std::max(result.worst_angle, place.angle_error);
-    if (!(place.position_error <= kPose && place.angle_error <= kPose)) {
-      report.fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, place.position_error, place.angle_error,
-                  rows[k].s);
-      if (place.position_error > 1e8) break;  // s lies outside the path or runs backwards
-    }
-    if (k == 0 && place.along() > 1e-6) report.fail("row 0: begins at s = %.9g, not with the path", rows[k].s);
-    if (k + 1 == rows.size() && place.along() < path.size() - 1 - 1e-6)
-      report.fail("row %zu: ends at s = %.9g, before the path", k, rows[k].s);
-    for (std::size_t j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain.limit[j];
-      const double value = q[static_cast<Eigen::Index>(j)];
-      if (!limit.continuous &&
-          !(value >= limit.lower + limits.joint_margin - kLimit && value <= limit.upper - limits.joint_margin + kLimit))
-        report.fail("row %zu: joint '%s' at %.9g is outside its limits", k, chain.joint_names[j].c_str(), value);
-    }
-    if (limits.manipulability > 0 && !(chain.manipulability(q) >= limits.manipulability - 1e-9))
-      report.fail("row %zu: manipulability %.3g is below %.3g", k, chain.manipulability(q), limits.manipulability);
-    const auto clearance = query.clearance(q);
-    if (clearance) {
-      result.min_clearance = std::min(result.min_clearance.value_or(clearance->distance), clearance->distance);
-      if (!(clearance->distance >= limits.clearance - kVerdictBand))
-        report.fail("row %zu: clearance %.3f mm between '%s' and '%s' is below %.3f mm", k, 1e3 * clearance->distance,
-                    world.body_names()[static_cast<std::size_t>(clearance->pair.a)].c_str(),
-                    world.body_names()[static_cast<std::size_t>(clearance->pair.b)].c_str(), 1e3 * limits.clearance);
-    }
-    if (k > 0) {
-      const Config& from = rows[k - 1].q;
-      const Config delta = q - from;
-      double l2 = 0, most = 0;
-      for (std::size_t j = 0; j < kDof; ++j) {
-        const double move = delta[static_cast<Eigen::Index>(j)];
-        const double scaled =
-            problem.cost.metric == CostMetric::kTime ? move / chain.limit[j].velocity : problem.cost.weights[j] * move;
-        l2 += scaled * scaled;
-        most = std::max(most, std::abs(scaled));
-      }
-      result.cost += problem.cost.metric == CostMetric::kL2 ? std::sqrt(l2) : most;
-      for (const double t : {0.25, 0.5, 0.75}) {
-        const double error = distance_to_path(path, before, place, chain.tool(from + t * delta).translation());
-        result.worst_path_error = std::max(result.worst_path_error, error);
-        if (limits.tool_path_error && !(error <= *limits.tool_path_error + kPose))
-          report.fail("rows %zu-%zu: the tool leaves the path by %.3f mm", k - 1, k, 1e3 * error);
-      }
-      if (limits.edges == EdgeMode::kContinuous) {
-        const auto pair = edge_blocked(query, rule, from, q);
-        if (pair)
-          report.fail("rows %zu-%zu: '%s' and '%s' come closer than %.3f mm", k - 1, k,
-                      world.body_names()[static_cast<std::size_t>(pair->a)].c_str(),
-                      world.body_names()[static_cast<std::size_t>(pair->b)].c_str(), 1e3 * limits.d_edge());
-      }
-    }
-    before = place;
-  }
-  result.passed = !report.failed();
-  return result;
+  return check_trajectory(PreparedRobot(problem), problem, rows);
 }
 
 }  // namespace swivel

@@ -156,20 +156,30 @@ class Files(WithFolder):
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""))
 
     def test_check_sees_a_damaged_trajectory(self):
-        _, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", "--ds", "0.02", "--dphi", "0.2")
+        coarse = ("--ds", "0.02", "--dphi", "0.2")
+        _, out, _ = self.plan(PROBLEMS / "experiment_a.yaml", *coarse)
         rows = list(csv.reader(out.open()))
+        check = run("check", PROBLEMS / "experiment_a.yaml", out, *coarse)
+        self.assertEqual((check.returncode, len(check.stdout.splitlines())), (0, 1), check.stdout)
+        self.assertIn("passed: 26 rows", check.stdout)
         for column, change, word in ((3, 1e-5, "from the path"), (3, 9.0, "outside its limits"), (0, 1e-3, "from the path")):
             damaged = [list(row) for row in rows]
             damaged[7][column] = repr(float(damaged[7][column]) + change)
             with out.open("w", newline="") as file:
                 csv.writer(file).writerows(damaged)
-            check = run("check", PROBLEMS / "experiment_a.yaml", out)
+            check = run("check", PROBLEMS / "experiment_a.yaml", out, *coarse)
             self.assertEqual(check.returncode, 1)
             self.assertIn(word, check.stdout)
             self.assertIn("row 6", check.stdout)
         with out.open("w", newline="") as file:  # the last row is missing
             csv.writer(file).writerows(rows[:-1])
-        self.assertIn("before the path", run("check", PROBLEMS / "experiment_a.yaml", out).stdout)
+        self.assertIn("before the path", run("check", PROBLEMS / "experiment_a.yaml", out, *coarse).stdout)
+        for row in rows[1:]:  # phi of every row
+            row[1] = "9"
+        with out.open("w", newline="") as file:
+            csv.writer(file).writerows(rows)
+        lines = run("check", PROBLEMS / "experiment_a.yaml", out, *coarse).stdout.splitlines()
+        self.assertEqual((len(lines), lines[-2], lines[-1][:27]), (22, "and 6 more", "failed: 26 rows, 26 failures"[:27]))
 
     def test_episodes_move_the_door_and_can_be_checked(self):
         first = self.plan(PROBLEMS / "experiment_c.yaml", "--seed", "1", "--episode", "0", "--ds", "0.02", "--dphi", "0.2")[2]

@@ -1,25 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
+#include "swivel/planner/planner.hpp"
 
 namespace swivel {
 
-/// What an independent look at a trajectory found. Knows the problem, the exact chain and FCL; nothing of lattices or planners.
+/// What an independent look at a trajectory found. Knows the problem, the exact chain and FCL; nothing of planners or their search.
 struct CheckResult {
   bool passed = false;
-  std::vector<std::string> failures;  ///< one line each, with the row; at most 20
+  std::vector<std::string> failures;  ///< one line each, with the row; the first 20
+  std::int64_t failure_count = 0;     ///< of all
   double worst_position = 0;          ///< m, tool against path at the rows
   double worst_angle = 0;             ///< rad
   double worst_path_error = 0;        ///< m, between rows
+  double worst_path_angle = 0;        ///< rad, the same at the nearest points of the path
+  double largest_step = 0;            ///< a joint's move between two rows over what joint_step and speeds allow it
   double cost = 0;                    ///< of the rows as given, by the problem's metric
   std::optional<double> min_clearance;
+  struct LimitDistance {
+    int joint = 0;  ///< 0..6
+    double by = 0;  ///< rad, inside the limits less joint_margin
+    std::size_t row = 0;
+  };
+  std::optional<LimitDistance> nearest_limit;  ///< none where all joints are continuous
+  // Work: a row that fails by its values, its pose or its limits is not examined further, nor are moves from or to it.
+  std::int64_t rows_examined = 0, moves_examined = 0, fcl_calls = 0;
 };
-/// Tolerances: pose 1e-6 m and rad, limits 1e-9, clearance - 0.05 mm; between rows the tool-path error and, in continuous mode,
-/// d_edge. Rows may have any spacing in s but must begin and end with the path. Throws InvalidArgument as plan() does.
+
+/// Proves a trajectory from the problem alone, or says what is wrong with it. The problem's resolution counts: it cuts the path
+/// into layers, which steps join. Rows may lie anywhere on the path, each further along it than the one before.
+///
+/// At a row:
+/// - all values are finite, and joints within their limits less joint_margin (1e-9 rad);
+/// - the tool is within 1e-6 m and 1e-6 rad of the path at s (1e-9 m). Where the path only turns, s repeats and the orientation
+///   tells the place; rows are matched to places such that they come in order;
+/// - manipulability (1e-9) and clearance (0.05 mm) are kept; contact is never forgiven;
+/// - phi is the arm angle of the joints (1e-3 rad, whole turns aside), carried along the layers, for a row between two layers from
+///   the one before it; branch tells the joints' signs where they are further than 0.01 rad (0.05 on inexact arms) from a change.
+/// The first row is the path's beginning, and the given start; the last is its end.
+///
+/// From one row to the next, the joints moving straight:
+/// - the tool gets on: rows at the same place fail;
+/// - tool and path can be run through together, neither ever going back, within tool_path_error and tool_angle_error of each other
+///   (Frechet distance). Where one of the two is not set, 1 mm or 0.02 rad holds at the waypoints that the move passes, each of
+///   which is a layer of its own. A move from a layer to the next is judged by the lattice's rule, at t = 1/4, 1/2, 3/4;
+/// - each joint moves by at most joint_step, and by what its speed allows in the step's time, for each step that the move touches;
+///   between any two rows by at most one step's share more; a continuous joint by less than pi;
+/// - step_error is kept, where both rows are neighbouring layers: elsewhere it is not defined;
+/// - nothing comes nearer than d_edge (0.05 mm), with `edges: continuous`.
+/// Throws InvalidArgument and InputError as plan() does.
 [[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows);
+/// The same on a robot prepared before (by a problem with the same robot section).
+[[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
+                                           const std::vector<TrajectoryRow>& rows);
 
 }  // namespace swivel

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "path_following.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace swivel {
+
+namespace {
+
+constexpr double kForgiven = 1e-6;  // m and rad
+
+/// Values of a parameter in [0, 1]; empty where low > high.
+struct Interval {
+  double low = 1, high = 0;
+  [[nodiscard]] bool empty() const { return !(low <= high); }
+  void cut(const Interval& other) { low = std::max(low, other.low), high = std::min(high, other.high); }
+};
+
+/// Where |a + u (b - a)| <= radius.
+Interval within(const Vector3d& a, const Vector3d& b, double radius) {
+  const Vector3d d = b - a;
+  const double dd = d.squaredNorm(), ad = a.dot(d), rest = a.squaredNorm() - radius * radius;
+  if (dd < 1e-30) return rest <= 0 ? Interval{0, 1} : Interval{};
+  const double root2 = ad * ad - dd * rest;
+  if (!(root2 >= 0)) return {};
+  const double root = std::sqrt(root2);
+  return {std::max(0.0, (-ad - root) / dd), std::min(1.0, (-ad + root) / dd)};
+}
+
+/// Axis times angle from a to b, in a's frame.
+Vector3d rotation_between(const Pose& a, const Pose& b) {
+  const Eigen::AngleAxisd turn(a.linear().transpose() * b.linear());
+  return turn.angle() * turn.axis();
+}
+
+/// Where the straight motion from a to b is within the tolerance of a fixed pose. It turns by 0.1 rad at most, so that the rotation
+/// from the fixed pose is linear in the parameter.
+Interval within(const Pose& fixed, const Pose& a, const Pose& b, const PoseTolerance& tolerance) {
+  Interval free{0, 1};
+  if (std::isfinite(tolerance.position))
+    free = within(a.translation() - fixed.translation(), b.translation() - fixed.translation(), tolerance.position);
+  if (std::isfinite(tolerance.angle) && !free.empty()) {
+    const Vector3d from = rotation_between(fixed, a), to = rotation_between(fixed, b);
+    if ((to - from).norm() > kPi) return {};  // on both sides of the half turn
+    free.cut(within(from, to, tolerance.angle));
+  }
+  return free;
+}
+
+PoseTolerance widened(const PoseTolerance& tolerance, const PoseTolerance& error) {
+  return {tolerance.position + error.position + kForgiven, tolerance.angle + error.angle + kForgiven};
+}
+
+/// Goes along a path from a place on, by straight pieces that turn little and end with each step.
+class Pieces {
+ public:
+  Pieces(const ToolPath& path, double begin) : path_(&path), to_(begin), end_(pose_at(path, begin)) {}
+  /// False at the end of the path.
+  bool next() {
+    const int step = static_cast<int>(std::floor(to_));
+    if (step + 1 >= path_->size()) return false;
+    const double parts = std::max(1.0, std::ceil(path_->layer(step).step_angle / kTurn));
+    const double part = std::floor((to_ - step) * parts + 1e-9) + 1;
+    from_ = to_;
+    start_ = end_;
+    to_ = part >= parts ? step + 1 : step + part / parts;
+    end_ = pose_at(*path_, to_);
+    return true;
+  }
+  [[nodiscard]] double from() const { return from_; }
+  [[nodiscard]] double to() const { return to_; }
+  [[nodiscard]] const Pose& start() const { return start_; }
+  [[nodiscard]] const Pose& end() const { return end_; }
+  [[nodiscard]] bool ends_at_waypoint() const {
+    const int layer = static_cast<int>(to_);
+    return layer == to_ && path_->layer(layer).waypoint >= 0;
+  }
+
+ private:
+  static constexpr double kTurn = 0.05;  // rad
+  const ToolPath* path_;
+  double from_ = 0, to_;
+  Pose start_, end_;
+};
+
+}  // namespace
+
+Pose pose_at(const ToolPath& path, double place) {
+  const int layer = static_cast<int>(std::floor(place));
+  return layer == place ? path.layer(layer).tool : path.at(layer, place - layer);
+}
+
+ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseTolerance& tolerance) {
+  constexpr double kFewest = 4, kMost = 2048;
+  const Config move = (to - from).cwiseAbs();
+  // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half of
+  // (sum |dq_i|)^2; a chord is off by an eighth of it.
+  double reach = (chain.home.translation() - chain.point[kDof - 1]).norm(), swept = 0;
+  for (std::size_t j = kDof; j-- > 0;) {
+    swept += move[static_cast<Eigen::Index>(j)] * reach;
+    if (j > 0) reach += (chain.point[j] - chain.point[j - 1]).norm();
+  }
+  const PoseTolerance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
+  const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
+                                 chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
+  const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(parts2)), kFewest, kMost));
+  ToolMotion motion;
+  motion.error = {chord.position / parts / parts, chord.angle / parts / parts};
+  for (int m = 0; m <= parts; ++m) motion.poses.push_back(chain.tool(from + static_cast<double>(m) / parts * (to - from)));
+  return motion;
+}
+
+std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
+                          const PoseTolerance& between, const PoseTolerance& waypoints) {
+  const PoseTolerance on_the_way = widened(between, motion.error), at_waypoint = widened(waypoints, motion.error);
+  std::vector<bool> reached(ends.size(), false);
+  const std::size_t parts = motion.poses.size() - 1;
+  // Columns are pieces of the path, cells the parts of the motion in them. left, right: of each part, what can be reached where the
+  // piece starts, ends; below, above: of the piece, what can be reached where the part starts, ends.
+  std::vector<Interval> left(parts), right(parts);
+  left[0] = {0, 0};
+  bool alive = true;
+  for (Pieces piece(path, begin); alive && piece.next();) {
+    Interval below;
+    alive = false;
+    for (std::size_t m = 0; m < parts; ++m) {
+      Interval above;
+      right[m] = {};
+      if (!below.empty() || !left[m].empty()) {
+        const Pose &a = motion.poses[m], &b = motion.poses[m + 1];
+        right[m] = within(piece.end(), a, b, piece.ends_at_waypoint() ? at_waypoint : on_the_way);
+        above = within(b, piece.start(), piece.end(), on_the_way);
+        if (below.empty()) right[m].low = std::max(right[m].low, left[m].low);
+        if (left[m].empty()) above.low = std::max(above.low, below.low);
+        alive = alive || !right[m].empty();
+      }
+      below = above;
+    }
+    for (std::size_t k = 0; k < ends.size(); ++k) {
+      if (ends[k] < piece.from() || ends[k] > piece.to() || below.empty()) continue;
+      const double u = (ends[k] - piece.from()) / (piece.to() - piece.from());
+      if (u >= below.low - 1e-9 && u <= below.high + 1e-9) reached[k] = true;
+    }
+    if (piece.to() >= ends.back()) break;
+    left.swap(right);
+  }
+  return reached;
+}
+
+PoseTolerance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end) {
+  const std::size_t count = motion.poses.size();
+  std::vector<PoseTolerance> least(count);
+  for (Pieces piece(path, begin); piece.next() && (piece.from() < end || piece.from() == begin);) {
+    const double last = std::min(1.0, (end - piece.from()) / (piece.to() - piece.from()));
+    const Vector3d start = piece.start().translation(), along = piece.end().translation() - start;
+    const Vector3d turn = rotation_between(piece.start(), piece.end());
+    for (std::size_t m = 0; m < count; ++m) {
+      const Pose& tool = motion.poses[m];
+      const Vector3d offset = tool.translation() - start, rotation = rotation_between(piece.start(), tool);
+      // Where the path only turns, the nearest point is that of the nearest orientation.
+      const double length2 = along.squaredNorm(), angle2 = turn.squaredNorm();
+      double u = 0;
+      if (length2 > 1e-18)
+        u = offset.dot(along) / length2;
+      else if (angle2 > 0)
+        u = rotation.dot(turn) / angle2;
+      u = std::clamp(u, 0.0, last);
+      const PoseTolerance here{(offset - u * along).norm(), (rotation - u * turn).norm()};
+      if (here.position < least[m].position - 1e-12 || (here.position < least[m].position + 1e-12 && here.angle < least[m].angle))
+        least[m] = here;
+    }
+  }
+  PoseTolerance worst{0, 0};
+  for (const PoseTolerance& pose : least) {
+    worst.position = std::max(worst.position, pose.position);
+    worst.angle = std::max(worst.angle, pose.angle);
+  }
+  return worst;
+}
+
+}  // namespace swivel
