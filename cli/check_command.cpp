@@ -46,7 +46,8 @@ int run(const CheckArguments& arguments) {
   const auto shown = static_cast<std::int64_t>(result.failures.size());
   if (result.failure_count > shown) std::printf("and %lld more\n", static_cast<long long>(result.failure_count - shown));
   std::printf("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
-  if (!result.passed) std::printf(", %lld failures", static_cast<long long>(result.failure_count));
+  if (!result.passed)
+    std::printf(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
   std::printf("; ");
   print_margins(problem, chain, result);
   return result.passed ? kOk : kNo;

@@ -18,11 +18,11 @@ namespace swivel {
 
 namespace {
 
-constexpr double kPose = 1e-6;      // m and rad
-constexpr double kLimit = 1e-9;     // rad
-constexpr double kSame = 1e-9;      // m along the path
-constexpr double kArmAngle = 1e-3;  // rad
-constexpr PoseTolerance kAtWaypoints{1e-3, 0.02};
+constexpr double kPose = 1e-6;                    // m and rad
+constexpr double kLimit = 1e-9;                   // rad
+constexpr double kSame = 1e-9;                    // m along the path
+constexpr double kArmAngle = 1e-3;                // rad
+constexpr PoseDistance kAtWaypoints{1e-3, 0.02};  // where the problem sets no tolerance
 
 double angle_between(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
@@ -217,6 +217,7 @@ class Check {
   /// stands still.
   void choose_places() {
     chosen_.assign(rows_.size(), 0);
+    jumps_.assign(rows_.size(), false);
     std::optional<std::size_t> before;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!examined(k)) continue;
@@ -266,8 +267,11 @@ class Check {
           return excess(move, start.place, end).by <= 0 &&
                  (is_step(start.place, end) ? within(step_deviation(k, start.place), along_) : reached[c - later]);
         };
-        const bool good = neighbours ? c >= later && passes(ends[c]) : ends[c] >= start.place;
-        const int failures = start.failures + !good;
+        int failures = start.failures;
+        if (ends[c] < start.place)
+          failures += 2;  // goes back, which is worse than not keeping to the path
+        else if (neighbours && !(c >= later && passes(ends[c])))
+          failures += 1;
         // Of equally good ones the latest: the path between is the shortest.
         if (to[c].before < 0 || failures <= to[c].failures) to[c].failures = failures, to[c].before = f;
       }
@@ -276,11 +280,11 @@ class Check {
 
   /// From a layer to the next.
   static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
-  static bool within(const PoseTolerance& deviation, const PoseTolerance& tolerance) {
+  static bool within(const PoseDistance& deviation, const PoseDistance& tolerance) {
     return deviation.position <= tolerance.position + kPose && deviation.angle <= tolerance.angle + kPose;
   }
   /// What the lattice's rule bounds on the move from row k - 1, at a layer, to row k, at the next.
-  [[nodiscard]] PoseTolerance step_deviation(std::size_t k, double layer) const {
+  [[nodiscard]] PoseDistance step_deviation(std::size_t k, double layer) const {
     const auto most = [](const std::array<double, 3>& deviation) { return *std::max_element(deviation.begin(), deviation.end()); };
     const Config &from = rows_[k - 1].q, move = rows_[k].q - from;
     return {most(path_deviation(chain_, path_, static_cast<int>(layer), from, move)),
@@ -300,7 +304,7 @@ class Check {
     for (std::size_t j = 0; j < kDof; ++j) {
       const auto joint = static_cast<Eigen::Index>(j);
       const double allowed = allowed_[last][joint] - allowed_[first][joint];
-      const double by = std::abs(move[joint]) - allowed * (1 + 1e-12) - kLimit;
+      const double by = std::abs(move[joint]) - allowed - kLimit;
       if (by > worst.by) worst.by = by, worst.joint = j;
       worst.share = std::max(worst.share, std::abs(move[joint]) / allowed);
     }
@@ -367,6 +371,7 @@ class Check {
     const Excess worst = excess(move, place(k - 1), place(k));
     result_.largest_step = std::max(result_.largest_step, worst.share);
     if (worst.by > 0) {
+      jumps_[k] = true;
       const double moved = std::abs(move[static_cast<Eigen::Index>(worst.joint)]);
       fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k, joint_name(worst.joint), moved,
            moved - worst.by);
@@ -385,17 +390,17 @@ class Check {
     const Config &from = rows_[k - 1].q, &to = rows_[k].q;
     const double begin = place(k - 1), end = place(k);
     const ToolMotion motion = tool_motion(chain_, from, to, at_waypoints_);
-    const PoseTolerance worst = largest_deviation(motion, path_, begin, end);
+    const PoseDistance worst = largest_deviation(motion, path_, begin, end);
     result_.worst_path_error = std::max(result_.worst_path_error, worst.position);
     result_.worst_path_angle = std::max(result_.worst_path_angle, worst.angle);
 
     if (is_step(begin, end)) {
-      const PoseTolerance off = step_deviation(k, begin);
+      const PoseDistance off = step_deviation(k, begin);
       if (!within(off, along_)) stray(k, off);
       return;
     }
     const std::array<double, 1> ends{end};
-    const auto passes = [&](const PoseTolerance& along, const PoseTolerance& waypoints) -> bool {
+    const auto passes = [&](const PoseDistance& along, const PoseDistance& waypoints) -> bool {
       return follows(motion, path_, begin, ends, along, waypoints)[0];
     };
     if (passes(along_, at_waypoints_)) return;
@@ -411,7 +416,7 @@ class Check {
     stray(k, {needed(at_waypoints_.position, position), needed(at_waypoints_.angle, angle)});
   }
 
-  void stray(std::size_t k, const PoseTolerance& off) {
+  void stray(std::size_t k, const PoseDistance& off) {
     result_.worst_path_error = std::max(result_.worst_path_error, off.position);
     result_.worst_path_angle = std::max(result_.worst_path_angle, off.angle);
     fail("rows %zu-%zu: the tool leaves the path by %.3g mm and %.3g rad: allowed are %.3g mm and %.3g rad%s", k - 1, k,
@@ -442,6 +447,7 @@ class Check {
         std::size_t since = 0;
         for (std::size_t k = 0; k < rows_.size(); ++k) {
           if (!examined(k)) continue;
+          if (jumps_[k]) least = kNone;  // said already
           const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
           const auto last = static_cast<std::size_t>(std::ceil(place(k)));
           const double q = sign * rows_[k].q[joint], step = allowed_[first + 1][joint] - allowed_[first][joint];
@@ -477,9 +483,10 @@ class Check {
   std::vector<ArmPlane> planes_;
   std::optional<Lattice> lattice_;  // for the estimate of the step error alone
   Contacts contacts_;
-  PoseTolerance along_, at_waypoints_;
+  PoseDistance along_, at_waypoints_;
   std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined
   std::vector<int> chosen_;
+  std::vector<bool> jumps_;  // the move to the row is too large for its joints
   CheckResult result_;
 };
 

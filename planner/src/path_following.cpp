@@ -18,7 +18,7 @@ struct Interval {
 };
 
 /// Where |a + u (b - a)| <= radius.
-Interval within(const Vector3d& a, const Vector3d& b, double radius) {
+Interval where_within(const Vector3d& a, const Vector3d& b, double radius) {
   const Vector3d d = b - a;
   const double dd = d.squaredNorm(), ad = a.dot(d), rest = a.squaredNorm() - radius * radius;
   if (dd < 1e-30) return rest <= 0 ? Interval{0, 1} : Interval{};
@@ -36,19 +36,19 @@ Vector3d rotation_between(const Pose& a, const Pose& b) {
 
 /// Where the straight motion from a to b is within the tolerance of a fixed pose. It turns by 0.1 rad at most, so that the rotation
 /// from the fixed pose is linear in the parameter.
-Interval within(const Pose& fixed, const Pose& a, const Pose& b, const PoseTolerance& tolerance) {
+Interval where_within(const Pose& fixed, const Pose& a, const Pose& b, const PoseDistance& tolerance) {
   Interval free{0, 1};
   if (std::isfinite(tolerance.position))
-    free = within(a.translation() - fixed.translation(), b.translation() - fixed.translation(), tolerance.position);
+    free = where_within(a.translation() - fixed.translation(), b.translation() - fixed.translation(), tolerance.position);
   if (std::isfinite(tolerance.angle) && !free.empty()) {
     const Vector3d from = rotation_between(fixed, a), to = rotation_between(fixed, b);
     if ((to - from).norm() > kPi) return {};  // on both sides of the half turn
-    free.cut(within(from, to, tolerance.angle));
+    free.cut(where_within(from, to, tolerance.angle));
   }
   return free;
 }
 
-PoseTolerance widened(const PoseTolerance& tolerance, const PoseTolerance& error) {
+PoseDistance widened(const PoseDistance& tolerance, const PoseDistance& error) {
   return {tolerance.position + error.position + kForgiven, tolerance.angle + error.angle + kForgiven};
 }
 
@@ -91,17 +91,17 @@ Pose pose_at(const ToolPath& path, double place) {
   return layer == place ? path.layer(layer).tool : path.at(layer, place - layer);
 }
 
-ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseTolerance& tolerance) {
+ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseDistance& tolerance) {
   constexpr double kFewest = 4, kMost = 2048;
   const Config move = (to - from).cwiseAbs();
-  // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half of
-  // (sum |dq_i|)^2; a chord is off by an eighth of it.
+  // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half
+  // of (sum |dq_i|)^2; a chord is off by an eighth of it.
   double reach = (chain.home.translation() - chain.point[kDof - 1]).norm(), swept = 0;
   for (std::size_t j = kDof; j-- > 0;) {
     swept += move[static_cast<Eigen::Index>(j)] * reach;
     if (j > 0) reach += (chain.point[j] - chain.point[j - 1]).norm();
   }
-  const PoseTolerance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
+  const PoseDistance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
   const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
                                  chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
   const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(parts2)), kFewest, kMost));
@@ -112,8 +112,8 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
 }
 
 std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
-                          const PoseTolerance& between, const PoseTolerance& waypoints) {
-  const PoseTolerance on_the_way = widened(between, motion.error), at_waypoint = widened(waypoints, motion.error);
+                          const PoseDistance& between, const PoseDistance& waypoints) {
+  const PoseDistance on_the_way = widened(between, motion.error), at_waypoint = widened(waypoints, motion.error);
   std::vector<bool> reached(ends.size(), false);
   const std::size_t parts = motion.poses.size() - 1;
   // Columns are pieces of the path, cells the parts of the motion in them. left, right: of each part, what can be reached where the
@@ -129,8 +129,8 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
       right[m] = {};
       if (!below.empty() || !left[m].empty()) {
         const Pose &a = motion.poses[m], &b = motion.poses[m + 1];
-        right[m] = within(piece.end(), a, b, piece.ends_at_waypoint() ? at_waypoint : on_the_way);
-        above = within(b, piece.start(), piece.end(), on_the_way);
+        right[m] = where_within(piece.end(), a, b, piece.ends_at_waypoint() ? at_waypoint : on_the_way);
+        above = where_within(b, piece.start(), piece.end(), on_the_way);
         if (below.empty()) right[m].low = std::max(right[m].low, left[m].low);
         if (left[m].empty()) above.low = std::max(above.low, below.low);
         alive = alive || !right[m].empty();
@@ -148,9 +148,9 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
   return reached;
 }
 
-PoseTolerance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end) {
+PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end) {
   const std::size_t count = motion.poses.size();
-  std::vector<PoseTolerance> least(count);
+  std::vector<PoseDistance> least(count);
   for (Pieces piece(path, begin); piece.next() && (piece.from() < end || piece.from() == begin);) {
     const double last = std::min(1.0, (end - piece.from()) / (piece.to() - piece.from()));
     const Vector3d start = piece.start().translation(), along = piece.end().translation() - start;
@@ -166,13 +166,13 @@ PoseTolerance largest_deviation(const ToolMotion& motion, const ToolPath& path, 
       else if (angle2 > 0)
         u = rotation.dot(turn) / angle2;
       u = std::clamp(u, 0.0, last);
-      const PoseTolerance here{(offset - u * along).norm(), (rotation - u * turn).norm()};
+      const PoseDistance here{(offset - u * along).norm(), (rotation - u * turn).norm()};
       if (here.position < least[m].position - 1e-12 || (here.position < least[m].position + 1e-12 && here.angle < least[m].angle))
         least[m] = here;
     }
   }
-  PoseTolerance worst{0, 0};
-  for (const PoseTolerance& pose : least) {
+  PoseDistance worst{0, 0};
+  for (const PoseDistance& pose : least) {
     worst.position = std::max(worst.position, pose.position);
     worst.angle = std::max(worst.angle, pose.angle);
   }

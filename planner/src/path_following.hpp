@@ -9,8 +9,8 @@
 
 namespace swivel {
 
-/// How near two poses must be, m and rad; infinite where nothing is asked.
-struct PoseTolerance {
+/// How far two poses are apart, or may be: m and rad; infinite where nothing is asked.
+struct PoseDistance {
   double position = std::numeric_limits<double>::infinity();
   double angle = std::numeric_limits<double>::infinity();
 };
@@ -18,10 +18,10 @@ struct PoseTolerance {
 /// The tool during a joint-linear move, as poses so close together that straight motions between them are within `error` of it.
 struct ToolMotion {
   std::vector<Pose> poses;
-  PoseTolerance error;
+  PoseDistance error;
 };
 /// Cuts the move so that the error stays below 1 % of the tolerance (but 1e-6 m and rad, and 2,048 parts, are fine enough).
-[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseTolerance& tolerance);
+[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseDistance& tolerance);
 
 /// A place on a tool path is a layer's number plus the fraction of the step from it: 3.5 is half way from layer 3 to layer 4.
 [[nodiscard]] Pose pose_at(const ToolPath& path, double place);
@@ -31,9 +31,9 @@ struct ToolMotion {
 /// `waypoints` where the path passes a waypoint on the way. That is whether their Frechet distance is that small: Alt & Godau 1995.
 /// Errors of the motion and 1e-6 m and rad are forgiven.
 [[nodiscard]] std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
-                                        const PoseTolerance& between, const PoseTolerance& waypoints);
+                                        const PoseDistance& between, const PoseDistance& waypoints);
 
 /// The largest distance of the motion's poses from the path between two places, and the largest angle at the nearest points.
-[[nodiscard]] PoseTolerance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end);
+[[nodiscard]] PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end);
 
 }  // namespace swivel

@@ -187,6 +187,10 @@ class Files(WithFolder):
         other = self.plan(PROBLEMS / "experiment_c.yaml", "--seed", "1", "--episode", "1", "--ds", "0.02", "--dphi", "0.2")[2]
         self.assertEqual((first["status"], first["cost"]), (again["status"], again["cost"]))
         self.assertNotEqual((first["status"], first["cost"]), (other["status"], other["cost"]))
+        episode = ("--episode", "1", "--ds", "0.02", "--dphi", "0.2")
+        out = self.folder / "t.csv"
+        self.assertEqual(run("check", PROBLEMS / "experiment_c.yaml", out, "--seed", "1", *episode).returncode, 0)
+        self.assertEqual(run("check", PROBLEMS / "experiment_c.yaml", out, "--seed", "2", *episode).returncode, 1)
 
     def test_info(self):
         done = run("info", DATA / "robots/sda5f.urdf", "--base", "base_link", "--tip", "arm_left_link_7_t")

@@ -27,7 +27,9 @@ TestRobot rounded_robot() {
   Random random(7);
   for (Joint& joint : model->joints) {
     if (!joint.movable()) continue;
-    const auto direction = [&] { return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized(); };
+    const auto direction = [&] {
+      return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    };
     joint.origin.translation() += 0.2e-3 * direction();
     joint.axis = (joint.axis + 1e-3 * direction()).normalized();
   }
@@ -49,9 +51,6 @@ struct Good {
   [[nodiscard]] Pose pose(double place) const {
     const int layer = std::min(static_cast<int>(place), path->size() - 2);
     return path->at(layer, place - layer);
-  }
-  [[nodiscard]] bool only_turns(int layer) const {
-    return (layer > 0 && path->layer(layer - 1).step_length < 1e-6) || path->layer(layer).step_length < 1e-6;
   }
 };
 
@@ -92,11 +91,13 @@ Problem some_problem(const TestRobot& robot, Random& random) {
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
   const int more = 2 + random.below(3), on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
   for (int k = 0; k < more; ++k)
-    problem.waypoints.push_back(moved(problem.waypoints.back(), k == on_the_spot ? Vector3d::Zero() : vector(random.uniform(0.04, 0.1)),
+    problem.waypoints.push_back(moved(problem.waypoints.back(),
+                                      k == on_the_spot ? Vector3d::Zero() : vector(random.uniform(0.04, 0.1)),
                                       vector(random.uniform(0.2, 0.5))));
   problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1};
   problem.limits.clearance = 0.002;
-  problem.scene.push_back({"ball", Sphere{0.05}, random_config(chain, random).norm() > 0 ? chain.tool(random_config(chain, random)) : Pose(), {}});
+  problem.scene.push_back(
+      {"ball", Sphere{0.05}, random_config(chain, random).norm() > 0 ? chain.tool(random_config(chain, random)) : Pose(), {}});
   return problem;
 }
 
@@ -174,6 +175,15 @@ double largest_move(const Good& good) {
   return most;
 }
 
+/// A point inside a convex shape.
+Vector3d centre(const Shape& shape) {
+  const auto* mesh = std::get_if<MeshPtr>(&shape);
+  if (!mesh) return Vector3d::Zero();
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& vertex : (*mesh)->vertices) sum += vertex;
+  return sum / static_cast<double>((*mesh)->vertices.size());
+}
+
 /// Breaks one rule of a good trajectory, by an amount that the returned words state. No words: nothing to break here.
 using Mutation = std::function<std::string(Good&, Random&)>;
 
@@ -193,7 +203,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          const int n = static_cast<int>(good.rows.size());
          for (int trial = 0; trial < 20; ++trial) {
            const int a = random.below(n - 2), b = std::min(n - 1, a + 3 + random.below(n));
-           const double off = deviation(good, good.rows[static_cast<std::size_t>(a)].q, good.rows[static_cast<std::size_t>(b)].q, a, b, 1, 1e9);
+           const double off =
+               deviation(good, good.rows[static_cast<std::size_t>(a)].q, good.rows[static_cast<std::size_t>(b)].q, a, b, 1, 1e9);
            if (off < 1.5e-3) continue;
            good.rows.erase(good.rows.begin() + a + 1, good.rows.begin() + b);
            return amount("off by %.3g m, allowed is 1e-3", off);
@@ -233,10 +244,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"s",
        [=](Good& good, Random& random) -> std::string {
-         const std::size_t k = some_row(good, random);
-         if (good.only_turns(static_cast<int>(k))) return "";
-         good.rows[k].s += random.coin() ? 1e-5 : -1e-5;
-         return "1e-5 m along a straight step, allowed are 1e-6";
+         good.rows[some_row(good, random)].s += random.coin() ? 1e-5 : -1e-5;
+         return "1e-5 m along the path, allowed are 1e-6";
        }},
       {"phi",
        [=](Good& good, Random& random) -> std::string {
@@ -297,7 +306,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
            for (int j = 0; j < kDof; ++j) {
              const double length = good.path->layer(static_cast<int>(k) - 1).step_length;
              const double move = std::abs(good.rows[k].q[j] - good.rows[k - 1].q[j]);
-             if (length > 1e-6 && move > 0) least = std::min(least, length * good.chain().limit[static_cast<std::size_t>(j)].velocity / move);
+             if (length > 1e-6 && move > 0)
+               least = std::min(least, length * good.chain().limit[static_cast<std::size_t>(j)].velocity / move);
            }
          good.problem.limits.tool_speed = 1.05 * least;
          return "a joint must be 5 % too fast";
@@ -363,6 +373,19 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          good.problem.limits.edge_clearance = least + 0.2e-3;
          return "0.2 mm too near";
        }},
+      {"contact",
+       [=](Good& good, Random& random) -> std::string {
+         const auto G = good.chain().displacements(good.rows[some_row(good, random)].q);
+         const auto& bodies = good.robot->world().bodies();
+         const RobotBody& body = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];
+         if (body.group == 0) return "";
+         Pose pose = Pose::Identity();
+         pose.translation() = G[static_cast<std::size_t>(body.group)] * body.pose * centre(body.shape);
+         good.problem.scene.push_back({"inside", Sphere{0.001}, pose, {}});
+         good.problem.limits.clearance = 0;
+         good.problem.limits.edges = EdgeMode::kNodes;
+         return "a ball inside a link, with no clearance asked";
+       }},
       {"start",
        [](Good& good, Random& random) -> std::string {
          good.problem.start = good.rows[0].q;
@@ -380,7 +403,8 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
          for (int i = 0; i < n; ++i) waypoints.push_back(waypoint_of(good.path->layer(i).tool));
          const double turn = random.uniform(0.05, 0.9);
          Vector3d aside = at.step_rotation.norm() > 1e-9 ? at.step_rotation.unitOrthogonal() : Vector3d::UnitX();
-         waypoints[static_cast<std::size_t>(layer)] = moved(waypoints[static_cast<std::size_t>(layer)], Vector3d::Zero(), turn * aside);
+         waypoints[static_cast<std::size_t>(layer)] =
+             moved(waypoints[static_cast<std::size_t>(layer)], Vector3d::Zero(), turn * aside);
          good.problem.waypoints = waypoints;
          good.rows.erase(good.rows.begin() + layer);
          return amount("by %.3g rad, allowed are 0.02 at waypoints", turn);
@@ -538,7 +562,8 @@ TEST(Check, TwoEqualRowsDoNotFollowAClosedPath) {
 TEST(Check, AWaypointThatTurnsIsNotSkipped) {
   Problem problem = closed_problem();
   problem.waypoints = {problem.waypoints[0], problem.waypoints[1], problem.waypoints[1]};
-  problem.waypoints[1] = {{0.5, 0.05, 0.6}, problem.waypoints[0].orientation * Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitX()))};
+  problem.waypoints[1] = {{0.5, 0.05, 0.6},
+                          problem.waypoints[0].orientation * Quaterniond(Eigen::AngleAxisd(0.9, Vector3d::UnitX()))};
   // What it looks like without the turn is straight, so the tool is never off in position.
   Problem straight = problem;
   straight.waypoints.erase(straight.waypoints.begin() + 1);
@@ -651,7 +676,8 @@ TEST(Check, ManySmallTurnsOnTheSpotPass) {
       EXPECT_TRUE(result.passed) << what << ": " << first(result);
       std::vector<TrajectoryRow> waypoints;  // two of three rows left out
       for (std::size_t k = 0; k < good->rows.size(); k += 3) waypoints.push_back(good->rows[k]);
-      EXPECT_TRUE(check_trajectory(*good->robot, good->problem, waypoints).passed) << what << ": " << first(check_trajectory(*good->robot, good->problem, waypoints));
+      EXPECT_TRUE(check_trajectory(*good->robot, good->problem, waypoints).passed)
+          << what << ": " << first(check_trajectory(*good->robot, good->problem, waypoints));
       if (back) {  // without one swing the tool has all the same poses at rows, and never makes it
         auto without = good->rows;
         without.erase(without.begin() + 19, without.begin() + 19 + 18);
