@@ -116,11 +116,10 @@ class Check {
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  /// A place of the path that a row can be at, and the least number of failing moves on the way there.
+  /// A place of the path that a row can be at.
   struct Candidate {
     double place = 0;
-    int failures = 0;
-    int before = -1;  // candidate of the row before
+    std::size_t before = 0;  // candidate of the row before that leads here
   };
 
   [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
@@ -135,7 +134,7 @@ class Check {
   }
 
   [[nodiscard]] bool examined(std::size_t k) const { return !candidates_[k].empty(); }
-  [[nodiscard]] double place(std::size_t k) const { return candidates_[k][static_cast<std::size_t>(chosen_[k])].place; }
+  [[nodiscard]] double place(std::size_t k) const { return candidates_[k][chosen_[k]].place; }
   [[nodiscard]] const char* joint_name(std::size_t j) const { return chain_.joint_names[j].c_str(); }
 
   /// Values and limits of a row.
@@ -213,69 +212,61 @@ class Check {
     return low;
   }
 
-  /// Matches rows to places such that the fewest moves fail. A row has one place, save where the path comes back to a pose while s
-  /// stands still.
+  /// Matches rows to places such that no move fails, where that can be. A row has one place, save where the path comes back to a
+  /// pose while s stands still: of its places those are kept that can be reached from the row before.
   void choose_places() {
     chosen_.assign(rows_.size(), 0);
     jumps_.assign(rows_.size(), false);
     std::optional<std::size_t> before;
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!examined(k)) continue;
-      if (before && candidates_[*before].size() * candidates_[k].size() == 1)
-        candidates_[k][0].before = 0;
-      else if (before)
-        reach(*before, k);
-      else
-        for (Candidate& candidate : candidates_[k]) candidate.failures = k == 0 && candidate.place > 0;
+      if (k == 0) candidates_[0].resize(1);  // the first on the path
+      if (before && candidates_[*before].size() * candidates_[k].size() > 1) keep_reachable(*before, k);
       before = k;
     }
     if (!before) return;
-    const auto& last = candidates_[*before];
-    int best = 0;
-    const auto failures = [&](int c) {
-      const Candidate& candidate = last[static_cast<std::size_t>(c)];
-      return candidate.failures + (candidate.place < path_.size() - 1);
-    };
-    for (int c = 1; c < static_cast<int>(last.size()); ++c)
-      if (failures(c) < failures(best)) best = c;
+    std::size_t best = candidates_[*before].size() - 1;  // the last on the path
     for (std::size_t k = *before + 1; k-- > 0;) {
       if (!examined(k)) continue;
       chosen_[k] = best;
-      best = candidates_[k][static_cast<std::size_t>(best)].before;
+      best = candidates_[k][best].before;
     }
   }
 
-  /// Of each place of row k, the best place of the row examined before it.
-  void reach(std::size_t before, std::size_t k) {
-    std::vector<Candidate>& to = candidates_[k];
+  /// Of the places of row k keeps those that a move leads to which passes; where there is none, that one goes forward to; else all.
+  void keep_reachable(std::size_t before, std::size_t k) {
+    enum Verdict { kPasses, kFails, kGoesBack };
     const std::vector<Candidate>& from = candidates_[before];
+    std::vector<Candidate>& to = candidates_[k];
     const bool neighbours = before + 1 == k;
     const Config move = rows_[k].q - rows_[before].q;
     std::vector<double> ends;
     for (const Candidate& candidate : to) ends.push_back(candidate.place);
+    std::vector<Verdict> best(ends.size(), kGoesBack);
     std::optional<ToolMotion> motion;
-    for (int f = 0; f < static_cast<int>(from.size()); ++f) {
-      const Candidate& start = from[static_cast<std::size_t>(f)];
-      const auto later = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), start.place) - ends.begin());
-      std::vector<bool> reached(ends.size() - later, false);
-      if (neighbours && !reached.empty() && excess(move, start.place, ends.back()).by <= 0) {
+    for (std::size_t f = 0; f < from.size(); ++f) {
+      const double begin = from[f].place;
+      const auto later = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), begin) - ends.begin());
+      std::vector<bool> reached(ends.size() - later, !neighbours);
+      if (neighbours && !reached.empty() && excess(move, begin, ends.back()).by <= 0) {
         if (!motion) motion = tool_motion(chain_, rows_[before].q, rows_[k].q, at_waypoints_);
-        reached = follows(*motion, path_, start.place, std::span(ends).subspan(later), along_, at_waypoints_);
+        reached = follows(*motion, path_, begin, std::span(ends).subspan(later), along_, at_waypoints_);
+        for (std::size_t c = later; c < ends.size(); ++c) {
+          if (is_step(begin, ends[c])) reached[c - later] = within(step_deviation(k, begin), along_);
+          reached[c - later] = reached[c - later] && excess(move, begin, ends[c]).by <= 0;
+        }
       }
       for (std::size_t c = 0; c < to.size(); ++c) {
-        const auto passes = [&](double end) {
-          return excess(move, start.place, end).by <= 0 &&
-                 (is_step(start.place, end) ? within(step_deviation(k, start.place), along_) : reached[c - later]);
-        };
-        int failures = start.failures;
-        if (ends[c] < start.place)
-          failures += 2;  // goes back, which is worse than not keeping to the path
-        else if (neighbours && !(c >= later && passes(ends[c])))
-          failures += 1;
-        // Of equally good ones the latest: the path between is the shortest.
-        if (to[c].before < 0 || failures <= to[c].failures) to[c].failures = failures, to[c].before = f;
+        const Verdict verdict = ends[c] < begin ? kGoesBack : c >= later && reached[c - later] ? kPasses : kFails;
+        // Of equally good places to come from the last one: the way is the shortest.
+        if (verdict <= best[c]) best[c] = verdict, to[c].before = f;
       }
     }
+    const Verdict least = *std::min_element(best.begin(), best.end());
+    std::vector<Candidate> kept;
+    for (std::size_t c = 0; c < to.size(); ++c)
+      if (best[c] == least) kept.push_back(to[c]);
+    to.swap(kept);
   }
 
   /// From a layer to the next.
@@ -485,7 +476,7 @@ class Check {
   Contacts contacts_;
   PoseDistance along_, at_waypoints_;
   std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined
-  std::vector<int> chosen_;
+  std::vector<std::size_t> chosen_;
   std::vector<bool> jumps_;  // the move to the row is too large for its joints
   CheckResult result_;
 };
