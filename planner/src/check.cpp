@@ -13,6 +13,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/tool_path.hpp"
+#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -370,7 +371,7 @@ class Check {
     }
     for (std::size_t j = 0; j < kDof; ++j) {
       const double moved = std::abs(move[static_cast<Eigen::Index>(j)]);
-      if (!chain_.limit[j].continuous || moved < kPi) continue;
+      if (!(chain_.limit[j].continuous || chain_.limit[j].wide()) || moved < kPi) continue;
       fail("rows %zu-%zu: continuous joint '%s' moves by %.6g rad: allowed is less than pi", k - 1, k, joint_name(j), moved);
       return false;
     }
@@ -484,6 +485,8 @@ class Check {
 }  // namespace
 
 CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows) {
+  validate(problem);
+  robot.require_prepared_for(problem);
   return Check(robot, problem, rows).run();
 }
 

@@ -51,12 +51,13 @@ struct CheckResult {
 ///   (Frechet distance). Where one of the two is not set, 1 mm or 0.02 rad holds at the waypoints that the move passes, each of
 ///   which is a layer of its own. A move from a layer to the next is judged by the lattice's rule, at t = 1/4, 1/2, 3/4;
 /// - each joint moves by at most joint_step, and by what its speed allows in the step's time, for each step that the move touches;
-///   between any two rows by at most one step's share more; a continuous joint by less than pi;
+///   between any two rows by at most one step's share more; a continuous joint, or one of over 64 turns, by less than pi;
 /// - step_error is kept, where both rows are neighbouring layers: elsewhere it is not defined;
 /// - nothing comes nearer than d_edge (0.05 mm), with `edges: continuous`.
 /// Throws InvalidArgument and InputError as plan() does.
 [[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows);
-/// The same on a robot prepared before (by a problem with the same robot section).
+/// The same on a robot prepared before. Throws InvalidArgument unless it was prepared for this problem
+/// (PreparedRobot::require_prepared_for).
 [[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
                                            const std::vector<TrajectoryRow>& rows);
 
