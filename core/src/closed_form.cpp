@@ -97,8 +97,8 @@ CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d&
   return normal;
 }
 
-/// f1(q) = distance y1, f2(q) = sine y2 and y1^2 + y2^2 = radius2, for the numbers of a common normal. `scale2` is the square of the
-/// size that the y can have.
+/// f1(q) = distance y1, f2(q) = sine y2 and y1^2 + y2^2 = radius2, for the numbers of a common normal. `scale2` is the square of
+/// the size that the y can have.
 struct Meeting {
   Angle q;
   double y1, y2;
@@ -146,8 +146,8 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   const Vector3d& a = wrist.axis[3];
   const Vector3d& b = wrist.axis[4];
   const Vector3d& c = wrist.axis[5];
-  // cosine cos(q_5) + sine sin(q_5) = R c . a less its constant part; the discriminant by the cross product, since near the singular
-  // pose the cosine has lost half its digits.
+  // cosine cos(q_5) + sine sin(q_5) = R c . a less its constant part; the discriminant by the cross product, since near the
+  // singular pose the cosine has lost half its digits.
   const Vector3d target = R * c, e = R * wrist.across;
   const double P = wrist.middle_cosine, Q = wrist.middle_sine, square = P * P + Q * Q, cosine = a.dot(target);
   const double K = cosine - wrist.first_cosine * wrist.last_cosine;
@@ -249,7 +249,8 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
       // Axis 6 is parallel to axes 2-4 and turns freely: it makes the elbow as near to a right angle as it can.
       const Vector3d arm6 = across_part(a6, wrist - normal.second);
       const auto planar = [&](const Vector3d& v) { return across_part(z, left.linear() * v); };
-      const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]), c = planar(arm6), s = -planar(a6.cross(arm6));
+      const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]), c = planar(arm6),
+                     s = -planar(a6.cross(arm6));
       const Wave bend{f.squaredNorm() + c.squaredNorm() - upper2 - fore2, 2 * f.dot(c), 2 * f.dot(s)};
       const Roots square = roots(bend, 0);
       add_planar(square.count > 0 ? square.angle[0] : Angle::of(-bend.constant * bend.cosine, -bend.constant * bend.sine));
@@ -262,8 +263,8 @@ double miss_of(const Pose& reached, const Pose& tool) {
   return std::max((reached.translation() - tool.translation()).norm(), turn);
 }
 
-/// Newton on the exact chain; damped where it is singular, and no joint by more than kLargest at once. False where it does not reach the
-/// pose.
+/// Newton on the exact chain; damped where it is singular, and no joint by more than kLargest at once. False where it does not
+/// reach the pose.
 bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
   constexpr int kSteps = 30;
   constexpr double kLargest = 0.1;
@@ -298,8 +299,7 @@ std::pair<Vector3d, double> centre_of(const SixChain& chain, std::size_t first) 
   }
   const Vector3d centre = A.partialPivLu().solve(b);
   double miss = 0;
-  for (std::size_t k = first; k < first + 3; ++k)
-    miss = std::max(miss, across_part(chain.axis[k], centre - chain.point[k]).norm());
+  for (std::size_t k = first; k < first + 3; ++k) miss = std::max(miss, across_part(chain.axis[k], centre - chain.point[k]).norm());
   return {centre, miss};
 }
 
@@ -467,14 +467,26 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool) const {
   Candidates candidates;
   std::visit([&](const auto& method) { swivel::solve(method, D, slack_, aligned_, candidates); }, method_);
   Solutions result;
+  Candidate last;
+  Config6 angles;
+  std::array<Pose, kSix + 1> G;
+  G[0].setIdentity();
   for (int k = 0; k < candidates.count; ++k) {
     Candidate& candidate = candidates.at[static_cast<std::size_t>(k)];
     if (reversed_) std::reverse(candidate.begin(), candidate.end());
-    Pose G = Pose::Identity();
-    for (std::size_t j = 0; j < kSix; ++j) append(G, chain_.axis[j], chain_.point[j], candidate[j]);
-    const double miss = miss_of(product(G, chain_.home), tool);
-    Config6 q;
-    for (std::size_t j = 0; j < kSix; ++j) q[static_cast<Eigen::Index>(j)] = candidate[j].radians();
+    // Neighbours share angles: only what changes is computed.
+    bool same = k > 0;
+    for (std::size_t j = 0; j < kSix; ++j) {
+      const bool repeated = k > 0 && candidate[j] == last[j];
+      if (!repeated) angles[static_cast<Eigen::Index>(j)] = candidate[j].radians();
+      same = same && repeated;
+      if (same) continue;
+      G[j + 1] = G[j];
+      append(G[j + 1], chain_.axis[j], chain_.point[j], candidate[j]);
+    }
+    last = candidate;
+    Config6 q = angles;
+    const double miss = miss_of(product(G[kSix], chain_.home), tool);
     if (!(miss <= kGoal)) {
       if (!newton(chain_, tool, q)) continue;
       for (double& angle : q) angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;

@@ -9,7 +9,8 @@ namespace swivel {
 
 namespace {
 
-/// Largest real root of w^3 + p w + q, where q <= 0 or three roots are real: Newton from a bound above it, where the cubic is convex.
+/// Largest real root of w^3 + p w + q, where q <= 0 or three roots are real: Newton from a bound above it, where the cubic is
+/// convex.
 double greatest_root(double p, double q) {
   double w = std::sqrt(std::max(0.0, -p));
   if (q < 0) {  // plus a power of two above the cube root of -q
@@ -138,13 +139,12 @@ Roots roots(const Wave2& wave, double slack) {
 
   // Ferrari: t = y - a/4 and y^4 + p y^2 + q y + r = (y^2 + u y + v)(y^2 - u y + w).
   const double quarter = f.a / 4, a2 = quarter * quarter;
-  const double p = f.b - 6 * a2, q = f.c - 2 * f.b * quarter + 8 * a2 * quarter,
-               r = f.d - f.c * quarter + f.b * a2 - 3 * a2 * a2;
+  const double p = f.b - 6 * a2, q = f.c - 2 * f.b * quarter + 8 * a2 * quarter, r = f.d - f.c * quarter + f.b * a2 - 3 * a2 * a2;
   const double u2 = resolvent_root(2 * p, p * p - 4 * r, -q * q), u = std::sqrt(u2);
   const double sum = p + u2, square = sum * sum - 4 * r;
   // Two ways to w - v, of which one cancels where u is small and the other where v and w are near each other.
-  const double difference = square > 0.01 * (sum * sum + 4 * std::abs(r)) || u == 0 ? std::copysign(std::sqrt(std::max(0.0, square)), q)
-                                                                                    : q / u;
+  const double difference =
+      square > 0.01 * (sum * sum + 4 * std::abs(r)) || u == 0 ? std::copysign(std::sqrt(std::max(0.0, square)), q) : q / u;
   std::array<double, 4> t{};
   int count = 0;
   quadratic(2 * quarter + u, a2 + u * quarter + (sum - difference) / 2, f, slack, t, count);
@@ -156,7 +156,8 @@ Roots roots(const Wave2& wave, double slack) {
     result.angle[static_cast<std::size_t>(k)] = origin + Angle{(1 - x * x) * unit, 2 * x * unit};
   }
   for (std::size_t k = 1; k < 4; ++k)  // four at most: insertion
-    for (std::size_t j = k; k < static_cast<std::size_t>(count) && j > 0 && order(result.angle[j]) < order(result.angle[j - 1]); --j)
+    for (std::size_t j = k; k < static_cast<std::size_t>(count) && j > 0 && order(result.angle[j]) < order(result.angle[j - 1]);
+         --j)
       std::swap(result.angle[j], result.angle[j - 1]);
   return result;
 }

@@ -106,11 +106,14 @@ TEST_P(ClosedFormOf, FindsEveryConfigurationAgain) {
     const Tally tally = round_trip(chain, method.best, kind, near ? count / 4 : count, random);
     const int missed = tally.tried - tally.found - tally.singular;
     std::printf(
-        "  %s: tried %d, found %d, singular %d (unsolved %d), missed %d (|det| to %.1e), solutions %.2f (most %d), residual %.1e, own "
+        "  %s: tried %d, found %d, singular %d (unsolved %d), missed %d (|det| to %.1e), solutions %.2f (most %d), residual %.1e, "
+        "own "
         "within %.1e\n",
-        kind == Draw::kLimits ? "limits" : kind == Draw::kTurns ? "turns " : "square", tally.tried, tally.found, tally.singular,
-        tally.unsolved, missed, tally.missed_at, static_cast<double>(tally.solutions) / tally.tried, tally.most, tally.worst,
-        tally.farthest);
+        kind == Draw::kLimits  ? "limits"
+        : kind == Draw::kTurns ? "turns "
+                               : "square",
+        tally.tried, tally.found, tally.singular, tally.unsolved, missed, tally.missed_at,
+        static_cast<double>(tally.solutions) / tally.tried, tally.most, tally.worst, tally.farthest);
     EXPECT_EQ(tally.tried, near ? count / 4 : count);
     EXPECT_GT(tally.found, tally.tried / 2 - 100);
     EXPECT_LE(tally.missed_at, near ? 1e-3 : 0);
@@ -218,16 +221,16 @@ TEST(Trigonometric, FindsTheRootsOfAWave) {
       }
       wave.constant -= value(least);
       const Roots found = roots(wave, 1e-6);
-      EXPECT_TRUE(std::any_of(found.begin(), found.end(), [&](const Angle& x) {
-        return std::abs(std::remainder(x.radians() - least, kTwoPi)) < 1e-3;
-      }));
+      EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                              [&](const Angle& x) { return std::abs(std::remainder(x.radians() - least, kTwoPi)) < 1e-3; }));
       ++doubles;
       continue;
     }
     const Roots found = roots(wave, 0);
     for (int k = 0; k < found.count; ++k) {
       EXPECT_LT(std::abs(value(found.angle[static_cast<std::size_t>(k)].radians())), 1e-12);
-      EXPECT_LE(found.angle[static_cast<std::size_t>(std::max(k, 1)) - 1].radians(), found.angle[static_cast<std::size_t>(k)].radians());
+      EXPECT_LE(found.angle[static_cast<std::size_t>(std::max(k, 1)) - 1].radians(),
+                found.angle[static_cast<std::size_t>(k)].radians());
     }
     constexpr int kSteps = 1000;
     for (int k = 0; k < kSteps; ++k) {

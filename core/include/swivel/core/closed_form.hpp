@@ -59,36 +59,37 @@ struct CommonNormal {
 /// point that joint 3 turns make one second-order trigonometric polynomial in q_3. The constants of that.
 struct SphericalWrist {
   std::array<Vector3d, kSix> axis;
-  Vector3d centre;               ///< W
-  CommonNormal normal;           ///< of axes 1 and 2
-  Vector3d foot, cosine, sine;   ///< exp([S_3] q) W = foot + cos(q) cosine + sin(q) sine
-  Wave reach, height;            ///< about the second foot of the normal: half the squared distance; along axis 2
-  double scale2 = 0;             ///< square of the size of the arm, m^2
+  Vector3d centre;              ///< W
+  CommonNormal normal;          ///< of axes 1 and 2
+  Vector3d foot, cosine, sine;  ///< exp([S_3] q) W = foot + cos(q) cosine + sin(q) sine
+  Wave reach, height;           ///< about the second foot of the normal: half the squared distance; along axis 2
+  double scale2 = 0;            ///< square of the size of the arm, m^2
   double first_cosine = 0, last_cosine = 0, middle_cosine = 0, middle_sine = 0;  ///< of the triple
-  Vector3d across;               ///< unit, perpendicular to axis 6
+  Vector3d across;                                                               ///< unit, perpendicular to axis 6
 };
 
-/// Axes 2-4 are parallel, so joints 2-4 keep a direction and a height along it: two equations linear in the cosines and sines of q_1
-/// and q_5. Then q_6, and a planar arm of two links. Elias & Wen 2022 (IK-Geo) list the case; the elimination is that of Pieper.
+/// Axes 2-4 are parallel, so joints 2-4 keep a direction and a height along it: two equations linear in the cosines and sines of
+/// q_1 and q_5. Then q_6, and a planar arm of two links. Elias & Wen 2022 (IK-Geo) list the case; the elimination is that of
+/// Pieper.
 struct ThreeParallel {
-  std::array<Vector3d, kSix> axis;   ///< 2-4 made parallel
+  std::array<Vector3d, kSix> axis;  ///< 2-4 made parallel
   std::array<Vector3d, kSix> point;
-  std::array<double, kSix> sign;     ///< of axes 2-4 along axis 2
-  CommonNormal normal;               ///< of axes 5 and 6
+  std::array<double, kSix> sign;                 ///< of axes 2-4 along axis 2
+  CommonNormal normal;                           ///< of axes 5 and 6
   double along_n = 0, along_m = 0, along_a = 0;  ///< the parallel direction in the frame of the normal
-  Vector3d upper, fore;              ///< links of the planar arm: axis 2 to 3, 3 to 4
-  Vector3d across;                   ///< unit, perpendicular to axis 2
+  Vector3d upper, fore;                          ///< links of the planar arm: axis 2 to 3, 3 to 4
+  Vector3d across;                               ///< unit, perpendicular to axis 2
 };
 
-/// All configurations of a six-joint chain at a tool pose, for chains with a spherical wrist (axes 4, 5, 6 meet), a spherical shoulder
-/// (1, 2, 3 meet; the chain is turned round) or three parallel axes (2, 3, 4 or 3, 4, 5). Where the axes only nearly meet, the fitted
-/// chain gives starts, slightly complex roots included, and Newton leads each to the exact chain.
-/// Sources: D. L. Pieper, The kinematics of manipulators under computer control, 1968; K. M. Lynch & F. C. Park, Modern Robotics,
-/// 2017, 6.1; A. J. Elias & J. T. Wen, IK-Geo, 2022.
+/// All configurations of a six-joint chain at a tool pose, for chains with a spherical wrist (axes 4, 5, 6 meet), a spherical
+/// shoulder (1, 2, 3 meet; the chain is turned round) or three parallel axes (2, 3, 4 or 3, 4, 5). Where the axes only nearly meet,
+/// the fitted chain gives starts, slightly complex roots included, and Newton leads each to the exact chain. Sources: D. L. Pieper,
+/// The kinematics of manipulators under computer control, 1968; K. M. Lynch & F. C. Park, Modern Robotics, 2017, 6.1; A. J. Elias &
+/// J. T. Wen, IK-Geo, 2022.
 class ClosedForm {
  public:
-  /// Four roots, each with two ways to turn the rest, make eight. Near singular poses there are more representatives, and nearly fitted
-  /// chains have solutions of their own.
+  /// Four roots, each with two ways to turn the rest, make eight. Near singular poses there are more representatives, and nearly
+  /// fitted chains have solutions of their own.
   static constexpr int kMaxSolutions = 16;
   struct Solutions {
     std::array<Config6, kMaxSolutions> q;
@@ -100,9 +101,9 @@ class ClosedForm {
   /// None where no three axes in the right place meet or are parallel, or where the first two axes of the position coincide.
   [[nodiscard]] static std::optional<ClosedForm> of(const SixChain& chain);
 
-  /// Distinct configurations in (-pi, pi], limits not applied, in a fixed order: each reaches the pose within 1e-9 m and rad on the exact
-  /// chain, by forward kinematics. At a singular pose a family has some representatives, not all. Allocates nothing; plain IEEE arithmetic
-  /// but for atan2 (and sin, cos where Newton is needed).
+  /// Distinct configurations in (-pi, pi], limits not applied, in a fixed order: each reaches the pose within 1e-9 m and rad on the
+  /// exact chain, by forward kinematics. At a singular pose a family has some representatives, not all. Allocates nothing; plain
+  /// IEEE arithmetic but for atan2 (and sin, cos where Newton is needed).
   [[nodiscard]] Solutions solve(const Pose& tool) const;
 
   [[nodiscard]] const SixChain& chain() const { return chain_; }
@@ -118,8 +119,8 @@ class ClosedForm {
   std::variant<SphericalWrist, ThreeParallel> method_;
 };
 
-/// How a seven-joint chain is solved in closed form: with one joint locked. A six-joint arm whose tool may turn about its own axis is
-/// such a chain too: its last joint is that turn.
+/// How a seven-joint chain is solved in closed form: with one joint locked. A six-joint arm whose tool may turn about its own axis
+/// is such a chain too: its last joint is that turn.
 struct LockMethod {
   std::array<std::optional<ClosedFormFit>, kDof> by_joint;  ///< none: locking that joint gives no closed form
   int best = -1;  ///< the joint to lock: of those possible, the one that self-motion turns most on average; -1: none

@@ -21,6 +21,7 @@ struct Angle {
     const double angle = std::atan2(sine, cosine);
     return angle > -kPi ? angle : kPi;
   }
+  [[nodiscard]] bool operator==(const Angle&) const = default;
   [[nodiscard]] Angle operator-() const { return {cosine, -sine}; }
   [[nodiscard]] Angle operator+(const Angle& b) const {
     return {cosine * b.cosine - sine * b.sine, sine * b.cosine + cosine * b.sine};
@@ -41,8 +42,8 @@ struct Wave2 {
 };
 
 /// Roots of a wave: at most two or four. Where a pair is complex, but its imaginary part is so small that the discriminant lies
-/// within `slack` (relative) of zero, it counts as two real roots as far apart: for starts of an iteration. A wave that vanishes has the
-/// representatives 0 and pi.
+/// within `slack` (relative) of zero, it counts as two real roots as far apart: for starts of an iteration. A wave that vanishes
+/// has the representatives 0 and pi.
 struct Roots {
   std::array<Angle, 4> angle;
   int count = 0;
@@ -50,8 +51,8 @@ struct Roots {
   [[nodiscard]] const Angle* end() const { return angle.data() + count; }
 };
 [[nodiscard]] Roots roots(const Wave& wave, double slack);
-/// By the quartic in the tangent of the half angle (Ferrari), from the origin, of five, that keeps roots farthest from infinity. In the
-/// order of angles. Uses + - * / and sqrt alone.
+/// By the quartic in the tangent of the half angle (Ferrari), from the origin, of five, that keeps roots farthest from infinity. In
+/// the order of angles. Uses + - * / and sqrt alone.
 [[nodiscard]] Roots roots(const Wave2& wave, double slack);
 
 }  // namespace swivel
