@@ -502,6 +502,20 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool) const {
   return result;
 }
 
+ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack) const {
+  Pose D = product(tool, home_inverse_);
+  if (reversed_) D = D.inverse(Eigen::Isometry);
+  Candidates candidates;
+  std::visit([&](const auto& method) { swivel::solve(method, D, slack, aligned_, candidates); }, method_);
+  Solutions result;
+  for (; result.count < std::min<int>(candidates.count, kMaxSolutions); ++result.count) {
+    const auto k = static_cast<std::size_t>(result.count);
+    for (std::size_t j = 0; j < kSix; ++j)
+      result.q[k][static_cast<Eigen::Index>(reversed_ ? kSix - 1 - j : j)] = candidates.at[k][j].radians();
+  }
+  return result;
+}
+
 LockMethod lock_method(const Chain& chain) {
   // What holds at three values of the lock holds at all but a few.
   constexpr std::array<double, 3> kValues = {0.7, 1.9, -1.1};

@@ -106,6 +106,10 @@ class ClosedForm {
   /// IEEE arithmetic but for atan2 (and sin, cos where Newton is needed).
   [[nodiscard]] Solutions solve(const Pose& tool) const;
 
+  /// Unchecked starts for an iteration that may move the locked joint too: solutions of the fitted chain, and the neighbourhood of
+  /// complex ones whose discriminants are within `slack` (relative) of zero.
+  [[nodiscard]] Solutions starts(const Pose& tool, double slack) const;
+
   [[nodiscard]] const SixChain& chain() const { return chain_; }
   [[nodiscard]] const ClosedFormFit& fit() const { return fit_; }
 
