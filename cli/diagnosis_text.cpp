@@ -25,20 +25,20 @@ double degrees(double angle) {
   return angle * 180 / kPi;
 }
 
-/// " (out of reach by 3 mm)": by how much, over some layers of one reason.
-std::string shortfall_text(const std::optional<Shortfall>& shortfall, double least, double most) {
-  if (!shortfall) return "";
+/// "no IK (out of reach by 3 mm)": by how much, over some layers of one reason.
+std::string reason_text(const std::string& reason, const std::optional<Shortfall>& shortfall, double least, double most) {
+  if (!shortfall) return reason;
   switch (shortfall->kind) {
     case Shortfall::Kind::kTooFar:
-      return " (out of reach by " + range(1e3 * least, 1e3 * most) + " mm)";
+      return reason + " (out of reach by " + range(1e3 * least, 1e3 * most) + " mm)";
     case Shortfall::Kind::kTooNear:
-      return " (too near to the shoulder by " + range(1e3 * least, 1e3 * most) + " mm)";
+      return reason + " (too near to the shoulder by " + range(1e3 * least, 1e3 * most) + " mm)";
     case Shortfall::Kind::kLowerLimit:
     case Shortfall::Kind::kUpperLimit:
-      return " (" + shortfall->joint + " is " + range(degrees(least), degrees(most)) + " deg beyond " +
-             text("%.2f deg)", degrees(shortfall->limit));
+      return reason + " (" + (reason == "joint " + shortfall->joint ? "" : shortfall->joint + ": ") +
+             range(degrees(least), degrees(most)) + " deg beyond " + text("%.2f deg)", degrees(shortfall->limit));
   }
-  return "";
+  return reason;
 }
 
 /// Layers, one after the other, that are empty for one reason.
@@ -76,7 +76,7 @@ struct Run {
       line += first_waypoint == last_waypoint ? text(" (waypoint %d)", first_waypoint)
                                               : text(" (waypoints %d to %d)", first_waypoint, last_waypoint);
     line += first == last ? text(", s = %.4f m", first->s) : text(", s = %.4f to %.4f m", first->s, last->s);
-    return line + ": no valid node: " + first->reason + shortfall_text(first->shortfall, least, most) + '\n';
+    return line + ": no valid node: " + reason_text(first->reason, first->shortfall, least, most) + '\n';
   }
 };
 
@@ -85,7 +85,8 @@ struct Run {
 std::string diagnosis_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
   if (d.reason.empty()) return "no path at this resolution; stopped before it was known what ends every one\n";
-  const std::string why = d.reason + (d.shortfall ? shortfall_text(d.shortfall, d.shortfall->by(), d.shortfall->by()) : "");
+  const double by = d.shortfall ? d.shortfall->by() : 0;
+  const std::string why = reason_text(d.reason, d.shortfall, by, by);
   std::string answer = d.reached_layer ? text("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where ",
                                               *d.reached_layer, result.lattice.layers - 1, *d.reached_s) +
                                              why + " stops it\n"
