@@ -86,7 +86,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
       {"search",
        [&] {
          auto asked = validity();
-         path_first(togo, asked, {}, counters);
+         static_cast<void>(path_first(togo, asked, {}, counters));
        }},
       {"furthest layer",
        [&] {
@@ -166,8 +166,8 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
         if (result.status == PlanStatus::kCancelled) {
           ++stopped;
           EXPECT_TRUE(result.trajectory.empty()) << what;
-          if (phrase.starts_with("laying")) EXPECT_EQ(result.lattice.layers, 0) << what;
-          if (phrase.starts_with("sweeping")) EXPECT_EQ(result.counters.edges, 0) << what;
+          EXPECT_TRUE(!phrase.starts_with("laying") || result.lattice.layers == 0) << what;
+          EXPECT_TRUE(!phrase.starts_with("sweeping") || result.counters.edges == 0) << what;
           continue;
         }
         ++verdicts_kept;
@@ -175,7 +175,7 @@ TEST(Budget, APlanStopsInTheStageThatItIsIn) {
         EXPECT_EQ(result.cost, whole.cost) << what;
         EXPECT_EQ(result.trajectory.size(), whole.trajectory.size()) << what;
         EXPECT_FALSE(result.evidence.postures) << what;
-        if (whole.status == PlanStatus::kInfeasible) EXPECT_FALSE(result.diagnosis.complete) << what;
+        EXPECT_TRUE(whole.status == PlanStatus::kSolved || !result.diagnosis.complete) << what;
       }
       options.cancel = nullptr;
     }
