@@ -152,6 +152,7 @@ class Pages(unittest.TestCase):
             self.assertIn("npm ci failed (1): built without the pages of --report", done.stderr)
             for name in ("report.html", "overview.html", "THIRD-PARTY.txt"):
                 self.assertEqual((pathlib.Path(folder) / name).read_bytes(), b"")
+            self.assertEqual((pathlib.Path(folder) / "pages.d").read_text(), f"{folder}/report.html: {ROOT}/report/web/build.mjs\n")
             self.assertIn("npm ci failed", self.bundle(folder, "AUTO").stderr, "tries again when asked again")
 
     def test_where_reports_are_asked_for_the_build_fails(self):
