@@ -87,7 +87,10 @@ class Wrapper(Project):
     def test_a_terminal_gets_one_line_that_moves(self):
         self.call()
         (self.root / "work.cmake").write_text("execute_process(COMMAND sleep 3)")
-        master, slave = pty.openpty()
+        try:
+            master, slave = pty.openpty()
+        except OSError as error:
+            self.skipTest(str(error))  # a chroot without /dev/pts
         done = subprocess.run([self.root / "swivel"], env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=slave, timeout=120)
         os.close(slave)
         shown = os.read(master, 65536).decode()
