@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bad_input.hpp"
 
-#include <algorithm>
+#include <string_view>
 
+#include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel::io {
 
 void bad_input(const std::string& where, const std::string& what, const std::string& allowed) {
-  std::string message = where + ": " + what + ": allowed is " + allowed;
-  // Names and library messages may carry line breaks; the contract is one line.
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-  throw InputError(message);
+  // Files may hold words of any length.
+  const auto part = [](const std::string& text) {
+    constexpr std::size_t kMost = 400;
+    return text.size() <= kMost ? printable(text) : printable(std::string_view(text).substr(0, kMost)) + " ...";
+  };
+  throw InputError(printable(where) + ": " + part(what) + ": allowed is " + part(allowed));
 }
 
 std::string at_line(const std::string& file, int line) {

@@ -8,15 +8,19 @@
 
 namespace swivel::io {
 
-tinyxml2::XMLElement& load_robot_xml(const std::filesystem::path& file, const char* kind, tinyxml2::XMLDocument& document) {
-  const std::string text = read_file(file, std::string(kind) + " file");
-  const std::string allowed = std::string("well-formed ") + kind + " with a <robot> element";
+tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text, const char* kind, const char* root_name,
+                                tinyxml2::XMLDocument& document) {
+  const std::string allowed = std::string("well-formed ") + kind + " with a <" + root_name + "> element";
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-    bad_input(at_line(file.string(), document.ErrorLineNum()), std::string("not XML (") + document.ErrorName() + ")", allowed);
+    bad_input(at_line(file, document.ErrorLineNum()), std::string("not XML (") + document.ErrorName() + ")", allowed);
   tinyxml2::XMLElement* const root = document.RootElement();
-  if (root == nullptr || std::string(root->Name()) != "robot")
-    bad_input(at_line(file.string(), root == nullptr ? 0 : root->GetLineNum()), "no <robot> element", allowed);
+  if (root == nullptr || std::string(root->Name()) != root_name)
+    bad_input(at_line(file, root == nullptr ? 0 : root->GetLineNum()), std::string("no <") + root_name + "> element", allowed);
   return *root;
+}
+
+tinyxml2::XMLElement& load_robot_xml(const std::filesystem::path& file, const char* kind, tinyxml2::XMLDocument& document) {
+  return parse_xml(file.string(), read_file(file, std::string(kind) + " file"), kind, "robot", document);
 }
 
 }  // namespace swivel::io

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 
+#include "../support/seed.hpp"
 #include "io_support.hpp"
 
 namespace swivel::io::test {
@@ -146,6 +148,191 @@ TEST(Mesh, CacheSharesTheSameFileAndScale) {
   const MeshPtr first = load_mesh(file, Vector3d::Ones(), cache);
   EXPECT_EQ(first, load_mesh(folder.path() / "." / "box.stl", Vector3d::Ones(), cache));
   EXPECT_NE(first, load_mesh(file, {1, 1, 2}, cache));
+}
+
+/// The text with the first `from` replaced.
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+/// A tetrahedron as text; `drop` bytes are missing at the end.
+std::string ply(std::size_t drop) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+      "property list uchar int vertex_indices\nend_header\n0 0 0\n0.1 0 0\n0 0.1 0\n0 0 0.1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+  return text.substr(0, text.size() - drop);
+}
+
+TEST(Mesh, TruncatedPlyIsBadInputWhereverItEnds) {
+  const TempFolder folder;
+  EXPECT_TRUE(load(folder.write("whole.ply", ply(1)))->closed);
+  for (std::size_t drop = 2; drop < ply(0).size(); ++drop) {
+    SCOPED_TRACE(drop);
+    const fs::path file = folder.write("cut.ply", ply(drop));
+    expect_message(input_error([&] { (void)load(file); }), {"cut.ply"});
+  }
+}
+
+TEST(Mesh, HeadersThatPromiseTooMuchAreBadInput) {
+  const TempFolder folder;
+  const std::string many = with(ply(0), "vertex 4", "vertex 4000000000");
+  expect_message(input_error([&] { (void)load(folder.write("many.ply", many)); }), {"many.ply", "4000000000"});
+  const std::string list = with(ply(0), "3 0 2 1", "2000000000 0 2 1");
+  expect_message(input_error([&] { (void)load(folder.write("list.ply", list)); }), {"list.ply:14"});
+  std::string stl = binary_stl({{0, 0, 0, 1, 0, 0, 0, 1, 0}});
+  stl.replace(80, 4, "\xff\xff\xff\x7f");
+  expect_message(input_error([&] { (void)load(folder.write("many.stl", stl)); }), {"many.stl", "cut short"});
+}
+
+TEST(Mesh, DaeWithABrokenIndexIsBadInput) {
+  const TempFolder folder;
+  const std::string good = dae("Z_UP", "", kIdentity);
+  for (const char* p : {"0 1 3", "0 1 400000000", "0 1 -1", "0 1", "0 1 2 0", "0 1 x"}) {
+    SCOPED_TRACE(p);
+    const std::string text = with(good, "<p>0 1 2", std::string("<p>") + p);
+    expect_message(input_error([&] { (void)load(folder.write("index.dae", text)); }), {"index.dae:9"});
+  }
+  const struct {
+    const char *from, *to;
+  } changes[] = {{"count=\"3\" stride", "count=\"4000000000\" stride"},
+                 {"stride=\"3\"", "stride=\"0\""},
+                 {"<triangles count=\"1\"", "<triangles count=\"2000000000\""},
+                 {"offset=\"0\"", "offset=\"4000000000\""},
+                 {"0 0 0 1 0 0 0 0 2", "0 0 0 1 0 0 0 0"},
+                 {"source=\"#p\"", "source=\"#absent\""},
+                 {"source=\"#pa\"", "source=\"#p\""},
+                 {"url=\"#g\"", "url=\"#s\""},
+                 {"<instance_visual_scene url=\"#s\"", "<instance_visual_scene url=\"#n\""},
+                 {"<instance_geometry url=\"#g\"/>", "<instance_node url=\"#n\"/>"}};
+  for (const auto& [from, to] : changes) {
+    SCOPED_TRACE(to);
+    expect_message(input_error([&] { (void)load(folder.write("broken.dae", with(good, from, to))); }), {"broken.dae:"});
+  }
+}
+
+TEST(Mesh, DaeInstancesOfInstancesAreBounded) {
+  const TempFolder folder;
+  std::string nodes;
+  for (int k = 0; k < 40; ++k) {
+    const std::string next = "<instance_node url='#n" + std::to_string(k + 1) + "'/>";
+    nodes += "<node id='n" + std::to_string(k) + "'>" + (k < 39 ? next + next : "") + "</node>";
+  }
+  std::string text = with(dae("Z_UP", "", kIdentity), "<instance_geometry url=\"#g\"/>", "<instance_node url='#n0'/>");
+  text = with(text, "<library_visual_scenes>", "<library_nodes>" + nodes + "</library_nodes><library_visual_scenes>");
+  expect_message(input_error([&] { (void)load(folder.write("doubling.dae", text)); }), {"too many nodes"});
+}
+
+/// Geometry as `faces` over the corners of a unit square in z = 0, counted round.
+std::string square_dae(const std::string& faces) {
+  std::string text = with(dae("Z_UP", "", kIdentity), "count=\"9\">0 0 0 1 0 0 0 0 2", "count=\"12\">0 0 0 1 0 0 1 1 0 0 1 0");
+  text = with(text, "count=\"3\" stride", "count=\"4\" stride");
+  const auto begin = text.find("<triangles"), end = text.find("</triangles>") + 12;
+  return text.replace(begin, end - begin, faces);
+}
+
+TEST(Mesh, DaeFacesOfEveryKind) {
+  const TempFolder folder;
+  const std::string vertex = "<input semantic='VERTEX' source='#v' offset='1'/><input semantic='NORMAL' source='#p' offset='0'/>";
+  const struct {
+    const char* name;
+    std::string faces;
+  } cases[] = {
+      {"polylist", "<polylist count='2'>" + vertex + "<vcount>3 3</vcount><p>0 0 0 1 0 2 0 0 0 2 0 3</p></polylist>"},
+      {"polygons", "<polygons count='1'>" + vertex + "<p>0 0 0 1 0 2 0 3</p></polygons>"},
+      {"trifans", "<trifans count='1'>" + vertex + "<p>0 0 0 1 0 2 0 3</p></trifans>"},
+      {"tristrips", "<tristrips count='1'>" + vertex + "<p>0 0 0 1 0 3 0 2</p></tristrips>"},
+      {"triangles", "<triangles>" + vertex + "<p>0 0 0 1 0 2 0 0 0 2 0 3</p></triangles>"},
+  };
+  for (const auto& [name, faces] : cases) {
+    SCOPED_TRACE(name);
+    const MeshPtr mesh = load(folder.write(std::string(name) + ".dae", square_dae(faces)));
+    ASSERT_EQ(mesh->triangles.size(), 2u);
+    for (const auto& t : mesh->triangles) {  // each half of the square, facing up
+      const auto vertex_at = [&](std::size_t k) { return mesh->vertices[static_cast<std::size_t>(t[k])]; };
+      EXPECT_EQ((vertex_at(1) - vertex_at(0)).cross(vertex_at(2) - vertex_at(0)), Vector3d(0, 0, 1));
+    }
+  }
+}
+
+TEST(Mesh, BinaryPlyOfBothByteOrders) {
+  const TempFolder folder;
+  for (const bool big : {false, true}) {
+    std::string text =
+        "ply\nformat binary_" + std::string(big ? "big" : "little") +
+        "_endian 1.0\ncomment red\nelement vertex 3\nproperty double x\nproperty float y\nproperty short z\nproperty uchar red\n"
+        "element face 1\nproperty list uchar uint vertex_index\nproperty list ushort float weights\nend_header\n";
+    const auto put = [&](const auto& value) {
+      std::string bytes(sizeof value, '\0');
+      std::memcpy(bytes.data(), &value, sizeof value);
+      if (big) std::reverse(bytes.begin(), bytes.end());
+      text += bytes;
+    };
+    for (int k = 0; k < 3; ++k) {
+      put(k == 1 ? 2.0 : 0.0);
+      put(k == 2 ? 3.0f : 0.0f);
+      put(static_cast<std::int16_t>(-k));
+      put(static_cast<std::uint8_t>(10));  // a line break among the data
+    }
+    put(static_cast<std::uint8_t>(3));
+    for (std::uint32_t k = 0; k < 3; ++k) put(k);
+    put(static_cast<std::uint16_t>(1));
+    put(1.0f);
+    const MeshPtr mesh = load(folder.write("binary.ply", text));
+    ASSERT_EQ(mesh->triangles.size(), 1u);
+    expect_bounds(*mesh, {0, 0, -2}, {2, 3, 0});
+    for (std::size_t drop = 1; drop < 30; ++drop)
+      expect_message(input_error([&] { (void)load(folder.write("cut.ply", text.substr(0, text.size() - drop))); }), {"cut short"});
+  }
+}
+
+/// Polygons that are not convex, in any plane and order: the triangles' areas have one sign and add up to the polygon's.
+TEST(Mesh, PolygonsAreCutIntoTrianglesInsideThem) {
+  swivel::test::Random random(swivel::test::seed("PolygonsAreCutIntoTrianglesInsideThem"));
+  const TempFolder folder;
+  int concave = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const int n = 4 + random.below(20);
+    const Matrix3d turn = Quaterniond(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1))
+                              .normalized()
+                              .toRotationMatrix();
+    std::vector<Vector3d> points;
+    std::string text, face = "f";
+    for (int k = 0; k < n; ++k) {  // a star about the origin: simple
+      const double angle = kTwoPi * k / n, radius = random.uniform(0.2, 1);
+      points.push_back(turn * Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0));
+      std::ostringstream line;
+      line << "v " << points.back().x() << ' ' << points.back().y() << ' ' << points.back().z() << '\n';
+      text += line.str();
+      face += ' ' + std::to_string(k - n);
+    }
+    const Vector3d up = turn.col(2);
+    double area = 0;
+    bool bent = false;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Vector3d &a = points[k], &b = points[(k + 1) % points.size()], &c = points[(k + 2) % points.size()];
+      area += a.cross(b).dot(up);
+      bent = bent || (b - a).cross(c - b).dot(up) < 0;
+    }
+    concave += bent;
+    const MeshPtr mesh = load(folder.write("polygon.obj", text + face + '\n'));
+    ASSERT_EQ(mesh->triangles.size(), points.size() - 2);
+    double sum = 0;
+    for (const auto& t : mesh->triangles) {
+      const auto vertex = [&](std::size_t k) { return mesh->vertices[static_cast<std::size_t>(t[k])]; };
+      const double part = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).dot(up);
+      EXPECT_GT(part, -1e-6);
+      sum += part;
+    }
+    EXPECT_NEAR(sum, area, 1e-4);
+  }
+  EXPECT_GT(concave, 100);
+}
+
+TEST(Mesh, FarVerticesAreBadInput) {
+  const TempFolder folder;
+  const fs::path file = folder.write("box.stl", box_stl());
+  EXPECT_TRUE(load(file, {300, 300, 300})->closed);
+  expect_message(input_error([&] { (void)load(file, {1, 1, 400}); }), {"box.stl", "1200 m", "1000 m"});
 }
 
 TEST(Mesh, BadFiles) {

@@ -16,7 +16,7 @@
 
 namespace swivel::io {
 
-/// STL, OBJ, DAE, PLY through assimp: vertices as stored (no up-axis rotation, as ROS reads them), node transforms and units
+/// STL, OBJ, DAE, PLY, at most 2 million triangles within 1000 m: vertices as stored (no up-axis rotation, as ROS reads them), node transforms and units
 /// applied, all meshes of the file merged; scale per axis, negative mirrors.
 /// The same file and scale loaded twice shares one mesh within `cache`.
 using MeshCache = std::map<std::string, MeshPtr>;
