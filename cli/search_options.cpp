@@ -28,7 +28,9 @@ void LatticeOptions::add_to(CLI::App& command) {
 PlanOptions SearchOptions::plan_options() const {
   PlanOptions options;
   options.planner = planner_from_string(planner);
-  if (threads < 0) throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) and above");
+  constexpr int kMostThreads = 1024;
+  if (threads < 0 || threads > kMostThreads)
+    throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
   options.threads = threads;
   options.cancel = &interrupted;
   return options;

@@ -7,6 +7,9 @@ namespace swivel::io {
 /// Throws InputError "<where>: <what>: allowed is <allowed>", always one line.
 [[noreturn]] void bad_input(const std::string& where, const std::string& what, const std::string& allowed);
 
+/// Completes "allowed is ..." for sizes in metres (kMostMetres).
+inline constexpr const char* kLengthAllowed = "a number > 0, at most 1000";
+
 /// "<file>:<line>", or the file alone where the line is unknown (< 1).
 [[nodiscard]] std::string at_line(const std::string& file, int line);
 

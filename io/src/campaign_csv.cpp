@@ -118,7 +118,7 @@ CampaignFile::CampaignFile(fs::path csv, const Shard& shard, std::uint64_t episo
   if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
     refuse(part_.string(), "another campaign is writing it", "one campaign at a time for one results file");
 
-  const std::string text = read_file(part_, "CSV file");
+  const std::string text = read_file(part_, "CSV file", kMostTableBytes);
   const std::string mine = "the first rows of this campaign and shard; remove the file to start anew";
   const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   if (!std::string_view(text).starts_with(kHeader) && !kHeader.starts_with(text))

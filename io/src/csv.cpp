@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "csv.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "bad_input.hpp"
 #include "files.hpp"
+#include "text_number.hpp"
 
 namespace swivel::io {
 
@@ -34,24 +34,14 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-double parse_number(std::string_view field, const std::string& where) {
-  std::string_view digits = field;
-  if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error != std::errc() || end != digits.data() + digits.size())
-    bad_input(where, "'" + std::string(field) + "' is not a number", "a finite number");
-  if (!std::isfinite(value)) bad_input(where, "'" + std::string(field) + "' is not finite", "a finite number");
-  return value;
-}
-
 }  // namespace
 
-CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& header) {
-  const std::string text = read_file(file, "CSV file");
+CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::string>& header)
+    : file_(file.string()), columns_(header.size()) {
+  constexpr std::size_t kMostRows = 1'000'000;
+  const std::string text = read_file(file, "CSV file", kMostTableBytes);
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
-  CsvTable table;
   bool header_seen = false;
   for (int line_number = 1; !rest.empty(); ++line_number) {
     const auto end = rest.find('\n');
@@ -59,26 +49,30 @@ CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::stri
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (line.empty()) continue;
     const std::vector<std::string_view> fields = fields_of(line);
-    const std::string at = at_line(file.string(), line_number);
     if (!header_seen) {
       if (!std::equal(fields.begin(), fields.end(), header.begin(), header.end()))
-        bad_input(at, "header is '" + std::string(line) + "'", "the header " + joined(header));
+        bad_input(at_line(file_, line_number), "header is '" + std::string(line) + "'", "the header " + joined(header));
       header_seen = true;
       continue;
     }
-    CsvTable::Row row;
-    row.where = at + ": data row " + std::to_string(table.rows.size() + 1) + " (counted from 1 after the header)";
-    if (fields.size() != header.size())
-      bad_input(row.where, "has " + std::to_string(fields.size()) + " columns",
-                std::to_string(header.size()) + " columns: " + joined(header));
-    for (std::size_t k = 0; k < fields.size(); ++k) row.values.push_back(parse_number(fields[k], row.where + ": " + header[k]));
-    table.rows.push_back(std::move(row));
+    if (rows() == kMostRows) bad_input(at_line(file_, line_number), "too many data rows", "at most " + std::to_string(kMostRows));
+    lines_.push_back(line_number);
+    if (fields.size() != columns_)
+      bad_input(where(rows() - 1), "has " + std::to_string(fields.size()) + " columns",
+                std::to_string(columns_) + " columns: " + joined(header));
+    for (std::size_t k = 0; k < columns_; ++k) {
+      const auto value = to_number<double>(fields[k]);
+      if (!value || !std::isfinite(*value))
+        bad_input(where(rows() - 1) + ": " + header[k], "'" + std::string(fields[k]) + "' is not a number", "a finite number");
+      values_.push_back(*value);
+    }
   }
-  if (!header_seen) bad_input(file.string(), "is empty", "the header " + joined(header) + " and at least two data rows");
-  if (table.rows.size() < 2)
-    bad_input(file.string(), "has " + std::to_string(table.rows.size()) + " data row(s)",
-              "at least two data rows after the header");
-  return table;
+  if (!header_seen) bad_input(file_, "is empty", "the header " + joined(header) + " and at least two data rows");
+  if (rows() < 2) bad_input(file_, "has " + std::to_string(rows()) + " data row(s)", "at least two data rows after the header");
+}
+
+std::string CsvTable::where(std::size_t k) const {
+  return at_line(file_, lines_[k]) + ": data row " + std::to_string(k + 1) + " (counted from 1 after the header)";
 }
 
 }  // namespace swivel::io

@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace swivel::io {
 
 /// A comma-separated table of numbers with a fixed header.
-struct CsvTable {
-  struct Row {
-    std::vector<double> values;  ///< one finite number a column
-    std::string where;           ///< "<file>:<line>: data row <n> (counted from 1 after the header)"
-  };
-  std::vector<Row> rows;
-};
+class CsvTable {
+ public:
+  /// Blank lines are skipped, spaces about fields and a byte-order mark ignored. Fewer than two rows and more than a million are
+  /// bad input.
+  CsvTable(const std::filesystem::path& file, const std::vector<std::string>& header);
+  [[nodiscard]] std::size_t rows() const { return lines_.size(); }
+  /// One finite number a column.
+  [[nodiscard]] std::span<const double> row(std::size_t k) const { return std::span(values_).subspan(k * columns_, columns_); }
+  /// "<file>:<line>: data row <n> (counted from 1 after the header)"
+  [[nodiscard]] std::string where(std::size_t k) const;
 
-/// Blank lines are skipped, spaces about fields and a byte-order mark ignored. Fewer than two rows are bad input.
-[[nodiscard]] CsvTable read_csv(const std::filesystem::path& file, const std::vector<std::string>& header);
+ private:
+  std::string file_;
+  std::size_t columns_;
+  std::vector<double> values_;
+  std::vector<int> lines_;
+};
 
 }  // namespace swivel::io

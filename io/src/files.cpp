@@ -9,8 +9,6 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "bad_input.hpp"
@@ -43,16 +41,28 @@ fs::path name_beside(const fs::path& target) {
 
 }  // namespace
 
-std::string read_file(const fs::path& file, const std::string& kind) {
+std::string read_file(const fs::path& file, const std::string& kind, std::size_t most) {
+  const auto fail = [&](const std::string& what) { bad_input(file.string(), what, "a readable " + kind); };
   std::error_code ignored;
-  const bool folder = fs::is_directory(file, ignored);
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::is_directory(status)) fail("is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_fifo(status)) fail("is a device or a socket");
   errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (folder || !stream) bad_input(file.string(), folder ? "is a folder" : std::strerror(errno), "a readable " + kind);
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (stream.bad() || !text) bad_input(file.string(), "cannot be read", "a readable " + kind);
-  return text.str();
+  std::FILE* const stream = std::fopen(file.c_str(), "rb");
+  if (stream == nullptr) fail(std::strerror(errno));
+  std::string text;
+  std::array<char, 1 << 16> part;
+  // One byte more than allowed tells.
+  for (std::size_t count = 1; count > 0 && text.size() <= most;) {
+    count = std::fread(part.data(), 1, part.size(), stream);
+    text.append(part.data(), count);
+  }
+  const bool failed = std::ferror(stream) != 0;
+  std::fclose(stream);
+  if (failed) fail("cannot be read");
+  if (text.size() > most)
+    bad_input(file.string(), "is too large", "a " + kind + " of at most " + std::to_string(most >> 20) + " MiB");
+  return text;
 }
 
 std::string format_double(double value) {

@@ -63,7 +63,7 @@ Reader reader_of(const fs::path& file) {
 }
 
 MeshPtr read_mesh(const fs::path& path, Reader read, const Vector3d& scale) {
-  const MeshFile file{path.string(), read_file(path, "mesh file")};
+  const MeshFile file{path.string(), read_file(path, "mesh file", read == read_dae ? kMostXmlBytes : kMostMeshBytes)};
   const auto mesh = std::make_shared<TriangleMesh>();
   mesh->source = file.name;
   std::size_t work = 0;

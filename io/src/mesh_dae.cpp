@@ -32,7 +32,8 @@ class DaeReader {
       if (const Element* element = asset->FirstChildElement("unit"))
         if (const char* meter = element->Attribute("meter")) {
           const auto value = to_number<double>(meter);
-          if (!value || !(*value > 0) || !std::isfinite(*value)) fail(*element, "meter is '" + std::string(meter) + "'", "a number > 0");
+          if (!value || !(*value > 0) || !std::isfinite(*value))
+            fail(*element, "meter is '" + std::string(meter) + "'", "a number > 0");
           unit = *value;
         }
     const Element* scene = root.FirstChildElement("scene");

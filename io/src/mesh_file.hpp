@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Readers of mesh files. They are our own since the files come from anywhere: assimp aborts, hangs or takes gigabytes on broken ones.
+// Readers of mesh files. They are our own since the files come from anywhere: assimp aborts, hangs or takes gigabytes on broken
+// ones.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -116,8 +116,7 @@ class PlyReader {
     const std::size_t size = size_of(type);
     if (data_.size() < size) fail("is cut short", "as many elements as the header says");
     std::uint64_t bits = 0;
-    for (std::size_t k = 0; k < size; ++k)
-      bits = bits << 8 | static_cast<unsigned char>(data_[big_ ? k : size - 1 - k]);
+    for (std::size_t k = 0; k < size; ++k) bits = bits << 8 | static_cast<unsigned char>(data_[big_ ? k : size - 1 - k]);
     data_.remove_prefix(size);
     switch (type) {
       case Type::kInt8:

@@ -12,16 +12,14 @@ void MeshFile::fail(int line, const std::string& what, const std::string& allowe
 }
 
 void Surface::add_point(double x, double y, double z, int line) {
-  if (points_.size() >= 3 * kMostTriangles)
-    file_.fail(line, "too many vertices", "at most " + std::to_string(3 * kMostTriangles));
+  if (points_.size() >= 3 * kMostTriangles) file_.fail(line, "too many vertices", "at most " + std::to_string(3 * kMostTriangles));
   const Vector3d point = Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)).cast<double>();
   if (!point.allFinite()) file_.fail(line, "a vertex is not finite", "finite coordinates");
   points_.push_back(point);
 }
 
 void Surface::add_triangle(int a, int b, int c, int line) {
-  if (triangles_.size() >= kMostTriangles)
-    file_.fail(line, "too many triangles", "at most " + std::to_string(kMostTriangles));
+  if (triangles_.size() >= kMostTriangles) file_.fail(line, "too many triangles", "at most " + std::to_string(kMostTriangles));
   triangles_.push_back({a, b, c});
 }
 

@@ -4,22 +4,25 @@
 #include "bad_input.hpp"
 #include "csv.hpp"
 #include "files.hpp"
+#include "swivel/core/bounds.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::io {
 
 std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
-  const CsvTable table = read_csv(csv, {"x", "y", "z", "qw", "qx", "qy", "qz"});
+  const CsvTable table(csv, {"x", "y", "z", "qw", "qx", "qy", "qz"});
   std::vector<Waypoint> waypoints;
-  waypoints.reserve(table.rows.size());
-  for (const CsvTable::Row& row : table.rows) {
-    const std::vector<double>& v = row.values;
+  waypoints.reserve(table.rows());
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const std::span<const double> v = table.row(k);
     Waypoint waypoint;
     waypoint.position = {v[0], v[1], v[2]};
+    if (!(waypoint.position.cwiseAbs().maxCoeff() <= kMostMetres))
+      bad_input(table.where(k) + ": x,y,z", "a coordinate is too large", "numbers from -1000 to 1000");
     waypoint.orientation = Quaterniond(v[3], v[4], v[5], v[6]);
     const double norm = waypoint.orientation.norm();
     if (!(std::abs(norm - 1) <= 1e-3))
-      bad_input(row.where + ": qw,qx,qy,qz", "quaternion has length " + format_double(norm),
+      bad_input(table.where(k) + ": qw,qx,qy,qz", "quaternion has length " + format_double(norm),
                 "a quaternion of length 1 within 1e-3");
     waypoints.push_back(waypoint);
   }

@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr std::size_t kMostBodies = 10'000;  // in the scene, attached
 const std::vector<std::string> kPoseKeys{"xyz", "rpy", "quat"};
 const std::vector<std::string> kShapeKeys{"box", "cylinder", "sphere", "capsule", "mesh"};
 
@@ -52,7 +53,7 @@ Quaterniond orientation(const YamlSection& section) {
 
 Pose pose(const YamlSection& section) {
   Pose result = Pose::Identity();
-  result.translation() = vector3_or_zero(section, "xyz", Range::kFinite);
+  result.translation() = vector3_or_zero(section, "xyz", Range::kCoordinate);
   result.linear() = orientation(section).normalized().toRotationMatrix();
   return result;
 }
@@ -60,7 +61,7 @@ Pose pose(const YamlSection& section) {
 Waypoint waypoint(const YamlValue& value) {
   const YamlSection section = value.section(kPoseKeys);
   Waypoint result;
-  result.position = section.require("xyz", "a list of 3 numbers").vector3(Range::kFinite);
+  result.position = section.require("xyz", "a list of 3 numbers").vector3(Range::kCoordinate);
   result.orientation = orientation(section);
   const double norm = result.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3))
@@ -71,13 +72,13 @@ Waypoint waypoint(const YamlValue& value) {
 template <class Round>
 Round round_shape(const YamlValue& value) {
   const YamlSection section = value.section({"radius", "length"});
-  const double radius = section.require("radius", "a finite number > 0").number(Range::kPositive);
-  return {radius, section.require("length", "a finite number > 0").number(Range::kPositive)};
+  const double radius = section.require("radius", kLengthAllowed).number(Range::kLength);
+  return {radius, section.require("length", kLengthAllowed).number(Range::kLength)};
 }
 
 Sphere sphere(const YamlValue& value) {
-  if (!value.is_map()) return {value.number(Range::kPositive)};
-  return {value.section({"radius"}).require("radius", "a finite number > 0").number(Range::kPositive)};
+  if (!value.is_map()) return {value.number(Range::kLength)};
+  return {value.section({"radius"}).require("radius", kLengthAllowed).number(Range::kLength)};
 }
 
 /// Calls `read`; what it finds wrong in another file is reported with the key that named that file.
@@ -140,6 +141,8 @@ class ProblemReader {
     if (const auto hold = section.find_filled("hold")) read_hold(*hold);
     if (const auto attached = section.find_filled("attached"))
       for (const YamlValue& item : attached->items()) read_attached(item);
+    if (problem_.attached.size() > kMostBodies)
+      value.fail(std::to_string(problem_.attached.size()) + " attached bodies", "at most " + std::to_string(kMostBodies));
   }
 
   [[nodiscard]] Packages read_packages(const YamlSection& section) const {
@@ -159,7 +162,7 @@ class ProblemReader {
     for (const auto& [joint, position] : value.entries()) {
       if (problem_.robot->find_joint(joint) < 0)
         position.fail("unknown joint '" + joint + "'", "a joint of " + problem_.robot->source);
-      problem_.hold[joint] = position.number(Range::kFinite);
+      problem_.hold[joint] = position.number(Range::kCoordinate);
     }
   }
 
@@ -167,7 +170,7 @@ class ProblemReader {
     const YamlSection section = value.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"link"}}));
     AttachedBody body;
     const YamlValue name = section.require("name", "a name");
-    body.name = name.text();
+    body.name = name.name();
     if (problem_.robot->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
     if (is_attached(body.name)) name.fail("'" + body.name + "' is attached twice", "a name of its own");
     body.shape = shape(section);
@@ -191,7 +194,7 @@ class ProblemReader {
     const YamlValue& value = given.front();
     const auto scale = section.find_filled("scale");
     if (scale && kind != "mesh") scale->fail("scale of a " + kind, "scale with mesh only");
-    if (kind == "box") return Box{value.vector3(Range::kPositive)};
+    if (kind == "box") return Box{value.vector3(Range::kLength)};
     if (kind == "cylinder") return round_shape<Cylinder>(value);
     if (kind == "capsule") return round_shape<Capsule>(value);
     if (kind == "sphere") return sphere(value);
@@ -209,11 +212,14 @@ class ProblemReader {
   void read_scene() {
     const auto value = root_.find_filled("scene");
     if (!value) return;
-    for (const YamlValue& item : value->items()) {
+    const std::vector<YamlValue> items = value->items();
+    if (items.size() > kMostBodies)
+      value->fail(std::to_string(items.size()) + " objects", "at most " + std::to_string(kMostBodies));
+    for (const YamlValue& item : items) {
       const YamlSection section = item.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"allow"}}));
       const YamlValue name = section.require("name", "a name");
       SceneObject object;
-      object.name = name.text();
+      object.name = name.name();
       if (object.name == problem_.base_link) name.fail("'" + object.name + "' is the base link", "a name of its own");
       if (is_attached(object.name)) name.fail("'" + object.name + "' is an attached body", "a name of its own");
       if (is_object(object.name)) name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
@@ -255,7 +261,7 @@ class ProblemReader {
   void read_resolution(const YamlValue& value) {
     const YamlSection section = value.section({"ds", "dphi", "dalpha"});
     Resolution& resolution = problem_.resolution;
-    set(section, "ds", Range::kPositive, resolution.ds);
+    set(section, "ds", Range::kLength, resolution.ds);
     set(section, "dphi", Range::kPositive, resolution.dphi);
     set(section, "dalpha", Range::kPositive, resolution.dalpha);
     if (resolution.dphi > kTwoPi) section.find("dphi")->fail("is more than a turn", "a finite number > 0, at most 2*pi");
@@ -266,7 +272,7 @@ class ProblemReader {
         value.section({"clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "step_error", "tool_path_error",
                        "tool_angle_error", "tool_speed", "tool_turn_speed", "edges", "edge_clearance", "edge_tolerance"});
     Limits& limits = problem_.limits;
-    set(section, "clearance", Range::kNonNegative, limits.clearance);
+    set(section, "clearance", Range::kExtent, limits.clearance);
     set(section, "manipulability", Range::kNonNegative, limits.manipulability);
     set(section, "joint_margin", Range::kNonNegative, limits.joint_margin);
     set(section, "joint_step", Range::kPositive, limits.joint_step);
@@ -276,7 +282,7 @@ class ProblemReader {
     set(section, "tool_angle_error", Range::kPositive, limits.tool_angle_error);
     set(section, "tool_speed", Range::kPositive, limits.tool_speed);
     set(section, "tool_turn_speed", Range::kPositive, limits.tool_turn_speed);
-    set(section, "edge_clearance", Range::kNonNegative, limits.edge_clearance);
+    set(section, "edge_clearance", Range::kExtent, limits.edge_clearance);
     set(section, "edge_tolerance", Range::kPositive, limits.edge_tolerance);
     if (const auto edges = section.find("edges"))
       limits.edges = choice<EdgeMode>(*edges, {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
@@ -305,8 +311,8 @@ class ProblemReader {
       const YamlSection section = item.section({"object", "xyz", "rpy"});
       const YamlValue object = section.require("object", "the name of a scene object");
       if (!is_object(object.text())) object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
-      problem_.vary.push_back({object.text(), vector3_or_zero(section, "xyz", Range::kNonNegative),
-                               vector3_or_zero(section, "rpy", Range::kNonNegative)});
+      problem_.vary.push_back(
+          {object.text(), vector3_or_zero(section, "xyz", Range::kExtent), vector3_or_zero(section, "rpy", Range::kNonNegative)});
     }
   }
 

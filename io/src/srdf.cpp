@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bad_input.hpp"
+#include "swivel/core/bounds.hpp"
 #include "xml.hpp"
 
 namespace swivel::io {
@@ -15,9 +16,10 @@ using Pair = std::pair<std::string, std::string>;
 
 std::string attribute(const tinyxml2::XMLElement& element, const char* name, const std::string& file) {
   const char* const value = element.Attribute(name);
-  if (value == nullptr || *value == '\0')
-    bad_input(at_line(file, element.GetLineNum()), std::string("<") + element.Name() + "> without " + name,
-              "a link name in every " + std::string(name));
+  if (value == nullptr || !is_valid_name(value))
+    bad_input(at_line(file, element.GetLineNum()),
+              std::string("<") + element.Name() + "> without " + name + ", or with a broken one",
+              std::string("a link name in every ") + name + ", " + kValidName);
   return value;
 }
 

@@ -29,18 +29,19 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 }
 
 std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {
-  const CsvTable table = read_csv(csv, header_of(joint_names));
+  const CsvTable table(csv, header_of(joint_names));
   std::vector<TrajectoryRow> rows;
-  rows.reserve(table.rows.size());
-  for (const CsvTable::Row& line : table.rows) {
-    const double branch = line.values[2];
+  rows.reserve(table.rows());
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    const std::span<const double> values = table.row(k);
+    const double branch = values[2];
     if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
-      bad_input(line.where + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
+      bad_input(table.where(k) + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
     TrajectoryRow row;
-    row.s = line.values[0];
-    row.phi = line.values[1];
+    row.s = values[0];
+    row.phi = values[1];
     row.branch = static_cast<int>(branch);
-    row.q = Config::Map(line.values.data() + 3);
+    row.q = Config::Map(values.data() + 3);
     rows.push_back(row);
   }
   return rows;

@@ -10,12 +10,12 @@
 #include <initializer_list>
 #include <map>
 #include <mutex>
-#include <set>
 #include <string_view>
-#include <unordered_map>
 
 #include "bad_input.hpp"
+#include "files.hpp"
 #include "srdf.hpp"
+#include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "xml.hpp"
@@ -23,6 +23,8 @@
 namespace swivel::io {
 
 namespace {
+
+constexpr std::size_t kMostLinks = 10'000;  // the largest real ones have hundreds
 
 /// Collects what urdfdom would print to stderr.
 class MessageCollector : public console_bridge::OutputHandler {
@@ -93,11 +95,13 @@ Vector3d to_eigen(const urdf::Vector3& v) {
   return {v.x, v.y, v.z};
 }
 
-Pose to_eigen(const urdf::Pose& pose) {
+Pose origin(const urdf::Pose& pose, const std::string& at) {
   Pose result = Pose::Identity();
   result.translation() = to_eigen(pose.position);
   const urdf::Rotation& r = pose.rotation;
   result.linear() = Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
+  if (!(result.translation().cwiseAbs().maxCoeff() <= kMostMetres) || !result.linear().allFinite())
+    bad_input(at, "origin is not finite or too far away", "numbers, those of xyz from -1000 to 1000");
   return result;
 }
 
@@ -110,8 +114,9 @@ class ModelBuilder {
     tinyxml2::XMLDocument document;
     tinyxml2::XMLElement& robot = load_robot_xml(urdf_, "URDF", document);
     strip(robot);
-    check_names(robot, "link");
-    check_names(robot, "joint");
+    check_name(robot);
+    check_names(robot, "link", links_);
+    check_names(robot, "joint", joints_);
     check_tree(robot);
     tinyxml2::XMLPrinter printer(nullptr, true);
     document.Print(&printer);
@@ -121,7 +126,7 @@ class ModelBuilder {
     for_each_child(robot, "link", [&](tinyxml2::XMLElement& element) { add_link(element); });
     for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_joint(element); });
     for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_mimic(element); });
-    model_->root_link = model_->find_link(parsed_->getRoot()->name);
+    model_->root_link = links_.at(parsed_->getRoot()->name);
     return model_;
   }
 
@@ -130,20 +135,34 @@ class ModelBuilder {
     return at_line(urdf_.string(), element.GetLineNum()) + ": " + element.Name() + " '" + element.Attribute("name") + "'";
   }
 
-  /// urdfdom drops a link without a name and goes on.
-  void check_names(tinyxml2::XMLElement& robot, const char* kind) const {
-    std::set<std::string> names;
+  void check_name(const tinyxml2::XMLElement& element) const {
+    const char* const name = element.Attribute("name");
+    if (name == nullptr || !is_valid_name(name))
+      bad_input(
+          at_line(urdf_.string(), element.GetLineNum()),
+          std::string("<") + element.Name() + "> " + (name == nullptr ? "has no name" : "has the name '" + std::string(name) + "'"),
+          kValidName);
+  }
+
+  /// urdfdom drops a link without a name and goes on. `index`: where each will stand in the model.
+  void check_names(tinyxml2::XMLElement& robot, const char* kind, std::map<std::string, int, std::less<>>& index) const {
     for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
-      const char* const name = element.Attribute("name");
-      if (name == nullptr || *name == '\0')
-        bad_input(at_line(urdf_.string(), element.GetLineNum()), std::string(kind) + " without a name", "a name of its own");
-      if (!names.insert(name).second) bad_input(where(element), "name is taken", "a name of its own");
+      check_name(element);
+      if (!index.emplace(element.Attribute("name"), static_cast<int>(index.size())).second)
+        bad_input(where(element), "name is taken", "a name of its own");
+      if (index.size() > kMostLinks)
+        bad_input(where(element), "too many of its kind", "at most " + std::to_string(kMostLinks) + " links and joints");
     });
   }
 
   /// urdfdom takes a link with two parents, and loops that hang on nothing. What is left to it is that there is one root.
   void check_tree(tinyxml2::XMLElement& robot) const {
-    std::map<std::string, std::string> parent_of;
+    struct Up {
+      std::string parent;
+      const tinyxml2::XMLElement* joint;
+      int walk = -1;  ///< which walk towards the root came here first
+    };
+    std::map<std::string, Up, std::less<>> up_of;  // by child
     for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) {
       const auto link = [&](const char* kind) -> std::string {
         const auto* const end = element.FirstChildElement(kind);
@@ -151,28 +170,34 @@ class ModelBuilder {
         return name == nullptr ? "" : name;
       };
       const std::string child = link("child");
-      if (!parent_of.emplace(child, link("parent")).second)
+      if (!up_of.emplace(child, Up{link("parent"), &element}).second)
         bad_input(where(element), "link '" + child + "' has another parent joint already", "a tree: one parent joint a link");
-      std::string ancestor = child;
-      for (auto up = parent_of.find(child); up != parent_of.end(); up = parent_of.find(ancestor)) {
-        ancestor = up->second;
-        if (ancestor == child) bad_input(where(element), "closes a loop at link '" + child + "'", "a tree: no link above itself");
-      }
     });
+    int walk = 0;
+    for (auto& [child, start] : up_of) {
+      std::string_view link = child;
+      for (auto up = up_of.find(link); up != up_of.end(); up = up_of.find(link)) {
+        if (up->second.walk == walk)
+          bad_input(where(*up->second.joint), "closes a loop at link '" + up->first + "'", "a tree: no link above itself");
+        if (up->second.walk >= 0) break;
+        up->second.walk = walk;
+        link = up->second.parent;
+      }
+      ++walk;
+    }
   }
 
   void add_link(const tinyxml2::XMLElement& element) {
     Link link;
     link.name = element.Attribute("name");
     for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array)
-      link.collision.push_back({shape(*collision->geometry, where(element)), to_eigen(collision->origin)});
-    link_index_[link.name] = static_cast<int>(model_->links.size());
+      link.collision.push_back({shape(*collision->geometry, where(element)), origin(collision->origin, where(element))});
     model_->links.push_back(std::move(link));
   }
 
   Shape shape(const urdf::Geometry& geometry, const std::string& at) {
     const auto positive = [&](double length, const char* what) {
-      if (!(length > 0 && std::isfinite(length))) bad_input(at, std::string(what) + " is not positive", "a finite number > 0");
+      if (!(length > 0 && length <= kMostMetres)) bad_input(at, std::string(what) + " is " + format_double(length), kLengthAllowed);
       return length;
     };
     switch (geometry.type) {
@@ -206,9 +231,9 @@ class ModelBuilder {
     Joint joint;
     joint.name = parsed.name;
     joint.type = type(parsed, at);
-    joint.parent_link = link_index_.at(parsed.parent_link_name);
-    joint.child_link = link_index_.at(parsed.child_link_name);
-    joint.origin = to_eigen(parsed.parent_to_joint_origin_transform);
+    joint.parent_link = links_.at(parsed.parent_link_name);
+    joint.child_link = links_.at(parsed.child_link_name);
+    joint.origin = origin(parsed.parent_to_joint_origin_transform, at);
     if (joint.movable()) {
       const double length = to_eigen(parsed.axis).norm();
       if (!(length > 1e-9)) bad_input(at, "axis is zero", "an axis of positive length on a joint that moves");
@@ -216,7 +241,6 @@ class ModelBuilder {
       read_limits(parsed, at, joint);
     }
     model_->links[static_cast<std::size_t>(joint.child_link)].parent_joint = static_cast<int>(model_->joints.size());
-    joint_index_[joint.name] = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
   }
 
@@ -255,10 +279,10 @@ class ModelBuilder {
   void add_mimic(const tinyxml2::XMLElement& element) {
     const std::string name = element.Attribute("name");
     const urdf::JointMimicSharedPtr& mimic = parsed_->getJoint(name)->mimic;
-    Joint& joint = model_->joints[static_cast<std::size_t>(joint_index_.at(name))];
+    Joint& joint = model_->joints[static_cast<std::size_t>(joints_.at(name))];
     if (!mimic || !joint.movable()) return;
-    const auto found = joint_index_.find(mimic->joint_name);
-    if (found == joint_index_.end())
+    const auto found = joints_.find(mimic->joint_name);
+    if (found == joints_.end())
       bad_input(where(element), "mimics unknown joint '" + mimic->joint_name + "'", "the name of another joint");
     const int leader = found->second;
     // Leaders come before or after in the file, so follow the chain as far as it is known.
@@ -274,8 +298,8 @@ class ModelBuilder {
   const Packages& packages_;
   urdf::ModelInterfaceSharedPtr parsed_;
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
-  std::unordered_map<std::string, int> link_index_, joint_index_;  // by name: find_link of every joint would be quadratic
   MeshCache meshes_;
+  std::map<std::string, int, std::less<>> links_, joints_;  ///< where each stands in the model
 };
 
 }  // namespace

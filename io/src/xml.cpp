@@ -20,7 +20,7 @@ tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text
 }
 
 tinyxml2::XMLElement& load_robot_xml(const std::filesystem::path& file, const char* kind, tinyxml2::XMLDocument& document) {
-  return parse_xml(file.string(), read_file(file, std::string(kind) + " file"), kind, "robot", document);
+  return parse_xml(file.string(), read_file(file, std::string(kind) + " file", kMostXmlBytes), kind, "robot", document);
 }
 
 }  // namespace swivel::io

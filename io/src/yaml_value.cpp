@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "bad_input.hpp"
 #include "files.hpp"
+#include "swivel/core/bounds.hpp"
 
 namespace swivel::io {
 
@@ -18,6 +20,12 @@ const char* allowed_text(Range range) {
       return "a finite number >= 0";
     case Range::kPositive:
       return "a finite number > 0";
+    case Range::kCoordinate:
+      return "a number from -1000 to 1000";
+    case Range::kExtent:
+      return "a number >= 0, at most 1000";
+    case Range::kLength:
+      return kLengthAllowed;
     case Range::kFinite:
       break;
   }
@@ -25,8 +33,21 @@ const char* allowed_text(Range range) {
 }
 
 bool in_range(double value, Range range) {
-  if (!std::isfinite(value)) return false;
-  return range == Range::kFinite || (range == Range::kPositive ? value > 0 : value >= 0);
+  switch (range) {
+    case Range::kNonNegative:
+      return value >= 0 && std::isfinite(value);
+    case Range::kPositive:
+      return value > 0 && std::isfinite(value);
+    case Range::kCoordinate:
+      return std::abs(value) <= kMostMetres;
+    case Range::kExtent:
+      return value >= 0 && value <= kMostMetres;
+    case Range::kLength:
+      return value > 0 && value <= kMostMetres;
+    case Range::kFinite:
+      break;
+  }
+  return std::isfinite(value);
 }
 
 /// Levenshtein distance.
@@ -59,11 +80,11 @@ std::string shown(const YAML::Node& node) {
 
 }  // namespace
 
-YamlValue::YamlValue(std::shared_ptr<const std::string> file, YAML::Node node, std::string key, int line)
+YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, std::string key, int line)
     : file_(std::move(file)), node_(std::move(node)), key_(std::move(key)), line_(line) {}
 
 std::string YamlValue::where() const {
-  return at_line(*file_, line_) + (key_.empty() ? "" : ": " + key_);
+  return at_line(file_->name, line_) + (key_.empty() ? "" : ": " + key_);
 }
 
 void YamlValue::fail(const std::string& what, const std::string& allowed) const {
@@ -96,8 +117,21 @@ std::string YamlValue::text() const {
   return node_.Scalar();
 }
 
+std::string YamlValue::name() const {
+  std::string name = text();
+  if (!is_valid_name(name)) fail("is '" + name + "'", kValidName);
+  return name;
+}
+
+void YamlValue::count(std::size_t more) const {
+  constexpr std::size_t kMostValues = 2'000'000;
+  if ((file_->values += more) > kMostValues)
+    fail("too many values", "at most " + std::to_string(kMostValues) + " in a file, aliases counted each time");
+}
+
 std::vector<YamlValue> YamlValue::items() const {
   if (!node_.IsSequence()) fail(shown(node_) + " is not a list", "a list");
+  count(node_.size());
   std::vector<YamlValue> values;
   for (const YAML::Node& item : node_) {
     const int line = item.Mark().line;
@@ -108,15 +142,17 @@ std::vector<YamlValue> YamlValue::items() const {
 
 std::vector<std::pair<std::string, YamlValue>> YamlValue::entries() const {
   if (!node_.IsMap()) fail(shown(node_) + " is not a map", "a map of key: value");
+  count(node_.size());
   std::vector<std::pair<std::string, YamlValue>> values;
+  std::set<std::string> names;
   for (const auto& entry : node_) {
     const int line = entry.first.Mark().line < 0 ? line_ : entry.first.Mark().line + 1;
     const YamlValue key_value(file_, entry.first, key_, line);
     if (!entry.first.IsScalar()) key_value.fail("a key is " + shown(entry.first), "a word as key");
     const std::string name = entry.first.Scalar();
     YamlValue value(file_, entry.second, key_.empty() ? name : key_ + "." + name, line);
-    if (std::any_of(values.begin(), values.end(), [&](const auto& other) { return other.first == name; }))
-      value.fail("is given twice", "each key once");
+    if (!is_valid_name(name)) key_value.fail("key '" + name + "'", kValidName);
+    if (!names.insert(name).second) value.fail("is given twice", "each key once");
     values.emplace_back(name, std::move(value));
   }
   return values;
@@ -157,7 +193,7 @@ YamlValue YamlSection::require(const std::string& key, const std::string& allowe
 
 YamlValue load_yaml(const std::filesystem::path& file) {
   const std::string name = file.string();
-  const std::string text = read_file(file, "YAML file");
+  const std::string text = read_file(file, "YAML file", kMostYamlBytes);
   std::vector<YAML::Node> documents;
   try {
     documents = YAML::LoadAll(text);
@@ -165,7 +201,7 @@ YamlValue load_yaml(const std::filesystem::path& file) {
     bad_input(at_line(name, error.mark.line + 1), "not YAML (" + error.msg + ")", "well-formed YAML");
   }
   if (documents.size() != 1) bad_input(name, "holds " + std::to_string(documents.size()) + " YAML documents", "one document");
-  return {std::make_shared<const std::string>(name), documents.front(), "", 1};
+  return {std::make_shared<YamlFile>(YamlFile{name}), documents.front(), "", 1};
 }
 
 }  // namespace swivel::io

@@ -15,13 +15,26 @@
 
 namespace swivel::io {
 
-enum class Range { kFinite, kNonNegative, kPositive };
+enum class Range {
+  kFinite,
+  kNonNegative,
+  kPositive,
+  kCoordinate,  ///< m, within kMostMetres of 0
+  kExtent,      ///< m, from 0 to kMostMetres
+  kLength,      ///< m, > 0 and at most kMostMetres
+};
 
 class YamlSection;
 
+/// What the values of one file share.
+struct YamlFile {
+  std::string name;
+  std::size_t values = 0;  ///< read so far; aliases count each time
+};
+
 class YamlValue {
  public:
-  YamlValue(std::shared_ptr<const std::string> file, YAML::Node node, std::string key, int line);
+  YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, std::string key, int line);
 
   [[nodiscard]] bool is_null() const { return node_.IsNull(); }
   [[nodiscard]] bool is_map() const { return node_.IsMap(); }
@@ -33,6 +46,8 @@ class YamlValue {
   [[nodiscard]] Vector3d vector3(Range range) const;
   /// A scalar that is not empty.
   [[nodiscard]] std::string text() const;
+  /// The same, a valid name.
+  [[nodiscard]] std::string name() const;
   [[nodiscard]] std::vector<YamlValue> items() const;
   /// The entries of a map with free keys.
   [[nodiscard]] std::vector<std::pair<std::string, YamlValue>> entries() const;
@@ -44,7 +59,9 @@ class YamlValue {
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const;
 
  private:
-  std::shared_ptr<const std::string> file_;  // shared: every value of a file names it
+  void count(std::size_t more) const;
+
+  std::shared_ptr<YamlFile> file_;  // shared: every value of a file names it
   YAML::Node node_;
   std::string key_;
   int line_;

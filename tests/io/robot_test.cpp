@@ -216,7 +216,7 @@ TEST(Robot, BadUrdf) {
       {"no root", robot(ab + joint("j", "fixed", "a", "b") + joint("k", "fixed", "b", "a")), {"r.urdf:6", "'k'", "loop"}},
       {"link twice", robot("<link name='a'/>\n<link name='a'/>"), {"r.urdf:4", "'a'"}},
       {"joint twice", robot(abc + joint("j", "fixed", "a", "b") + joint("j", "fixed", "a", "c")), {"'j'"}},
-      {"unnamed link", robot("<link/>"), {"r.urdf:3", "link without a name"}},
+      {"unnamed link", robot("<link/>"), {"r.urdf:3", "<link> has no name"}},
       {"unnamed joint", robot(ab + "<joint type='fixed'><parent link='a'/><child link='b'/></joint>"), {}},
       {"unknown parent", robot(ab + joint("j", "fixed", "x", "b")), {"x"}},
       {"two parents",
