@@ -47,6 +47,10 @@ std::string read_file(const fs::path& file, const std::string& kind, std::size_t
   const fs::file_status status = fs::status(file, ignored);
   if (fs::is_directory(status)) fail("is a folder");
   if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_fifo(status)) fail("is a device or a socket");
+  const auto too_large = [&] {
+    bad_input(file.string(), "is too large", "a " + kind + " of at most " + std::to_string(most >> 20) + " MiB");
+  };
+  if (fs::is_regular_file(status) && fs::file_size(file, ignored) > most && !ignored) too_large();
   errno = 0;
   std::FILE* const stream = std::fopen(file.c_str(), "rb");
   if (stream == nullptr) fail(std::strerror(errno));
@@ -60,8 +64,7 @@ std::string read_file(const fs::path& file, const std::string& kind, std::size_t
   const bool failed = std::ferror(stream) != 0;
   std::fclose(stream);
   if (failed) fail("cannot be read");
-  if (text.size() > most)
-    bad_input(file.string(), "is too large", "a " + kind + " of at most " + std::to_string(most >> 20) + " MiB");
+  if (text.size() > most) too_large();
   return text;
 }
 

@@ -22,6 +22,11 @@ std::vector<int> LatticeMap::inhabited_labels() const {
   return inhabited;
 }
 
+std::string LatticeMap::blocker_name(const Node& node) const {
+  const auto& [a, b] = blockers[node.cause];
+  return a + " - " + b;
+}
+
 std::string LatticeMap::label_name(int label) const {
   const int branch = label / windings;
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
@@ -47,7 +52,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
   map.path = record.path;
   map.complete = full || record.nodes.empty();
   map.nodes.resize(static_cast<std::size_t>(lattice.nodes()));
-  std::vector<std::pair<std::size_t, std::string>> blocked;  // node, by what
+  std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // node, by what
   LayerNodes nodes;
   std::size_t k = 0;
   for (int layer = 0; layer < map.layers; ++layer) {
@@ -78,17 +83,17 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
       node.certified = decided(query.counters()) > before;
       node.state = pair ? NodeState::kBlocked : NodeState::kFree;
       if (pair)
-        blocked.emplace_back(k, world.body_names()[static_cast<std::size_t>(pair->a)] + " - " +
-                                    world.body_names()[static_cast<std::size_t>(pair->b)]);
+        blocked.emplace_back(k, std::pair(world.body_names()[static_cast<std::size_t>(pair->a)],
+                                          world.body_names()[static_cast<std::size_t>(pair->b)]));
     }
   }
-  std::map<std::string, std::uint8_t> index;
-  for (const auto& [node, name] : blocked) index.emplace(name, 0);
-  for (auto& [name, cause] : index) {
+  std::map<std::pair<std::string, std::string>, std::uint8_t> index;
+  for (const auto& [node, pair] : blocked) index.emplace(pair, 0);
+  for (auto& [pair, cause] : index) {
     cause = static_cast<std::uint8_t>(std::min<std::size_t>(map.blockers.size(), 255));
-    map.blockers.push_back(name);
+    map.blockers.push_back(pair);
   }
-  for (const auto& [node, name] : blocked) map.nodes[node].cause = index.at(name);
+  for (const auto& [node, pair] : blocked) map.nodes[node].cause = index.at(pair);
   return map;
 }
 

@@ -82,7 +82,7 @@ class MapLegend {
       case NodeState::kFree:
         return node.certified ? "free, proved by a certificate" : "free, found by FCL";
       case NodeState::kBlocked:
-        return "blocked by " + map_.blockers[node.cause];
+        return "blocked by " + map_.blocker_name(node);
     }
     return "?";
   }

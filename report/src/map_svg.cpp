@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "map_cells.hpp"
+#include "swivel/core/bounds.hpp"
 
 namespace swivel {
 
@@ -32,11 +33,13 @@ std::string colour_of(const LatticeMap::Node& node) {
 
 std::string escaped(const std::string& text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     if (c == '&')
       result += "&amp;";
     else if (c == '<')
       result += "&lt;";
+    else if (c == '>')
+      result += "&gt;";
     else
       result += c;
   }

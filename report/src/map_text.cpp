@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "map_cells.hpp"
+#include "swivel/core/bounds.hpp"
 
 namespace swivel {
 
@@ -68,7 +69,7 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   }
   const auto legend = [&](const Look& look, const std::string& meaning) {
     put(text, look, coloured);
-    text += " " + meaning + "\n";
+    text += " " + printable(meaning) + "\n";
   };
   if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
   for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);

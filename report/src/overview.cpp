@@ -38,7 +38,7 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                      {"planner", facts.planner},
                      {"plan_command", facts.plan_command},
                      {"rows", std::move(episodes)}};
-  return fill(overview_template(), data.dump());
+  return fill(overview_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace swivel

@@ -138,7 +138,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<int
 
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& reason) {
+Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::string& reason) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
   const int from = map.path.empty() ? 0 : map.path.back();
@@ -149,7 +149,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& 
     for (int slot = 0; slot < lattice.width(); ++slot) {
       const int label = lattice.label_of(slot), angle = lattice.angle_of(slot);
       const LatticeMap::Node& node = map.at(layer, label, angle);
-      const bool blocked = node.state == NodeState::kBlocked && reason == map.blockers[node.cause];
+      const bool blocked = node.state == NodeState::kBlocked && reason == map.blocker_name(node);
       if (!nodes.valid(label, angle) || blocked != by_bodies) continue;
       const int away = std::abs(angle - lattice.angle_of(from));
       const int far = std::min(away, map.angles - away) + (label == lattice.label_of(from) ? 0 : map.angles);
@@ -161,14 +161,18 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& 
   const int label = lattice.label_of(best), angle = lattice.angle_of(best);
   const LatticeMap::Node& node = map.at(layer, label, angle);
   const Config q = nodes.config(label, angle);
-  std::string what = "no valid pose here: " + reason, bodies;
-  constexpr std::string_view kBetween = " between layers";
+  std::string what = "no valid pose here: " + reason;
+  Json pair = nullptr;
+  const auto& names = world.body_names();
+  const auto between = std::find_if(world.pairs().begin(), world.pairs().end(), [&](const BodyPair& p) {
+    return reason == names[static_cast<std::size_t>(p.a)] + " - " + names[static_cast<std::size_t>(p.b)] + " between layers";
+  });
   if (node.state == NodeState::kBlocked) {
-    bodies = map.blockers[node.cause];
-    what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + bodies;
-  } else if (reason.ends_with(kBetween)) {
-    bodies = reason.substr(0, reason.size() - kBetween.size());
-    what = "the way to the next pose is blocked by " + bodies;
+    pair = {map.blockers[node.cause].first, map.blockers[node.cause].second};
+    what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + map.blocker_name(node);
+  } else if (between != world.pairs().end()) {
+    pair = {names[static_cast<std::size_t>(between->a)], names[static_cast<std::size_t>(between->b)]};
+    what = "the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " + pair[1].get<std::string>();
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
     if (reason == "joint step") {
@@ -182,9 +186,6 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::string& 
       what += ", " + map.joint_names[static_cast<std::size_t>(joint)] + text;
     }
   }
-  Json pair = nullptr;
-  if (const std::size_t dash = bodies.find(" - "); dash != std::string::npos)
-    pair = {bodies.substr(0, dash), bodies.substr(dash + 3)};
   return {{"layer", layer},
           {"s", lattice.path().layer(layer).s},
           {"phi", lattice.phi(layer, best)},
@@ -317,9 +318,9 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                      {"meshes", std::move(bodies.meshes)},
                      {"tool_path", std::move(tool_path)},
                      {"rows", rows_json(world, lattice, record.path, budget)},
-                     {"cut", cut_json(map, lattice, reason)},
+                     {"cut", cut_json(map, lattice, world, reason)},
                      {"map", map_json(map, lattice, world, budget)}};
-  return fill(page_template(), data.dump());
+  return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 }  // namespace swivel

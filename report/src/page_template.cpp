@@ -38,14 +38,13 @@ std::string_view overview_template() {
 #endif
 }
 
-std::string fill(std::string_view page, std::string json) {
-  // "</script" must not end the element that holds the data.
-  for (std::size_t at = 0; (at = json.find("</", at)) != std::string::npos; at += 3) json.replace(at, 2, "<\\/");
+std::string fill(std::string_view page, const std::string& json) {
   constexpr std::string_view kMark = "@@DATA@@";
   const std::size_t mark = page.find(kMark);
   if (mark == std::string_view::npos) throw std::logic_error("the page has no place for its data");
   std::string filled(page.substr(0, mark));
-  filled += json;
+  // "</script" would end the element that holds the data, "<!--" and "<script" hide its end.
+  for (const char c : json) filled += c == '<' ? "\\u003c" : std::string(1, c);
   filled += page.substr(mark + kMark.size());
   return filled;
 }

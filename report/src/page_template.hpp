@@ -10,6 +10,6 @@ namespace swivel {
 [[nodiscard]] std::string_view overview_template();
 
 /// The page with its data, a JSON text.
-[[nodiscard]] std::string fill(std::string_view page, std::string json);
+[[nodiscard]] std::string fill(std::string_view page, const std::string& json);
 
 }  // namespace swivel

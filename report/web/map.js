@@ -32,14 +32,14 @@ export class Cells {
       layer, s: this.s[layer], phi: -Math.PI + (2 * Math.PI * row * this.angles_each) / this.angles, branch: this.panels[panel].name,
       what: this.meaning(k) + (state === BLOCKED ? (this.states[k] & kCertified ? ' (proved by a certificate)' : ' (found by FCL)') : ''),
       q: pose < 0 ? null : Array.from(this.poses.subarray(7 * pose, 7 * pose + 7), (v) => v * this.joint_unit),
-      pair: state === BLOCKED ? this.blockers[this.causes[k]].split(' - ') : null,
+      pair: state === BLOCKED ? this.blockers[this.causes[k]] : null,
       clearance_mm: clearance === kUnknown ? undefined : clearance / 10,
     };
   }
   meaning(k) {
     const state = this.state(k);
     if (state === LIMIT) return `limit of ${this.jointNames[this.causes[k]]}`;
-    if (state === BLOCKED) return `blocked by ${this.blockers[this.causes[k]]}`;
+    if (state === BLOCKED) return `blocked by ${this.blockers[this.causes[k]].join(' - ')}`;
     if (state === FREE) return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
     return { [NO_IK]: 'no node: out of reach, or beside the given start', [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
   }

@@ -134,17 +134,30 @@ TEST(Bounds, SizesAndCoordinatesEnd) {
   const std::string csv = "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1e9,0,0,1,0,0,0\n";
   expect_message(input_error([&] { (void)load_path(folder.folder().write("far.csv", csv)); }), {"far.csv:3", "x,y,z", "1000"});
   const auto robot = [&](const std::string& link, const std::string& joint) {
-    const std::string text = "<robot name='r'><link name='a'>" + link + "</link>\n<link name='b'/><joint name='j' type='fixed'><parent link='a'/>" +
-                             "<child link='b'/>" + joint + "</joint></robot>";
+    const std::string text = "<robot name='r'><link name='a'>" + link +
+                             "</link>\n<link name='b'/><joint name='j' type='fixed'><parent link='a'/>" + "<child link='b'/>" +
+                             joint + "</joint></robot>";
     return input_error([&] { (void)load_robot(folder.folder().write("far.urdf", text)); });
   };
   const std::string ball = "<collision><geometry><sphere radius='";
   expect_message(robot(ball + "1e9'/></geometry></collision>", ""), {"far.urdf:1: link 'a'", "1000"});
-  expect_message(robot("<collision><origin xyz='0 1e9 0'/><geometry><sphere radius='1'/></geometry></collision>", ""), {"far.urdf:1", "origin"});
+  expect_message(robot("<collision><origin xyz='0 1e9 0'/><geometry><sphere radius='1'/></geometry></collision>", ""),
+                 {"far.urdf:1", "origin"});
   expect_message(robot("", "<origin xyz='0 1e9 0'/>"), {"far.urdf:2: joint 'j'", "origin"});
 }
 
-const char* const kBadNames[] = {"a\x1b[31m", "a\nb", "\x01", "a\x7f", "\xff", "\xc0\x80", "\xed\xa0\x80", "\xf5\x80\x80\x80", "\xc2\x9b" "31m", "\xef\xbf\xbf", "\xe2\x82"};
+const char* const kBadNames[] = {"a\x1b[31m",
+                                 "a\nb",
+                                 "\x01",
+                                 "a\x7f",
+                                 "\xff",
+                                 "\xc0\x80",
+                                 "\xed\xa0\x80",
+                                 "\xf5\x80\x80\x80",
+                                 "\xc2\x9b"
+                                 "31m",
+                                 "\xef\xbf\xbf",
+                                 "\xe2\x82"};
 const char* const kGoodNames[] = {"a", "<!--<script>", "</script>", "a - b", "Türgriff", "扉", "🚪", "a b", "\"'&;|$(x)", "%s"};
 
 TEST(Names, AreUtf8WithoutControlCharacters) {
@@ -174,8 +187,9 @@ TEST(Names, OfProblemFiles) {
   }
   for (const char* name : kBadNames) {
     SCOPED_TRACE(quoted(name));
-    for (const auto& [section, text] : std::map<std::string, std::string>{
-             {"scene", "[{name: " + quoted(name) + ", sphere: 1}]"}, {"robot", robot_with("attached: [{name: " + quoted(name) + ", sphere: 1}]")}}) {
+    for (const auto& [section, text] :
+         std::map<std::string, std::string>{{"scene", "[{name: " + quoted(name) + ", sphere: 1}]"},
+                                            {"robot", robot_with("attached: [{name: " + quoted(name) + ", sphere: 1}]")}}) {
       const std::string message = input_error([&] { (void)folder.load({{section, text}}); });
       expect_message(message, {"problem.yaml:"});
       EXPECT_TRUE(is_valid_name(message)) << message;
@@ -188,7 +202,8 @@ TEST(Names, OfRobots) {
   for (const std::string name : {"a\x1b[31m", "a&#10;b", "\xff", "&#x7f;", "\xc2\x9b", ""}) {
     for (const std::string& text :
          {"<robot name='r'>\n<link name='" + name + "'/></robot>", "<robot name='" + name + "'>\n<link name='a'/></robot>",
-          "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='" + name + "' type='fixed'><parent link='a'/><child link='b'/></joint></robot>"}) {
+          "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='" + name +
+              "' type='fixed'><parent link='a'/><child link='b'/></joint></robot>"}) {
       const std::string message = input_error([&] { (void)load_robot(folder.write("a.urdf", text)); });
       expect_message(message, {"a.urdf:"});
       EXPECT_TRUE(is_valid_name(message)) << message;

@@ -91,7 +91,7 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
       if (pair) {
         const auto& names = world.body_names();
         ASSERT_EQ(full.map.blockers[known.cause],
-                  names[static_cast<std::size_t>(pair->a)] + " - " + names[static_cast<std::size_t>(pair->b)]);
+                  std::pair(names[static_cast<std::size_t>(pair->a)], names[static_cast<std::size_t>(pair->b)]));
       }
     }
   std::printf("%s: %zu nodes: %d not looked at, %d free, %d blocked, %d beyond a limit, %d singular, %d out of reach\n", GetParam(),

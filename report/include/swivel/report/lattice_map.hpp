@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "swivel/planner/planner.hpp"
@@ -29,9 +30,9 @@ struct LatticeMap {
     bool operator==(const Node&) const = default;
   };
   int layers = 0, angles = 0, windings = 1;
-  std::vector<double> s;              ///< m, of each layer
-  std::vector<Node> nodes;            ///< [layer][label][angle], label = branch * windings + winding
-  std::vector<std::string> blockers;  ///< "body - body", in the order of their names
+  std::vector<double> s;                                      ///< m, of each layer
+  std::vector<Node> nodes;                                    ///< [layer][label][angle], label = branch * windings + winding
+  std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
   std::vector<int> path;  ///< one slot in each layer: the answer, or a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
@@ -44,6 +45,8 @@ struct LatticeMap {
   }
   /// Labels that have a node, or the path.
   [[nodiscard]] std::vector<int> inhabited_labels() const;
+  /// What blocks a blocked node, in words.
+  [[nodiscard]] std::string blocker_name(const Node& node) const;
   /// "shoulder +, wrist -, elbow +", with the winding where there are several.
   [[nodiscard]] std::string label_name(int label) const;
 };
