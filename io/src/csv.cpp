@@ -10,6 +10,14 @@
 
 namespace swivel::io {
 
+std::string csv_field(const std::string& text) {
+  const bool plain = text.find_first_of(",\"") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' ');
+  if (plain) return text;
+  std::string field = "\"";
+  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+  return field + '"';
+}
+
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -18,11 +26,22 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
+/// RFC 4180: a field that begins with a quote goes to the next single one. Bytes after that are part of the field, and so wrong.
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields;
   while (true) {
+    std::string field;
+    line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size()));
+    if (line.starts_with('"')) {
+      line.remove_prefix(1);
+      for (; !line.empty() && (line[0] != '"' || line.substr(0, 2) == "\"\""); line.remove_prefix(line[0] == '"' ? 2 : 1))
+        field += line[0];
+      if (line.empty()) return {};  // left open
+      line.remove_prefix(1);
+    }
     const auto comma = line.find(',');
-    fields.push_back(trimmed(line.substr(0, comma)));
+    field += trimmed(line.substr(0, comma));
+    fields.push_back(std::move(field));
     if (comma == std::string_view::npos) return fields;
     line.remove_prefix(comma + 1);
   }
@@ -30,7 +49,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + csv_field(name);
   return text;
 }
 
@@ -48,7 +67,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
     const std::string_view line = trimmed(rest.substr(0, end));
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (line.empty()) continue;
-    const std::vector<std::string_view> fields = fields_of(line);
+    const std::vector<std::string> fields = fields_of(line);
     if (!header_seen) {
       if (!std::equal(fields.begin(), fields.end(), header.begin(), header.end()))
         bad_input(at_line(file_, line_number), "header is '" + std::string(line) + "'", "the header " + joined(header));
@@ -63,7 +82,7 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
     for (std::size_t k = 0; k < columns_; ++k) {
       const auto value = to_number<double>(fields[k]);
       if (!value || !std::isfinite(*value))
-        bad_input(where(rows() - 1) + ": " + header[k], "'" + std::string(fields[k]) + "' is not a number", "a finite number");
+        bad_input(where(rows() - 1) + ": " + header[k], "'" + fields[k] + "' is not a number", "a finite number");
       values_.push_back(*value);
     }
   }

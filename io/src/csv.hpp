@@ -7,6 +7,9 @@
 
 namespace swivel::io {
 
+/// In quotes where it needs them.
+[[nodiscard]] std::string csv_field(const std::string& text);
+
 /// A comma-separated table of numbers with a fixed header.
 class CsvTable {
  public:

@@ -18,7 +18,7 @@ std::vector<std::string> header_of(const std::array<std::string, kDof>& joint_na
 
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {
   std::string text;
-  for (const std::string& name : header_of(result.joint_names)) text += (text.empty() ? "" : ",") + name;
+  for (const std::string& name : header_of(result.joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (const TrajectoryRow& row : result.trajectory) {
     text += format_double(row.s) + ',' + format_double(row.phi) + ',' + std::to_string(row.branch);

@@ -30,11 +30,13 @@ std::string data_of(const std::string& page) {
 TEST(Names, OfBodiesStayWordsInEveryDrawing) {
   for (const std::string name : {"<!--<script>", "</script><script>", "a - b", "]]>&lt;\"'", "Türgriff 扉", "%s%n", "$&@@DATA@@"}) {
     SCOPED_TRACE(name);
-    Problem problem = episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1, 258);  // the post blocks it
+    Problem problem =
+        episode_problem(io::load_problem(data_dir() / "problems" / "experiment_c.yaml"), 1, 258);  // the post blocks it
     problem.source = name;
     problem.resolution = {0.02, 0.2, 0.1};
     problem.limits.edges = EdgeMode::kNodes;
-    const auto post = std::find_if(problem.scene.begin(), problem.scene.end(), [](const auto& object) { return object.name == "post"; });
+    const auto post =
+        std::find_if(problem.scene.begin(), problem.scene.end(), [](const auto& object) { return object.name == "post"; });
     ASSERT_NE(post, problem.scene.end());
     post->name = name;
     SearchRecord record;

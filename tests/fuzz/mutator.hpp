@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <string>
+#include <vector>
+
+#include "seed.hpp"
+
+namespace swivel::test {
+
+/// Breaks files the way that transfers, editors and attackers do. The same seed gives the same bytes everywhere.
+class Mutator {
+ public:
+  /// `seeds`: good files of one format; `words`: pieces of its syntax.
+  /// `mild`: numbers and lines alone, so that most files can still be read.
+  Mutator(std::vector<std::string> seeds, std::vector<std::string> words, bool mild)
+      : seeds_(std::move(seeds)), words_(std::move(words)), mild_(mild) {}
+
+  /// A seed with one to three changes.
+  [[nodiscard]] std::string input(std::uint64_t seed_value) const;
+
+ private:
+  void change(std::string& text, Random& random) const;
+
+  std::vector<std::string> seeds_, words_;
+  bool mild_;
+};
+
+}  // namespace swivel::test
