@@ -1,71 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Broken files of every format that is read: an InputError of one line, soon, and nothing else. SWIVEL_TEST_TRIALS is the number of
-// inputs over all readers (2,000 unless given); SWIVEL_FUZZ_KEEP a folder where inputs with findings are kept.
+// inputs over all readers (2,000 unless given).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
-#include <fstream>
 
-#include "io_support.hpp"
-#include "mutator.hpp"
+#include "formats.hpp"
 #include "robots.hpp"
-#include "swivel/core/lattice.hpp"
-#include "swivel/planner/planner.hpp"
-#include "watchdog.hpp"
 
 namespace swivel::test {
 namespace {
 
 namespace fs = std::filesystem;
-using io::test::TempFolder;
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr Allowance kAllowance{5, 3072};  // the sanitizer keeps what was freed for a while
-#else
-constexpr Allowance kAllowance{5, 1024};
-#endif
 
 std::string first_lines(std::string text, int lines) {
   std::size_t end = 0;
   while (lines-- > 0 && end < text.size()) end = std::min(text.find('\n', end), text.size() - 1) + 1;
   return text.substr(0, end);
 }
-
-std::string data(const std::string& name) {
-  return TempFolder::read(data_dir() / name);
-}
-
-const std::vector<std::string> kXmlWords{"<a>", "</a>", "<link name='x'>", "<joint name='j' type='fixed'>", "<node>", "<node id='n'>", "<p>", "<!DOCTYPE x [", "<?xml ", "<collision>", "<origin xyz='1 2 3' rpy='0 0 0'/>",
-                                         "<mimic joint='joint_2'/>", "<sphere radius='1'/>", "<mesh filename='x.stl'/>", "<limit lower='-1e16' upper='1e16'/>", " name=''", " a='b'",
-                                         "<instance_node url='#n'/>", "<instance_geometry url='#g'/>", "<disable_default_collisions link='link_1'/>"};
-const std::vector<std::string> kYamlWords{"[", "{", "{a: ", "[{", "- ", "? ", ": ", "&a ", "*a", "<<: *a", "!!binary ", "!t ", "|\n", ">\n", "---\n", "...\n", "\"", "#", "  ", "scene:\n", "limits: {joint_step: 0.001}\n",
-                                          "- {name: x, sphere: 0.1}\n", "- {name: y, mesh: box.stl, scale: 1000}\n", "allow: [link_7]", "quat: [0, 0, 0, 1]"};
-
-const char* const kProblem = R"(robot:
-  urdf: ../robots/iiwa14.urdf
-  srdf: ../robots/iiwa14.srdf
-  base_link: base_link
-  tip_link: tool0
-  tool: {xyz: [0, 0, 0.05], rpy: [0, 0.1, 0]}
-  attached:
-    - {name: probe, capsule: {radius: 0.02, length: 0.1}, xyz: [0, 0, 0.06], link: tool0}
-path:
-  frame: table
-  waypoints: &w
-    - {xyz: [0.1, 0, 0.35], rpy: [0, 3.0, 0]}
-    - {xyz: [0.1, 0.1, 0.35], quat: [0.0707, 0, 0.9975, 0]}
-scene:
-  - {name: table, box: [0.6, 0.6, 0.1], xyz: [0.5, 0, 0.2]}
-  - {name: ball, sphere: {radius: 0.1}, xyz: [0.5, 0.5, 0.5], allow: [link_7, probe]}
-  - {name: post, cylinder: {radius: 0.05, length: 1}, xyz: [0.2, -0.6, 0.5]}
-  - {name: crate, mesh: box.stl, scale: [0.1, 0.1, 0.1], xyz: [0.9, 0, 0.2], rpy: [0, 0, 0.3]}
-resolution: {ds: 0.02, dphi: 0.3, dalpha: 0.2}
-limits: {clearance: 0.01, manipulability: 0.01, joint_margin: 0.02, joint_step: 0.6, arm_slope: 30, step_error: 0.3,
-         tool_path_error: 0.01, tool_angle_error: 0.1, tool_speed: 0.1, tool_turn_speed: 1, edges: continuous, edge_clearance: 0.004, edge_tolerance: 0.002}
-cost: {metric: l2, weights: [1, 1, 1, 1, 1, 1, 0.5]}
-vary:
-  - {object: ball, xyz: [0.1, 0.1, 0.1], rpy: [0, 0, 3]}
-)";
 
 const char* const kDae = R"(<?xml version="1.0"?>
 <COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
@@ -105,13 +58,15 @@ std::string binary_stl() {
 }
 
 const char* const kPly =
-    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nelement face 3\n"
+    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+    "red\nelement face 3\n"
     "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
     "0 0 0 1\n0.1 0 0 2\n0 0.1 0 3\n0 0 0.1 4\n3 0 2 1\n3 0 1 3\n4 1 2 3 0\n0 1\n";
 
 std::string binary_ply(bool big) {
   std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                     "_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\nelement face 2\nproperty list uchar int vertex_index\nend_header\n";
+                     "_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\nelement face "
+                     "2\nproperty list uchar int vertex_index\nend_header\n";
   const auto put = [&](auto value) {
     std::string raw = bytes(&value, sizeof value);
     if (big) std::reverse(raw.begin(), raw.end());
@@ -130,29 +85,12 @@ std::string binary_ply(bool big) {
 }
 
 const char* const kObj =
-    "# c\nmtllib m.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.5 0 1\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\nf 1/1/1 2/1/1 3/1/1 4/1/1\n"
+    "# c\nmtllib m.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.5 0 1\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\nf 1/1/1 2/1/1 "
+    "3/1/1 4/1/1\n"
     "f -5 -4 \\\n -3 -1 -2\nf 1//1 2//1 3//1\nl 1 2\np 1\n";
 
-/// A problem that was read is planned as well, coarsely: what readers take must not break what comes next.
-void plan_coarsely(Problem problem) {
-  double length = 0;
-  for (std::size_t k = 1; k < problem.waypoints.size(); ++k)
-    length += (problem.waypoints[k].position - problem.waypoints[k - 1].position).norm();
-  problem.resolution = {std::max(0.05, length / 100), 0.5, 0.5};
-  PlanOptions options;
-  options.planner = PlannerKind::kLazy;
-  options.timeout_s = 0.1;
-  (void)plan(problem, options);
-}
-
-struct Reader {
-  const char* name;
-  std::vector<std::string> seeds, words;
-  std::function<void(const std::string&)> read;
-};
-
 /// Files are written into `folder`, which has links to the data.
-std::vector<Reader> readers(const TempFolder& folder, bool planned) {
+std::vector<Reader> readers(const TempFolder& folder) {
   const auto at = [&folder](const char* name, auto call) {
     return [&folder, name, call](const std::string& text) { call(folder.write(name, text)); };
   };
@@ -161,74 +99,57 @@ std::vector<Reader> readers(const TempFolder& folder, bool planned) {
     (void)io::load_mesh(file, Vector3d::Ones(), cache);
   };
   std::vector<Reader> all;
-  all.push_back({"problem", {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")}, kYamlWords, at("problems/p.yaml", [planned](const fs::path& file) {
-                   const Problem problem = io::load_problem(file);
-                   if (planned) plan_coarsely(problem);
+  all.push_back({"problem",
+                 {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
+                 kYamlWords,
+                 at("problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
+  all.push_back({"urdf", {io::test::arm_urdf(), data("robots/iiwa14.urdf")}, kXmlWords, at("robot.urdf", [](const fs::path& file) {
+                   (void)io::load_robot(file);
                  })});
-  all.push_back({"urdf", {io::test::arm_urdf(), data("robots/iiwa14.urdf")}, kXmlWords, at("robot.urdf", [&folder, planned](const fs::path& file) {
-                   const auto robot = io::load_robot(file);
-                   if (!planned) return;
-                   Problem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
-                   problem.robot = robot;
-                   for (SceneObject& object : problem.scene) object.allow.clear();
-                   plan_coarsely(problem);
-                 })});
-  all.push_back({"srdf", {data("robots/iiwa14.srdf"), "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions link1='link_1' link2='link_2'/></robot>"}, kXmlWords,
-                 at("robot.srdf", [](const fs::path& file) { (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file); })});
-  all.push_back({"path", {first_lines(data("paths/door_polish.csv"), 30), "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"}, {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
+  all.push_back(
+      {"srdf",
+       {data("robots/iiwa14.srdf"),
+        "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions link1='link_1' link2='link_2'/></robot>"},
+       kXmlWords,
+       at("robot.srdf", [](const fs::path& file) { (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file); })});
+  all.push_back({"path",
+                 {first_lines(data("paths/door_polish.csv"), 30), "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
+                 {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
                  at("path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
   const std::array<std::string, kDof> joints{"a", "b", "c", "d", "e", "f", "g,\"h\""};
   PlanResult result;
   result.joint_names = joints;
   for (int k = 0; k < 5; ++k) result.trajectory.push_back({0.1 * k, 0.2, k, Config::Constant(0.1 * k)});
   io::write_trajectory(folder.path() / "good.csv", result);
-  all.push_back({"trajectory", {TempFolder::read(folder.path() / "good.csv")}, {",", "\"", "\n", "1e9,"}, at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory(file, joints); })});
-  all.push_back({"campaign",
-                 {"episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n"
-                  "0,solved,1.5,0.123,10,2,0.01,0.02,,\n1,infeasible,,3.000,5,1,,,0.25,\"a \"\"b\"\", c\"\n2,infeasible,,3.000,5,1,,,,joint step\n"},
-                 {",", "\"", "\n", "0,solved,"},
-                 at("results.csv.part", [&folder](const fs::path&) { (void)io::CampaignFile(folder.path() / "results.csv", {}, 100); })});
-  all.push_back({"stl", {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()}, {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"}, at("a.stl", mesh)});
+  all.push_back({"trajectory",
+                 {TempFolder::read(folder.path() / "good.csv")},
+                 {",", "\"", "\n", "1e9,"},
+                 at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory(file, joints); })});
+  all.push_back(
+      {"campaign",
+       {"episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n"
+        "0,solved,1.5,0.123,10,2,0.01,0.02,,\n1,infeasible,,3.000,5,1,,,0.25,\"a \"\"b\"\", c\"\n2,infeasible,,3.000,5,1,,,,joint "
+        "step\n"},
+       {",", "\"", "\n", "0,solved,"},
+       at("results.csv.part", [&folder](const fs::path&) { (void)io::CampaignFile(folder.path() / "results.csv", {}, 100); })});
+  all.push_back({"stl",
+                 {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
+                 {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"},
+                 at("a.stl", mesh)});
   all.push_back({"obj", {kObj}, {"f 1 2 3\n", "v 1 2 3\n", " 1", " -1", "/", "\\\n", "f"}, at("a.obj", mesh)});
-  all.push_back({"ply", {kPly, binary_ply(false), binary_ply(true)}, {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n", "property double x\n", "end_header\n", "comment ", "3 0 1 2\n"}, at("a.ply", mesh)});
+  all.push_back({"ply",
+                 {kPly, binary_ply(false), binary_ply(true)},
+                 {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n", "property double x\n",
+                  "end_header\n", "comment ", "3 0 1 2\n"},
+                 at("a.ply", mesh)});
   all.push_back({"dae", {kDae}, kXmlWords, at("a.dae", mesh)});
   return all;
 }
 
-void fuzz(bool planned, int inputs) {
-  const TempFolder folder;
-  for (const char* name : {"robots", "meshes", "paths"}) fs::create_directory_symlink(data_dir() / name, folder.path() / name);
-  folder.write("problems/box.stl", io::test::box_stl());
-  folder.write("problems/good.yaml", kProblem);
-  const std::uint64_t first = seed(planned ? "Fuzz planned" : "Fuzz");
-  auto all = readers(folder, planned);
-  if (planned) {
-    all.resize(2);
-    all[1].seeds = {data("robots/iiwa14.urdf")};  // the problem names its links
-  }
-  const char* const keep = std::getenv("SWIVEL_FUZZ_KEEP");
-  for (const Reader& reader : all) {
-    for (const std::string& good : reader.seeds) EXPECT_NO_THROW(reader.read(good)) << reader.name << ": " << good;
-    const Mutator mutator(reader.seeds, reader.words, planned);
-    const auto input = [&](int k) { return mutator.input(first * 1'000'003 + static_cast<std::uint64_t>(k)); };
-    const int count = inputs / static_cast<int>(all.size());
-    const Tally tally = watch(count, kAllowance, [&](int k) { reader.read(input(k)); });
-    std::printf("%s: %d inputs, %d read, %d refused, %zu findings\n", reader.name, count, tally.accepted, tally.refused, tally.findings.size());
-    EXPECT_GT(tally.accepted, count / 20);
-    EXPECT_GT(tally.refused, count / 20);
-    for (const Finding& finding : tally.findings) {
-      ADD_FAILURE() << reader.name << ", input " << finding.input << ": " << finding.what;
-      if (keep != nullptr) std::ofstream(fs::path(keep) / (reader.name + std::to_string(finding.input)), std::ios::binary) << input(finding.input);
-    }
-  }
-}
-
 TEST(Fuzz, EveryReaderRefusesWhatItCannotRead) {
-  fuzz(false, trials(2000));
-}
-
-TEST(Fuzz, WhatIsReadCanBePlanned) {
-  fuzz(true, trials(2000) / 10);
+  const TempFolder folder;
+  prepare(folder);
+  fuzz("Fuzz", readers(folder), trials(2000), false);
 }
 
 /// What the watchdog is for.

@@ -9,13 +9,84 @@ namespace {
 
 constexpr std::size_t kMostBytes = 1 << 20;
 
-const std::vector<std::string> kNumbers{"0",          "-1",         "1",    "-0.0",  "1e308",  "-1e308",  "1e-308", "5e-324", "1e400", "nan",
-                                        "inf",        "-inf",       ".nan", ".inf",  "0x10",   "1e9",     "1e-9",   "1e16",   "1e160", "65536",
-                                        "2147483647", "2147483648", "-2147483649", "4294967295", "4294967296", "9223372036854775807",
-                                        "18446744073709551616", "99999999999999999999999", "1000", "1001", "0.001", "3.1415926535897931", "6.2831853",
-                                        "1,5", "1.2.3", "--1", "1e", "", "x"};
-const std::vector<std::string> kAnyWords{"<", ">", "&", "\"", "'", "\\", "/", "{", "}", "[", "]", ",", ":", "-", "#", "%s", "\n", "\r\n", "\t", " ", "<!--", "-->",
-                                         "<![CDATA[", "&#0;", "&#x1b;", "&lt;", "\x1b[31m", "\xff", "\xc3\xa4", "\xed\xa0\x80", "\xef\xbb\xbf", "../", "/dev/zero", "null", "~"};
+const std::vector<std::string> kNumbers{"0",
+                                        "-1",
+                                        "1",
+                                        "-0.0",
+                                        "1e308",
+                                        "-1e308",
+                                        "1e-308",
+                                        "5e-324",
+                                        "1e400",
+                                        "nan",
+                                        "inf",
+                                        "-inf",
+                                        ".nan",
+                                        ".inf",
+                                        "0x10",
+                                        "1e9",
+                                        "1e-9",
+                                        "1e16",
+                                        "1e160",
+                                        "65536",
+                                        "2147483647",
+                                        "2147483648",
+                                        "-2147483649",
+                                        "4294967295",
+                                        "4294967296",
+                                        "9223372036854775807",
+                                        "18446744073709551616",
+                                        "99999999999999999999999",
+                                        "1000",
+                                        "1001",
+                                        "0.001",
+                                        "3.1415926535897931",
+                                        "6.2831853",
+                                        "1,5",
+                                        "1.2.3",
+                                        "--1",
+                                        "1e",
+                                        "",
+                                        "x"};
+const std::vector<std::string> kPlainNumbers{"0",         "1",         "2",      "7",     "10",     "0.1",   "0.01",
+                                             "0.001",     "1e-6",      "1e-9",   "1e-15", "1e-300", "100",   "999",
+                                             "1e4",       "1e6",       "1e9",    "1e16",  "1e160",  "1e308", "3.1415926535897931",
+                                             "6.2831853", "1.5707963", "3.1416", "0.7"};
+const std::vector<std::string> kAnyWords{"<",
+                                         ">",
+                                         "&",
+                                         "\"",
+                                         "'",
+                                         "\\",
+                                         "/",
+                                         "{",
+                                         "}",
+                                         "[",
+                                         "]",
+                                         ",",
+                                         ":",
+                                         "-",
+                                         "#",
+                                         "%s",
+                                         "\n",
+                                         "\r\n",
+                                         "\t",
+                                         " ",
+                                         "<!--",
+                                         "-->",
+                                         "<![CDATA[",
+                                         "&#0;",
+                                         "&#x1b;",
+                                         "&lt;",
+                                         "\x1b[31m",
+                                         "\xff",
+                                         "\xc3\xa4",
+                                         "\xed\xa0\x80",
+                                         "\xef\xbb\xbf",
+                                         "../",
+                                         "/dev/zero",
+                                         "null",
+                                         "~"};
 
 std::size_t place(const std::string& text, Random& random) {
   return static_cast<std::size_t>(random.below(static_cast<int>(text.size()) + 1));
@@ -61,7 +132,7 @@ std::string Mutator::input(std::uint64_t seed_value) const {
 
 void Mutator::change(std::string& text, Random& random) const {
   const std::size_t at = place(text, random), size = length(text.size() - at, random);
-  switch (mild_ ? 10 + random.below(8) : random.below(14)) {
+  switch (mild_ ? 10 + random.below(10) : random.below(14)) {
     case 0:  // a bit
       if (at < text.size()) text[at] = static_cast<char>(text[at] ^ (1 << random.below(8)));
       return;
@@ -119,7 +190,7 @@ void Mutator::change(std::string& text, Random& random) const {
     default:  // numbers are what matters most in these formats
     {
       const auto [begin, n] = number(text, random);
-      if (n > 0) text.replace(begin, n, one_of(kNumbers, random));
+      if (n > 0) text.replace(begin, n, one_of(mild_ ? kPlainNumbers : kNumbers, random));
     }
   }
 }

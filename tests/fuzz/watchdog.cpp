@@ -6,9 +6,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <csignal>
 #include <exception>
 
 #include "swivel/core/bounds.hpp"
