@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "swivel/core/bounds.hpp"
 #include "swivel/core/invalid_argument.hpp"
 
 namespace swivel {
@@ -33,15 +34,19 @@ struct Field {
   throw InvalidArgument(field.text() + ": " + what + ": allowed is " + allowed);
 }
 
-enum class Range { kFinite, kNonNegative, kPositive };
+enum class Range { kFinite, kNonNegative, kPositive, kLength };
 
 void number(const Field& field, double value, Range range) {
-  if (std::isfinite(value) && (range == Range::kFinite || value > 0 || (value == 0 && range == Range::kNonNegative))) return;
+  if (range == Range::kLength
+          ? value > 0 && value <= kMostMetres
+          : std::isfinite(value) && (range == Range::kFinite || value > 0 || (value == 0 && range == Range::kNonNegative)))
+    return;
   char text[32];
   std::snprintf(text, sizeof text, "is %g", value);
   fail(field, text,
        range == Range::kFinite        ? "a finite number"
        : range == Range::kNonNegative ? "a finite number >= 0"
+       : range == Range::kLength      ? "a number > 0, at most 1000"
                                       : "a finite number > 0");
 }
 void number(const Field& field, const std::optional<double>& value, Range range) {
@@ -56,6 +61,8 @@ void pose(const Field& field, const Pose& pose) {
   constexpr double kTolerance = 1e-6;
   const Matrix3d R = pose.linear();
   if (!pose.matrix().allFinite()) fail(field, "has numbers that are not finite", "a rotation and a finite translation");
+  // Twice as far as files say, since objects of a campaign are moved.
+  if (!(pose.translation().cwiseAbs().maxCoeff() <= 2 * kMostMetres)) fail(field, "is too far away", "a translation within 2000 m");
   if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance && R.determinant() > 0 &&
         pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
     fail(field, "is no rigid transform", "a rotation within 1e-6 and a finite translation");
@@ -64,7 +71,8 @@ void pose(const Field& field, const Pose& pose) {
 void mesh(const Field& field, const MeshPtr& mesh) {
   if (!mesh) fail(field, "is a null mesh", "a mesh");
   for (const Vector3d& vertex : mesh->vertices)
-    if (!vertex.allFinite()) fail(field, "has a vertex that is not finite", "a mesh of finite numbers");
+    if (!(vertex.cwiseAbs().maxCoeff() <= kMostMetres))
+      fail(field, "has a vertex that is not finite or too far away", "vertices within 1000 m");
   const auto count = static_cast<int>(mesh->vertices.size());
   for (const auto& triangle : mesh->triangles)
     for (const int corner : triangle)
@@ -72,11 +80,11 @@ void mesh(const Field& field, const MeshPtr& mesh) {
 }
 
 void shape(const Field& field, const Shape& shape) {
-  if (const auto* sphere = std::get_if<Sphere>(&shape)) number(field("radius"), sphere->radius, Range::kPositive);
-  if (const auto* box = std::get_if<Box>(&shape)) numbers(field("size"), box->size, Range::kPositive);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) number(field("radius"), sphere->radius, Range::kLength);
+  if (const auto* box = std::get_if<Box>(&shape)) numbers(field("size"), box->size, Range::kLength);
   const auto round = [&](const auto& body) {
-    number(field("radius"), body.radius, Range::kPositive);
-    number(field("length"), body.length, Range::kPositive);
+    number(field("radius"), body.radius, Range::kLength);
+    number(field("length"), body.length, Range::kLength);
   };
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) round(*cylinder);
   if (const auto* capsule = std::get_if<Capsule>(&shape)) round(*capsule);
@@ -90,6 +98,7 @@ void names(const Field& parent, const char* list, const std::vector<Item>& items
   sorted.reserve(items.size());
   for (std::size_t k = 0; k < items.size(); ++k) {
     if (items[k].name.empty()) fail(parent(list, k)("name"), "is empty", "a name of its own");
+    if (!is_valid_name(items[k].name)) fail(parent(list, k)("name"), "is '" + printable(items[k].name) + "'", kValidName);
     sorted.emplace_back(items[k].name, k);
   }
   std::sort(sorted.begin(), sorted.end());

@@ -44,7 +44,8 @@ TEST(Size, ClearanceFromTheLargestBodiesIsRight) {
   int compared = 0;
   double worst = 0;
   for (int trial = 0; trial < 50; ++trial)
-    for (const Shape& shape : {Shape(Sphere{half}), Shape(Box{Vector3d::Constant(2 * half)}), Shape(Cylinder{half, 2 * half}), Shape(box_mesh(Vector3d::Constant(2 * half)))}) {
+    for (const Shape& shape : {Shape(Sphere{half}), Shape(Box{Vector3d::Constant(2 * half)}), Shape(Cylinder{half, 2 * half}),
+                               Shape(box_mesh(Vector3d::Constant(2 * half)))}) {
       const Config q = random_config(arm.chain, random);
       const std::vector<Segment> links = capsules(arm.chain, bodies, q);
       const Vector3d n = Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
@@ -56,9 +57,10 @@ TEST(Size, ClearanceFromTheLargestBodiesIsRight) {
       double exact = 1e9;
       for (const Segment& c : links)
         exact = std::min(exact, std::holds_alternative<Sphere>(shape) ? to_point(c, object.pose.translation()) - half
-                                                                       : (object.pose.translation() - c.a).dot(n) - half - c.radius);
+                                                                      : (object.pose.translation() - c.a).dot(n) - half - c.radius);
       for (const Segment& c : links)
-        if (!std::holds_alternative<Sphere>(shape)) exact = std::min(exact, (object.pose.translation() - c.b).dot(n) - half - c.radius);
+        if (!std::holds_alternative<Sphere>(shape))
+          exact = std::min(exact, (object.pose.translation() - c.b).dot(n) - half - c.radius);
       problem.scene = {object};
       const World world(*robot.model, arm, problem);
       World::Query query(world);

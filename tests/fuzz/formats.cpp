@@ -10,11 +10,51 @@ namespace swivel::test {
 
 namespace fs = std::filesystem;
 
-const std::vector<std::string> kXmlWords{"<a>", "</a>", "<link name='x'>", "<joint name='j' type='fixed'>", "<node>", "<node id='n'>", "<p>", "<!DOCTYPE x [", "<?xml ", "<collision>", "<origin xyz='1 2 3' rpy='0 0 0'/>",
-                                         "<mimic joint='joint_2'/>", "<sphere radius='1'/>", "<mesh filename='x.stl'/>", "<limit lower='-1e16' upper='1e16'/>", " name=''", " a='b'",
-                                         "<instance_node url='#n'/>", "<instance_geometry url='#g'/>", "<disable_default_collisions link='link_1'/>"};
-const std::vector<std::string> kYamlWords{"[", "{", "{a: ", "[{", "- ", "? ", ": ", "&a ", "*a", "<<: *a", "!!binary ", "!t ", "|\n", ">\n", "---\n", "...\n", "\"", "#", "  ", "scene:\n", "limits: {joint_step: 0.001}\n",
-                                          "- {name: x, sphere: 0.1}\n", "- {name: y, mesh: box.stl, scale: 1000}\n", "allow: [link_7]", "quat: [0, 0, 0, 1]"};
+const std::vector<std::string> kXmlWords{"<a>",
+                                         "</a>",
+                                         "<link name='x'>",
+                                         "<joint name='j' type='fixed'>",
+                                         "<node>",
+                                         "<node id='n'>",
+                                         "<p>",
+                                         "<!DOCTYPE x [",
+                                         "<?xml ",
+                                         "<collision>",
+                                         "<origin xyz='1 2 3' rpy='0 0 0'/>",
+                                         "<mimic joint='joint_2'/>",
+                                         "<sphere radius='1'/>",
+                                         "<mesh filename='x.stl'/>",
+                                         "<limit lower='-1e16' upper='1e16'/>",
+                                         " name=''",
+                                         " a='b'",
+                                         "<instance_node url='#n'/>",
+                                         "<instance_geometry url='#g'/>",
+                                         "<disable_default_collisions link='link_1'/>"};
+const std::vector<std::string> kYamlWords{"[",
+                                          "{",
+                                          "{a: ",
+                                          "[{",
+                                          "- ",
+                                          "? ",
+                                          ": ",
+                                          "&a ",
+                                          "*a",
+                                          "<<: *a",
+                                          "!!binary ",
+                                          "!t ",
+                                          "|\n",
+                                          ">\n",
+                                          "---\n",
+                                          "...\n",
+                                          "\"",
+                                          "#",
+                                          "  ",
+                                          "scene:\n",
+                                          "limits: {joint_step: 0.001}\n",
+                                          "- {name: x, sphere: 0.1}\n",
+                                          "- {name: y, mesh: box.stl, scale: 1000}\n",
+                                          "allow: [link_7]",
+                                          "quat: [0, 0, 0, 1]"};
 
 const char* const kProblem = R"(robot:
   urdf: ../robots/iiwa14.urdf
@@ -61,12 +101,14 @@ void fuzz(const char* name, const std::vector<Reader>& readers, int inputs, bool
     const auto input = [&](int k) { return mutator.input(first * 1'000'003 + static_cast<std::uint64_t>(k)); };
     const int count = inputs / static_cast<int>(readers.size());
     const Tally tally = watch(count, kAllowance, [&](int k) { reader.read(input(k)); });
-    std::printf("%s: %d inputs, %d read, %d refused, %zu findings\n", reader.name, count, tally.accepted, tally.refused, tally.findings.size());
+    std::printf("%s: %d inputs, %d read, %d refused, %zu findings\n", reader.name, count, tally.accepted, tally.refused,
+                tally.findings.size());
     EXPECT_GT(tally.accepted, count / 20);
     EXPECT_GT(tally.refused, count / 20);
     for (const Finding& finding : tally.findings) {
       ADD_FAILURE() << reader.name << ", input " << finding.input << ": " << finding.what;
-      if (keep != nullptr) std::ofstream(fs::path(keep) / (reader.name + std::to_string(finding.input)), std::ios::binary) << input(finding.input);
+      if (keep != nullptr)
+        std::ofstream(fs::path(keep) / (reader.name + std::to_string(finding.input)), std::ios::binary) << input(finding.input);
     }
   }
 }

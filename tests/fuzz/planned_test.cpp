@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems and robots with changed numbers and lines: what the readers take is planned, coarsely and for a tenth of a second, and must
-// end with an answer, a time-out, or an InputError. SWIVEL_TEST_TRIALS over 10 inputs (200 unless given).
+// Problems and robots with changed numbers and lines: what the readers take is planned, coarsely and for a tenth of a second, and
+// must end with an answer, a time-out, or an InputError. SWIVEL_TEST_TRIALS over 10 inputs (200 unless given).
 #include <gtest/gtest.h>
 
 #include "formats.hpp"
@@ -21,18 +21,22 @@ void plan_coarsely(Problem problem) {
   (void)plan(problem, options);
 }
 
-
 TEST(Fuzz, WhatIsReadCanBePlanned) {
   const TempFolder folder;
   prepare(folder);
-  const auto plan_problem = [&](const std::string& text) { plan_coarsely(io::load_problem(folder.write("problems/p.yaml", text))); };
+  const auto plan_problem = [&](const std::string& text) {
+    plan_coarsely(io::load_problem(folder.write("problems/p.yaml", text)));
+  };
   const auto plan_robot = [&](const std::string& text) {
     Problem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
     problem.robot = io::load_robot(folder.write("robot.urdf", text));
     plan_coarsely(problem);
   };
   fuzz("Fuzz planned",
-       {{"problem", {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")}, kYamlWords, plan_problem},
+       {{"problem",
+         {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
+         kYamlWords,
+         plan_problem},
         {"urdf", {data("robots/iiwa14.urdf")}, kXmlWords, plan_robot}},
        trials(2000) / 10, true);
 }

@@ -108,6 +108,13 @@ std::vector<Case> all_cases() {
         cases, "scene[0].shape.size" + at, [=](Problem& p) -> double& { return std::get<Box>(p.scene[0].shape).size[k]; },
         not_positive);
   }
+  // Beyond kMostMetres distances are not right, and names stand on terminals and in pictures (bounds.hpp).
+  cases.push_back({"scene[1].shape.radius", [](Problem& p) { p.scene[1].shape = Sphere{1000.1}; }});
+  cases.push_back({"scene[0].shape.size[2]", [](Problem& p) { p.scene[0].shape = Box{Vector3d(1, 1, 1e9)}; }});
+  cases.push_back({"scene[4].shape", [](Problem& p) { p.scene[4].shape = box_mesh(Vector3d(1, 1, 2001)); }});
+  cases.push_back({"scene[3].pose", [](Problem& p) { p.scene[3].pose.translation().x() = 1e9; }});
+  cases.push_back({"scene[2].name", [](Problem& p) { p.scene[2].name = "a\x1b[31m"; }});
+  cases.push_back({"attached[0].name", [](Problem& p) { p.attached[0].name = "\xff"; }});
   for (int k = 0; k < 4; ++k)
     add_number(cases, "waypoints[0].orientation", [=](Problem& p) -> double& { return p.waypoints[0].orientation.coeffs()[k]; },
                {3});
