@@ -2,13 +2,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <optional>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "progress.hpp"
@@ -46,16 +47,21 @@ Shard shard_from_string(const std::string& text) {
 /// The trajectories of a campaign: DIR/episode_K.csv.
 class Trajectories {
  public:
-  explicit Trajectories(fs::path folder) : folder_(std::move(folder)) {
+  Trajectories(fs::path folder, const std::vector<io::InputFiles::File>& inputs) : folder_(std::move(folder)) {
     std::error_code ignored;
+    for (const io::InputFiles::File& input : inputs)
+      if (fs::equivalent(input.name.parent_path() / ".", folder_, ignored) &&
+          input.name.filename().string().starts_with("episode_"))
+        throw InputError("--trajectories: " + folder_.string() + " holds " + input.name.filename().string() +
+                         ", which is one of the files that are read: allowed is another folder");
     if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
       throw InputError("--trajectories: " + folder_.string() + " is not a folder: allowed is a folder, or a name for a new one");
   }
   /// Safe to call for several episodes at a time.
-  void write(std::uint64_t episode, const PlanResult& result) const {
+  void write(std::uint64_t episode, const PlanResult& result) {
     std::error_code error;
     if (result.status != PlanStatus::kSolved) {
-      fs::remove(file(episode), error);  // of an older campaign
+      removed_ += fs::remove(file(episode), error);  // of an older campaign
       return;
     }
     fs::create_directories(folder_, error);
@@ -64,38 +70,27 @@ class Trajectories {
                        ": allowed is a folder that can be written");
     io::write_trajectory(file(episode), result);
   }
+  /// How many of an older campaign are gone.
+  [[nodiscard]] std::uint64_t removed() const { return removed_; }
   /// Whether all is there that a row promises.
   [[nodiscard]] bool has(const EpisodeRow& row) const { return row.status != PlanStatus::kSolved || fs::exists(file(row.episode)); }
 
  private:
   [[nodiscard]] fs::path file(std::uint64_t episode) const { return folder_ / ("episode_" + std::to_string(episode) + ".csv"); }
   fs::path folder_;
+  std::atomic<std::uint64_t> removed_{0};
 };
 
 void print_summary(const CampaignSummary& summary) {
-  std::printf("%llu of %llu episodes answered: %llu solved, %llu infeasible\n", static_cast<unsigned long long>(summary.answered()),
+  std::printf("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
               static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
               static_cast<unsigned long long>(summary.infeasible));
+  if (summary.errors > 0) std::printf(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
+  std::printf("\n");
   if (summary.answered() == 0) return;
   std::printf("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
               summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median,
               summary.fcl_calls.median);
-}
-
-/// Rows do not say of which seed and settings they are, so the last one is planned again before others join it.
-void require_same_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
-                           const std::vector<EpisodeRow>& rows, const std::string& out) {
-  if (rows.empty()) return;
-  const EpisodeRow& row = rows.back();
-  PlanOptions single = options.plan;
-  single.threads = 1;
-  const PlanResult result = plan(robot, episode_problem(problem, options.seed, row.episode), single);
-  if (result.status != PlanStatus::kSolved && result.status != PlanStatus::kInfeasible) return;  // timed out or cancelled
-  const EpisodeRow again(row.episode, result);
-  if (std::tie(again.status, again.cost, again.failed_s, again.reason) != std::tie(row.status, row.cost, row.failed_s, row.reason))
-    throw InputError(
-        out + ".part:" + std::to_string(rows.size() + 1) + ": episode " + std::to_string(row.episode) +
-        " comes out differently now: allowed are rows of the same problem, seed and settings; remove the file to start anew");
 }
 
 /// As a POSIX shell reads it back.
@@ -119,6 +114,24 @@ CampaignFacts facts_of(const CampaignArguments& arguments, const CampaignOptions
           "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + seed};
 }
 
+/// What rows hang on: neither threads nor names of outputs. Episodes are not in it either, so that a campaign may be made longer.
+io::CampaignSettings settings_of(const CampaignArguments& arguments, const CampaignOptions& options, const Problem& problem,
+                                 const std::vector<io::InputFiles::File>& inputs) {
+  io::CampaignSettings settings;
+  settings.values = {{"version", SWIVEL_VERSION},
+                     {"planner", arguments.search.planner},
+                     {"ds", shortest(problem.resolution.ds)},
+                     {"dphi", shortest(problem.resolution.dphi)},
+                     {"edges", problem.limits.edges == EdgeMode::kNodes ? "nodes" : "continuous"},
+                     {"seed", std::to_string(options.seed)},
+                     {"shard", std::to_string(options.shard.index) + "/" + std::to_string(options.shard.count)}};
+  // The problem file is the first, and may be called otherwise, or come through a pipe. The others by their place beside it.
+  const fs::path folder = fs::absolute(arguments.problem).parent_path();
+  for (const io::InputFiles::File& file : inputs)
+    settings.files.emplace_back(settings.files.empty() ? "the problem file" : fs::relative(file.name, folder).string(), file.hash);
+  return settings;
+}
+
 int run(const CampaignArguments& arguments) {
   CampaignOptions options;
   options.plan = arguments.search.plan_options();
@@ -129,20 +142,31 @@ int run(const CampaignArguments& arguments) {
   options.seed = arguments.seed;
   if (!arguments.shard.empty()) options.shard = shard_from_string(arguments.shard);
   if (!arguments.report.empty()) require_pages();
-  Problem problem = io::load_problem(arguments.problem);
+  std::vector<io::InputFiles::File> inputs;
+  Problem problem = [&] {
+    const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore : io::InputFiles::Contents::kHash);
+    Problem loaded = io::load_problem(arguments.problem);
+    inputs = noted.files();
+    return loaded;
+  }();
   arguments.search.apply(problem);
   const PreparedRobot robot(problem);
 
+  io::OutputFiles outputs(inputs);
+  outputs.add("--out", arguments.out);
+  if (!arguments.out.empty()) outputs.add("the rows of --out", arguments.out + ".part");
+  outputs.add("--report", arguments.report);
+  outputs.add("--json", arguments.json);
   std::optional<Trajectories> trajectories;
   if (!arguments.trajectories.empty()) {
-    trajectories.emplace(arguments.trajectories);
+    trajectories.emplace(arguments.trajectories, inputs);
     options.planned = [&](std::uint64_t episode, const PlanResult& result) { trajectories->write(episode, result); };
   }
   const std::uint64_t size = options.shard.size(options.episodes);
   std::vector<EpisodeRow> rows;
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
-    file.emplace(arguments.out, options.shard, options.episodes);
+    file.emplace(arguments.out, settings_of(arguments, options, problem, inputs), options.shard, options.episodes);
     if (trajectories) {  // the campaign that was killed may have been run without
       const auto& found = file->rows();
       const auto lacking =
@@ -152,7 +176,6 @@ int run(const CampaignArguments& arguments) {
     rows = file->rows();
   }
   options.skip = rows.size();
-  require_same_campaign(robot, problem, options, rows, arguments.out);
 
   catch_interrupts();
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
@@ -170,14 +193,26 @@ int run(const CampaignArguments& arguments) {
   progress.clear();
 
   const CampaignSummary summary = summarize(rows, size);
-  const bool complete = summary.answered() == size;
+  const bool complete = rows.size() == size;
+  if (file && complete) outputs.write("--out", file->csv());
+  if (outputs.wants("--report")) outputs.write("--report", to_overview(rows, facts_of(arguments, options)));
+  outputs.write("--json", io::to_json(summary));
+  outputs.stage();
+  if (!outputs.takes_standard_output()) print_summary(summary);
+  flush_standard_output();
+  outputs.commit();
   if (file && complete) file->finish();
-  if (!arguments.report.empty()) io::write_file(arguments.report, to_overview(rows, facts_of(arguments, options)));
-  if (arguments.json == "-")
-    std::cout << io::to_json(summary);
-  else if (!arguments.json.empty())
-    io::write_file(arguments.json, io::to_json(summary));
-  if (arguments.json != "-") print_summary(summary);
+  if (trajectories && trajectories->removed() > 0)
+    std::fprintf(stderr, "swivel: removed %llu earlier trajectories in %s: there is no path now\n",
+                 static_cast<unsigned long long>(trajectories->removed()), arguments.trajectories.c_str());
+  if (summary.errors > 0) {
+    const auto first =
+        std::find_if(rows.begin(), rows.end(), [](const EpisodeRow& row) { return row.status == PlanStatus::kError; });
+    std::fprintf(stderr, "swivel: internal error in %llu episodes, the first in episode %llu: %s\n",
+                 static_cast<unsigned long long>(summary.errors), static_cast<unsigned long long>(first->episode),
+                 first->reason.c_str());
+    return kInternalError;
+  }
   return complete ? kOk : kStopped;
 }
 

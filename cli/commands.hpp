@@ -2,15 +2,18 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "swivel/core/input_error.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel::cli {
 
 /// Exit codes, design.md 4.
-enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3 };
+enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 5 };
 
 /// Each adds a subcommand; its callback sets `exit_code`.
 void add_plan(CLI::App& app, int& exit_code);
@@ -24,5 +27,21 @@ struct EpisodeChoice {
   void add_to(CLI::App& command);
   [[nodiscard]] Problem apply(const Problem& problem) const;
 };
+
+/// Throws InputError where the text printed so far has not reached standard output: it is full or closed.
+void flush_standard_output();
+
+/// Says on standard error that earlier files are gone, and why.
+void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);
+
+/// Calls `work`; what the library finds wrong there is said in the name of the option.
+template <class Work>
+auto in_the_name_of(const std::string& option, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(option + ": " + error.what());
+  }
+}
 
 }  // namespace swivel::cli

@@ -1,13 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <new>
 
 #include "commands.hpp"
 #include "swivel/core/input_error.hpp"
 
-int main(int argc, char** argv) {
-  using namespace swivel::cli;
+namespace swivel::cli {
+
+namespace {
+
+/// A closed standard stream would lend its number to the next file that is opened, and what is printed would end up in it.
+/// Opened the wrong way round, so that printing fails as it should.
+void occupy_standard_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0) static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+}
+
+int run(int argc, char** argv) {
   CLI::App app("Swivel plans joint trajectories of 7-DOF arms along tool paths.", "swivel");
   app.set_version_flag("--version", SWIVEL_VERSION);
   app.require_subcommand(1);
@@ -19,9 +35,36 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    std::fprintf(stderr, "swivel: %s\n", error.what());
-    return kBadInput;
+    if (error.get_exit_code() != 0) throw InputError(error.what());
+    exit_code = app.exit(error);  // --help, --version
+  }
+  flush_standard_output();
+  return exit_code;
+}
+
+}  // namespace
+
+void flush_standard_output() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  const std::string reason = errno != 0 ? std::strerror(errno) : "cannot be written";
+  throw InputError("standard output: " + reason + ": allowed is one that takes what is printed");
+}
+
+void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason) {
+  for (const auto& file : files) std::fprintf(stderr, "swivel: removed the earlier %s: %s\n", file.c_str(), reason.c_str());
+}
+
+}  // namespace swivel::cli
+
+int main(int argc, char** argv) {
+  using namespace swivel::cli;
+  occupy_standard_streams();
+  // A reader that has left, or a file that may not grow, is an error of the write and not the end of the program.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  try {
+    return run(argc, argv);
   } catch (const swivel::InputError& error) {
     std::fprintf(stderr, "swivel: %s\n", error.what());
     return kBadInput;
@@ -30,7 +73,6 @@ int main(int argc, char** argv) {
     return kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "swivel: internal error: %s\n", error.what());
-    return kBadInput;
+    return kInternalError;
   }
-  return exit_code;
 }

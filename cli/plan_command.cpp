@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <iostream>
+#include <exception>
+#include <functional>
 #include <memory>
+#include <new>
 #include <optional>
+#include <utility>
 
 #include "commands.hpp"
 #include "diagnosis_text.hpp"
@@ -74,14 +76,27 @@ bool coloured() {
   return isatty(STDOUT_FILENO) && (no_colour == nullptr || *no_colour == '\0');
 }
 
-int run(const PlanArguments& arguments) {
+/// Lays the files beside their targets, prints, and puts them in place: where printing fails, nothing is written.
+void deliver(io::OutputFiles& outputs, const std::string& reason, const std::function<void()>& print) {
+  outputs.stage();
+  print();
+  flush_standard_output();
+  report_removed(outputs.commit(), reason);
+}
+
+/// `outputs` is set as soon as it is known that they may be written.
+int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>& outputs) {
   const auto start = std::chrono::steady_clock::now();
   PlanOptions options = arguments.search.plan_options();
   std::optional<Timeline> timeline;
   if (!arguments.trace.empty()) timeline.emplace();
+  std::vector<io::InputFiles::File> inputs;
   Problem problem = [&] {
     const Span span("load");
-    return arguments.episode.apply(io::load_problem(arguments.problem));
+    const io::InputFiles noted;
+    Problem loaded = io::load_problem(arguments.problem);
+    inputs = noted.files();
+    return arguments.episode.apply(loaded);
   }();
   arguments.search.apply(problem);
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
@@ -95,6 +110,12 @@ int run(const PlanArguments& arguments) {
   if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
   if (arguments.map && arguments.json == "-")
     throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
+  outputs.emplace(std::move(inputs));
+  outputs->add("--out", arguments.out);
+  outputs->add("--report", arguments.report);
+  outputs->add("--map-svg", arguments.map_svg);
+  outputs->add("--trace", arguments.trace);
+  outputs->add("--json", arguments.json);
   SearchRecord record;
   if (draws) options.record = &record;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
@@ -116,26 +137,23 @@ int run(const PlanArguments& arguments) {
   }
   progress.clear();
 
-  if (!arguments.out.empty()) {
-    if (result.status == PlanStatus::kSolved)
-      io::write_trajectory(arguments.out, result);
-    else
-      std::filesystem::remove(arguments.out);
+  if (result.status == PlanStatus::kSolved)
+    outputs->write("--out", io::to_csv(result));
+  else
+    outputs->remove("--out");
+  if (map) {
+    outputs->write("--report", std::move(page));
+    if (outputs->wants("--map-svg")) outputs->write("--map-svg", to_svg(*map));
+  } else {
+    outputs->remove("--report");
+    outputs->remove("--map-svg");
   }
-  if (!arguments.report.empty()) {
-    if (map)
-      io::write_file(arguments.report, page);
-    else
-      std::filesystem::remove(arguments.report);
-  }
-  if (map && !arguments.map_svg.empty()) io::write_file(arguments.map_svg, to_svg(*map));
-  if (timeline) io::write_file(arguments.trace, io::to_trace_json(*timeline) + "\n");
-  if (arguments.json == "-")
-    std::cout << io::to_json(result) << '\n';
-  else if (!arguments.json.empty())
-    io::write_file(arguments.json, io::to_json(result) + "\n");
-  if (!arguments.quiet && arguments.json != "-") print_summary(result);
-  if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
+  if (timeline) outputs->write("--trace", io::to_trace_json(*timeline) + "\n");
+  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result) + "\n");
+  deliver(*outputs, result.status == PlanStatus::kInfeasible ? "there is no path now" : "the search was stopped", [&] {
+    if (!arguments.quiet && !outputs->takes_standard_output()) print_summary(result);
+    if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
+  });
   switch (result.status) {
     case PlanStatus::kSolved:
       return kOk;
@@ -143,6 +161,23 @@ int run(const PlanArguments& arguments) {
       return kNo;
     default:
       return kStopped;
+  }
+}
+
+int run(const PlanArguments& arguments) {
+  std::optional<io::OutputFiles> outputs;
+  try {
+    return plan_problem(arguments, outputs);
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    if (!outputs) throw;
+    for (const char* const option : {"--out", "--report", "--map-svg"}) outputs->remove(option);
+    outputs->write("--json", io::error_json(error.what()));
+    deliver(*outputs, "there is no answer now", [] {});
+    throw;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 
+#include "commands.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/report/page.hpp"
 
@@ -27,7 +28,7 @@ void LatticeOptions::add_to(CLI::App& command) {
 
 PlanOptions SearchOptions::plan_options() const {
   PlanOptions options;
-  options.planner = planner_from_string(planner);
+  options.planner = in_the_name_of("--planner", [&] { return planner_from_string(planner); });
   constexpr int kMostThreads = 1024;
   if (threads < 0 || threads > kMostThreads)
     throw InputError("--threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
@@ -49,12 +50,15 @@ void LatticeOptions::apply(Problem& problem) const {
   }
 }
 
+std::string shortest(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
 std::string SearchOptions::words() const {
   std::string words = " --planner " + planner;
   const auto add = [&](const char* option, const std::optional<double>& value) {
-    if (!value) return;
-    std::array<char, 32> digits{};  // the shortest that read back as the same number
-    words += option + std::string(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), *value).ptr);
+    if (value) words += option + shortest(*value);
   };
   add(" --ds ", ds);
   add(" --dphi ", dphi);

@@ -30,6 +30,9 @@ struct SearchOptions : LatticeOptions {
   [[nodiscard]] std::string words() const;
 };
 
+/// The shortest digits that read back as the same number.
+[[nodiscard]] std::string shortest(double value);
+
 /// Throws InputError where this program was built without the pages of --report.
 void require_pages();
 

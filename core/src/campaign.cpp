@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace swivel {
 
@@ -37,12 +38,16 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result)
   }
 }
 
+EpisodeRow::EpisodeRow(std::uint64_t number, std::string error_message)
+    : episode(number), status(PlanStatus::kError), reason(std::move(error_message)) {}
+
 CampaignSummary summarize(const std::vector<EpisodeRow>& rows, std::uint64_t episodes) {
   CampaignSummary summary;
   summary.episodes = episodes;
   for (const EpisodeRow& row : rows) {
     summary.solved += row.status == PlanStatus::kSolved;
     summary.infeasible += row.status == PlanStatus::kInfeasible;
+    summary.errors += row.status == PlanStatus::kError;
   }
   summary.plan_ms = spread(rows, &EpisodeRow::plan_ms);
   summary.nodes_checked = spread(rows, &EpisodeRow::nodes_checked);

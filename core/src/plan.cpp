@@ -13,6 +13,8 @@ const char* to_string(PlanStatus status) {
       return "timeout";
     case PlanStatus::kCancelled:
       return "cancelled";
+    case PlanStatus::kError:
+      return "error";
   }
   return "?";
 }

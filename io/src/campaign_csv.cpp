@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 
@@ -20,6 +24,8 @@ namespace swivel::io {
 namespace fs = std::filesystem;
 
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHeader =
     "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n";
@@ -89,8 +95,11 @@ std::optional<EpisodeRow> row_of(std::string_view line) {
   const std::vector<std::string> fields = fields_of(line);
   if (fields.size() != kColumns) return std::nullopt;
   EpisodeRow row;
-  if (fields[1] != "solved" && fields[1] != "infeasible") return std::nullopt;
-  row.status = fields[1] == "solved" ? PlanStatus::kSolved : PlanStatus::kInfeasible;
+  const auto statuses = {PlanStatus::kSolved, PlanStatus::kInfeasible, PlanStatus::kError};
+  const auto* const status =
+      std::find_if(statuses.begin(), statuses.end(), [&](PlanStatus s) { return fields[1] == to_string(s); });
+  if (status == statuses.end()) return std::nullopt;
+  row.status = *status;
   const bool read = parse(fields[0], row.episode) && parse(fields[2], row.cost) && parse(fields[3], row.plan_ms) &&
                     parse(fields[4], row.nodes_checked) && parse(fields[5], row.fcl_calls) &&
                     parse(fields[6], row.tool_path_error_mm_mean) && parse(fields[7], row.tool_path_error_mm_max) &&
@@ -99,13 +108,45 @@ std::optional<EpisodeRow> row_of(std::string_view line) {
   return read ? std::optional(row) : std::nullopt;
 }
 
+constexpr std::string_view kSettingsMark = "# swivel campaign ";
+
+/// One line, for people and for comparison.
+std::string line_of(const CampaignSettings& settings) {
+  Json json = {{"settings", Json::object()}, {"files", Json::object()}};
+  for (const auto& [name, value] : settings.values) json["settings"][name] = value;
+  for (const auto& [name, hash] : settings.files) json["files"][name] = hash;
+  return std::string(kSettingsMark) + json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+/// What a file that begins with the first line has otherwise than one that begins with the second; empty if nothing.
+std::string difference(std::string_view found, std::string_view wanted) {
+  if (found == wanted) return {};
+  found.remove_prefix(kSettingsMark.size());
+  wanted.remove_prefix(kSettingsMark.size());
+  const Json was = Json::parse(found, nullptr, false), is = Json::parse(wanted);
+  if (!was.is_object() || !was["settings"].is_object() || !was["files"].is_object()) return "its settings cannot be read";
+  const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); };
+  for (const auto& [name, value] : is["settings"].items()) {
+    const auto old = was["settings"].find(name);
+    if (old == was["settings"].end()) return "begun without " + name;
+    if (*old != value) return "begun with " + name + " " + text(*old) + ", this is " + text(value);
+  }
+  for (const auto& [name, hash] : is["files"].items()) {
+    const auto old = was["files"].find(name);
+    if (old == was["files"].end()) return "begun without " + name;
+    if (*old != hash) return name + " was another when it was begun";
+  }
+  return "begun with more settings or files";
+}
+
 }  // namespace
 
-CampaignFile::CampaignFile(fs::path csv, const Shard& shard, std::uint64_t episodes) : csv_(std::move(csv)), part_(csv_) {
+CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings, const Shard& shard, std::uint64_t episodes)
+    : part_(csv) {
   part_ += ".part";
-  for (const fs::path& file : {csv_, part_}) {
+  for (const fs::path& file : {csv, part_}) {
     std::error_code ignored;
-    // Renaming over a device would replace it.
+    // The rows are to be taken up again, which a device cannot do.
     if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored))
       bad_input(file.string(), "is a folder or a device", "the name of a file");
   }
@@ -115,20 +156,30 @@ CampaignFile::CampaignFile(fs::path csv, const Shard& shard, std::uint64_t episo
     close(descriptor_);
     bad_input(where, what, allowed);
   };
-  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
+  struct stat opened {
+  }, named{};
+  if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 || fstat(descriptor_, &opened) != 0 || stat(part_.c_str(), &named) != 0 ||
+      opened.st_ino != named.st_ino)  // or has removed it in between
     refuse(part_.string(), "another campaign is writing it", "one campaign at a time for one results file");
 
   const std::string text = read_file(part_, "CSV file", kMostTableBytes);
   const std::string mine = "the first rows of this campaign and shard; remove the file to start anew";
+  const std::string mine_settings = line_of(settings), preamble = mine_settings + std::string(kHeader);
   const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
-  if (!std::string_view(text).starts_with(kHeader) && !kHeader.starts_with(text))
-    refuse(part_.string() + ":1", "another header", mine);
-  std::size_t begin = complete > 0 ? kHeader.size() : 0;
+  const std::string first = text.substr(0, std::min(complete, text.find('\n') + 1));
+  if (!std::string_view(text).substr(0, kSettingsMark.size()).starts_with(kSettingsMark.substr(0, text.size())))
+    refuse(part_.string() + ":1", "does not say which campaign it is of", mine);
+  if (const std::string other = first.empty() ? "" : difference(first, mine_settings); !other.empty())
+    refuse(part_.string() + ":1", other, "a file of the same problem and settings; remove it to start anew");
+  if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(kHeader))
+    refuse(part_.string() + ":2", "another header", mine);
+
+  std::size_t begin = complete > first.size() ? preamble.size() : 0;
   ends_.push_back(begin);
-  while (begin < complete) {
+  while (begin > 0 && begin < complete) {
     const std::size_t end = text.find('\n', begin) + 1;
     const std::size_t k = rows_.size();
-    const std::string where = at_line(part_.string(), static_cast<int>(k) + 2);
+    const std::string where = at_line(part_.string(), static_cast<int>(k) + 3);
     const auto row = row_of(std::string_view(text).substr(begin, end - 1 - begin));
     if (!row) refuse(where, "not a row of results", mine);
     if (k >= shard.size(episodes)) refuse(where, "more rows than the shard has episodes", mine);
@@ -139,9 +190,9 @@ CampaignFile::CampaignFile(fs::path csv, const Shard& shard, std::uint64_t episo
     begin = end;
   }
   keep(rows_.size());  // cuts what is torn
-  if (complete == 0) {
-    write(std::string(kHeader));
-    ends_.front() = kHeader.size();
+  if (begin == 0) {
+    write(preamble);
+    ends_.front() = preamble.size();
   }
 }
 
@@ -165,22 +216,22 @@ void CampaignFile::append(const EpisodeRow& row) {
   ends_.push_back(ends_.back() + line.size());
 }
 
+std::string CampaignFile::csv() const {
+  std::string text(kHeader);
+  for (const EpisodeRow& row : rows_) text += line_of(row);
+  return text;
+}
+
 void CampaignFile::finish() {
   std::error_code error;
-  // A link should keep pointing at its file.
-  const fs::path target = fs::is_symlink(csv_, error) ? fs::canonical(csv_, error) : csv_;
-  fs::rename(part_, target, error);
+  fs::remove(part_, error);
   if (error) fail(error.value());
   close(descriptor_);
   descriptor_ = -1;
 }
 
 void CampaignFile::write(const std::string& text) {
-  for (std::size_t done = 0; done < text.size();) {
-    const ssize_t count = ::write(descriptor_, text.data() + done, text.size() - done);
-    if (count < 0 && errno != EINTR) fail(errno);
-    if (count > 0) done += static_cast<std::size_t>(count);
-  }
+  if (const int error = write_all(descriptor_, text)) fail(error);
 }
 
 void CampaignFile::fail(int error) const {

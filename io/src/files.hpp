@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <string_view>
+
+#include "swivel/io/io.hpp"
 
 namespace swivel::io {
 
@@ -17,5 +20,11 @@ inline constexpr std::size_t kMostYamlBytes = std::size_t{4} << 20;
 
 /// 17 significant digits: enough for every double, in any locale.
 [[nodiscard]] std::string format_double(double value);
+
+/// Throws InputError where neither the file nor its folder can be found.
+[[nodiscard]] FileIdentity identity_of(const std::filesystem::path& file);
+
+/// All of the text. Returns the error number of the write that failed, else 0.
+[[nodiscard]] int write_all(int descriptor, std::string_view text);
 
 }  // namespace swivel::io

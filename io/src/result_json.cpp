@@ -92,10 +92,15 @@ std::string to_json(const CampaignSummary& summary) {
                      {"answered", summary.answered()},
                      {"solved", summary.solved},
                      {"infeasible", summary.infeasible},
+                     {"errors", summary.errors},
                      {"plan_ms", spread_json(summary.plan_ms)},
                      {"nodes_checked", spread_json(summary.nodes_checked)},
                      {"fcl_calls", spread_json(summary.fcl_calls)}};
   return json.dump(2) + '\n';
+}
+
+std::string error_json(const std::string& message) {
+  return Json{{"status", "error"}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string to_json(const PlanResult& result) {

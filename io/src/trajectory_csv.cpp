@@ -16,7 +16,7 @@ std::vector<std::string> header_of(const std::array<std::string, kDof>& joint_na
 
 }  // namespace
 
-void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {
+std::string to_csv(const PlanResult& result) {
   std::string text;
   for (const std::string& name : header_of(result.joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
@@ -25,7 +25,11 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
     for (const double angle : row.q) text += ',' + format_double(angle);
     text += '\n';
   }
-  write_file(csv, text);
+  return text;
+}
+
+void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {
+  write_file(csv, to_csv(result));
 }
 
 std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {

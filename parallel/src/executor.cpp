@@ -2,6 +2,7 @@
 #include "swivel/parallel/executor.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -17,13 +18,18 @@ namespace swivel {
 struct Executor::Impl {
   int threads = 1;
   Backend backend = Backend::kTbb;
+  /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where more are asked for.
+  std::unique_ptr<tbb::global_control> allowed;
   std::unique_ptr<tbb::task_arena> arena;
 };
 
 Executor::Executor(int threads, Backend backend) : impl_(std::make_unique<Impl>()) {
   impl_->threads = threads >= 1 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   impl_->backend = backend;
-  if (backend == Backend::kTbb && impl_->threads > 1) impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
+  if (backend != Backend::kTbb || impl_->threads == 1) return;
+  impl_->allowed =
+      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(impl_->threads));
+  impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
 }
 Executor::~Executor() = default;
 Executor::Executor(Executor&&) noexcept = default;

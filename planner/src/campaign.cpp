@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <new>
 #include <string>
 
 #include "swivel/core/input_error.hpp"
@@ -46,10 +47,10 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   robot.require_prepared_for(problem);
   if (problem.vary.empty() && options.episodes > 1)
     throw InputError(problem.source +
-                     ": vary: missing, so that all episodes would be the same: allowed are a key vary, or --episodes 1");
+                     ": vary: missing, so that all episodes would be the same: allowed are a key vary, or one episode");
   const std::uint64_t size = options.shard.size(options.episodes);
   if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
-    throw InputError("--episodes: too many for one shard: allowed are 2147483647");
+    throw InputError("episodes: too many for one shard: allowed are 2147483647");
   if (options.skip >= size) return;
 
   PlanOptions single = options.plan;
@@ -69,7 +70,17 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
     const std::uint64_t k = next++;
     const std::uint64_t episode = options.shard.episode(k);
     try {
-      const PlanResult result = plan(robot, episode_problem(problem, options.seed, episode), single);
+      PlanResult result;
+      try {
+        result = plan(robot, episode_problem(problem, options.seed, episode), single);
+      } catch (const InputError&) {
+        throw;
+      } catch (const std::bad_alloc&) {
+        throw;
+      } catch (const std::exception& error) {  // must not take the other episodes with it
+        in_order.add(k, EpisodeRow(episode, error.what()));
+        return;
+      }
       const bool answered = result.status == PlanStatus::kSolved
                                 ? result.evidence.tool_path_error
                                 : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;

@@ -67,7 +67,7 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   if (!fits_in_memory(needed))
-    throw InputError(source + ": --planner eager: its graph would need about " +
+    throw InputError(source + ": planner eager: its graph would need about " +
                      std::to_string(static_cast<long long>(needed / 1e9)) +
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
@@ -299,7 +299,7 @@ const char* to_string(PlannerKind kind) {
 PlannerKind planner_from_string(const std::string& name) {
   for (const auto& [value, known] : kNames)
     if (name == known) return value;
-  throw InputError("--planner: unknown planner '" + name + "': allowed are eager, eager_dp, lazy, parallel");
+  throw InputError("unknown planner '" + name + "': allowed are eager, eager_dp, lazy, parallel");
 }
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {

@@ -30,11 +30,13 @@ struct EpisodeRow {
   std::optional<double> tool_path_error_mm_mean, tool_path_error_mm_max;
   std::optional<double>
       failed_s;        ///< m; where every path has ended; unset when solved, and where not even the first layer has a node
-  std::string reason;  ///< what ends them there; empty when solved
+  std::string reason;  ///< what ends them there, or the message of an internal error; empty when solved
 
   EpisodeRow() = default;
   /// Evidence::tool_path_error must have been asked for.
   EpisodeRow(std::uint64_t episode, const PlanResult& result);
+  /// An episode that ended with an internal error.
+  EpisodeRow(std::uint64_t episode, std::string error_message);
 };
 
 /// Median and the range that holds nine tenths; zeros without values.
@@ -44,7 +46,7 @@ struct Spread {
 
 struct CampaignSummary {
   std::uint64_t episodes = 0;  ///< asked for; less were answered if the campaign was interrupted
-  std::uint64_t solved = 0, infeasible = 0;
+  std::uint64_t solved = 0, infeasible = 0, errors = 0;
   Spread plan_ms, nodes_checked, fcl_calls;
   [[nodiscard]] std::uint64_t answered() const { return solved + infeasible; }
 };

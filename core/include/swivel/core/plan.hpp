@@ -11,7 +11,8 @@
 
 namespace swivel {
 
-enum class PlanStatus { kSolved, kInfeasible, kTimeout, kCancelled };
+/// kError is of episodes of a campaign alone: an internal error, which plan() throws.
+enum class PlanStatus { kSolved, kInfeasible, kTimeout, kCancelled, kError };
 [[nodiscard]] const char* to_string(PlanStatus status);
 
 /// One layer of a solution. design.md 4, TRAJ.csv.

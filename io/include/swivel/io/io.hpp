@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Files in and out. Every loader throws InputError: one line with file, key or row, what is wrong and what is allowed.
 #pragma once
+#include <compare>
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "swivel/core/campaign.hpp"
@@ -34,7 +39,9 @@ using MeshCache = std::map<std::string, MeshPtr>;
 /// PROBLEM.yaml, design.md 4. Unknown keys are errors with the nearest known key named.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
-/// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits; written beside and renamed.
+/// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits.
+[[nodiscard]] std::string to_csv(const PlanResult& result);
+/// The same as a file, written beside and renamed.
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result);
 /// Joint names of the header must be those given.
 [[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv,
@@ -42,18 +49,107 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 
 /// RESULT.json as text, design.md 4. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
+/// RESULT.json after an internal error: its status is "error".
+[[nodiscard]] std::string error_json(const std::string& message);
 /// The timeline in Chrome's trace event format, which Perfetto and speedscope open.
 [[nodiscard]] std::string to_trace_json(const Timeline& timeline);
 /// Writes text beside the target and renames it over; a device or pipe is written to.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// RESULTS.csv of a campaign, design.md 4. Rows are appended to RESULTS.csv.part as they come, so that a killed campaign goes on
-/// from there; finish() renames it. Settings are not in the file: whoever changes seed or resolution removes the .part file first.
+/// Which file a name means, through links and whatever folder it is named from: by device and inode, and for a file that is not
+/// there yet by its folder's and its own name.
+struct FileIdentity {
+  std::uint64_t device = 0, inode = 0;
+  std::string name;  ///< empty for a file that is there
+  friend auto operator<=>(const FileIdentity&, const FileIdentity&) = default;
+};
+
+/// Notes every file that the loaders above read on this thread while it lives: what no output may replace, and what a campaign's
+/// rows hang on. One at a time on a thread.
+class InputFiles {
+ public:
+  /// Contents: whether to take them in as well, which costs a pass over every file.
+  enum class Contents { kIgnore, kHash };
+  explicit InputFiles(Contents contents = Contents::kIgnore);
+  ~InputFiles();
+  InputFiles(const InputFiles&) = delete;
+  InputFiles& operator=(const InputFiles&) = delete;
+
+  struct File {
+    std::filesystem::path name;            ///< as it was opened
+    std::optional<FileIdentity> identity;  ///< unset for pipes and devices
+    std::uint64_t hash = 0;                ///< FNV-1a, 64 bits
+  };
+  /// In the order they were read; a file that was read twice is here once.
+  [[nodiscard]] const std::vector<File>& files() const { return files_; }
+
+  /// For loaders: the file was read, and this was in it.
+  static void note(const std::filesystem::path& file, std::string_view text);
+  /// The same for a file that another library reads.
+  static void note(const std::filesystem::path& file);
+
+ private:
+  std::vector<File> files_;
+  Contents contents_;
+};
+
+/// The files that a command writes: all of them, or none. Names are judged before the work begins; afterwards stage() lays the
+/// texts beside their targets, where a full disk shows, and commit() renames them over. A link is followed and what it points to
+/// is replaced. Pipes and character devices are written to, never replaced nor removed; the name - is standard output.
+class OutputFiles {
+ public:
+  /// `inputs`: what no output may replace.
+  explicit OutputFiles(std::vector<InputFiles::File> inputs = {}) : inputs_(std::move(inputs)) {}
+  /// Removes what was staged and not committed.
+  ~OutputFiles();
+  OutputFiles(const OutputFiles&) = delete;
+  OutputFiles& operator=(const OutputFiles&) = delete;
+
+  /// `option` names the output here and in messages; an empty file name is no output. Throws InputError where the file cannot be
+  /// written, is one of the inputs, or is an output already.
+  void add(const std::string& option, const std::filesystem::path& file);
+  [[nodiscard]] bool wants(const std::string& option) const;
+  /// Whether one of them goes to standard output, by whatever name, so that nothing else should be printed there.
+  [[nodiscard]] bool takes_standard_output() const;
+  /// What the file is to hold; nothing where the option has no file. A file without a text is left as it is.
+  void write(const std::string& option, std::string text);
+  /// An earlier file of that name is to go: it would be taken for the answer.
+  void remove(const std::string& option);
+
+  void stage();
+  /// Returns the files that were removed. Throws InputError, like stage().
+  std::vector<std::filesystem::path> commit();
+
+ private:
+  struct Output {
+    std::string option;
+    std::filesystem::path name, target, staged;
+    FileIdentity identity;
+    bool stream = false;  ///< a pipe or a device
+    int descriptor = -1;  ///< one of the process's own, for a stream that is its standard output or error
+    std::optional<std::string> text;
+    bool remove = false;
+  };
+  [[nodiscard]] Output* find(const std::string& option);
+  static void unstage(Output& output);
+
+  std::vector<InputFiles::File> inputs_;
+  std::vector<Output> outputs_;
+};
+
+/// What the rows of a campaign hang on. Rows of other settings must not be mixed with them.
+struct CampaignSettings {
+  std::vector<std::pair<std::string, std::string>> values;   ///< as "seed", "1"
+  std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
+};
+
+/// The rows of a campaign's RESULTS.csv, design.md 4, while it runs: they are appended to RESULTS.csv.part as they come, so that a
+/// killed campaign goes on from there. The first line of that file holds the settings.
 class CampaignFile {
  public:
   /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
-  /// Throws InputError where its rows are not the first ones of the shard.
-  CampaignFile(std::filesystem::path csv, const Shard& shard, std::uint64_t episodes);
+  /// Throws InputError, which says what differs, where it is of other settings, or its rows are not the first ones of the shard.
+  CampaignFile(const std::filesystem::path& csv, const CampaignSettings& settings, const Shard& shard, std::uint64_t episodes);
   /// Leaves the .part file, but not one without a row.
   ~CampaignFile();
   CampaignFile(const CampaignFile&) = delete;
@@ -65,15 +161,18 @@ class CampaignFile {
   void keep(std::size_t count);
   /// The row is with the operating system when this returns.
   void append(const EpisodeRow& row);
+  /// The text of RESULTS.csv.
+  [[nodiscard]] std::string csv() const;
+  /// RESULTS.csv is written: removes the .part file.
   void finish();
 
  private:
   void write(const std::string& text);
   [[noreturn]] void fail(int error) const;
 
-  std::filesystem::path csv_, part_;
+  std::filesystem::path part_;
   std::vector<EpisodeRow> rows_;
-  std::vector<std::size_t> ends_;  ///< where each row ends in the file, after the header's end
+  std::vector<std::size_t> ends_;  ///< where each row ends in the file, after the end of what stands before them
   int descriptor_ = -1;
 };
 

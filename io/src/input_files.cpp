@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <stdexcept>
+
+#include "files.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+thread_local InputFiles* listening = nullptr;
+
+/// Fowler, Noll, Vo. No defence against forged contents, and none is needed.
+std::uint64_t fnv1a(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  return hash;
+}
+
+}  // namespace
+
+InputFiles::InputFiles(Contents contents) : contents_(contents) {
+  if (listening != nullptr) throw std::logic_error("the files that this thread reads are being noted already");
+  listening = this;
+}
+
+InputFiles::~InputFiles() {
+  listening = nullptr;
+}
+
+void InputFiles::note(const std::filesystem::path& file, std::string_view text) {
+  if (listening == nullptr) return;
+  auto& files = listening->files_;
+  if (std::any_of(files.begin(), files.end(), [&](const File& known) { return known.name == file; })) return;
+  std::error_code error;
+  std::optional<FileIdentity> identity;
+  if (std::filesystem::is_regular_file(file, error)) identity = identity_of(file);
+  files.push_back({file, identity, listening->contents_ == Contents::kHash ? fnv1a(text) : 0});
+}
+
+void InputFiles::note(const std::filesystem::path& file) {
+  if (listening == nullptr) return;
+  if (listening->contents_ == Contents::kHash)
+    static_cast<void>(read_file(file, "file"));  // notes it
+  else
+    note(file, {});
+}
+
+}  // namespace swivel::io
