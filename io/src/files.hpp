@@ -21,8 +21,8 @@ inline constexpr std::size_t kMostYamlBytes = std::size_t{4} << 20;
 /// 17 significant digits: enough for every double, in any locale.
 [[nodiscard]] std::string format_double(double value);
 
-/// Throws InputError where neither the file nor its folder can be found.
-[[nodiscard]] FileIdentity identity_of(const std::filesystem::path& file);
+/// Throws InputError, prefixed by `where`, if neither the file nor its folder can be found.
+[[nodiscard]] FileIdentity identity_of(const std::filesystem::path& file, const std::string& where);
 
 /// All of the text. Returns the error number of the write that failed, else 0.
 [[nodiscard]] int write_all(int descriptor, std::string_view text);

@@ -35,7 +35,7 @@ void InputFiles::note(const std::filesystem::path& file, std::string_view text) 
   if (std::any_of(files.begin(), files.end(), [&](const File& known) { return known.name == file; })) return;
   std::error_code error;
   std::optional<FileIdentity> identity;
-  if (std::filesystem::is_regular_file(file, error)) identity = identity_of(file);
+  if (std::filesystem::is_regular_file(file, error)) identity = identity_of(file, file.string());
   files.push_back({file, identity, listening->contents_ == Contents::kHash ? fnv1a(text) : 0});
 }
 

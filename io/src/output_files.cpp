@@ -37,13 +37,14 @@ fs::path folder_of(const fs::path& file) {
 }
 
 /// A new file beside the target, under a name that no other process and no other thread uses; -1 and errno where there can be none.
-int open_beside(const fs::path& target, mode_t mode, fs::path& name) {
+int open_beside(const fs::path& target, fs::path& name) {
   static std::atomic<unsigned> count{0};
   int descriptor = -1;
   do {  // a killed process of the same number may have left one
     name = target.parent_path() / (".swivel-" + std::to_string(getpid()) + "-" + std::to_string(count++) + ".tmp");
-    descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    descriptor = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor < 0 && errno == EEXIST);
+  if (descriptor < 0) name.clear();
   return descriptor;
 }
 
@@ -69,11 +70,11 @@ int write_all(int descriptor, std::string_view text) {
   return 0;
 }
 
-FileIdentity identity_of(const fs::path& file) {
+FileIdentity identity_of(const fs::path& file, const std::string& where) {
   struct stat status {};
   if (stat(file.c_str(), &status) == 0) return identity_of(status);
   const fs::path target = follow(file);
-  if (stat(folder_of(target).c_str(), &status) != 0) bad_input(file.string(), std::strerror(errno), kWritable);
+  if (stat(folder_of(target).c_str(), &status) != 0) bad_input(where, std::strerror(errno), kWritable);
   FileIdentity identity = identity_of(status);
   identity.name = target.filename().string();
   return identity;
@@ -109,7 +110,7 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
               "a file, a pipe or a character device");
   if (!exists && fs::is_symlink(file) && !fs::is_directory(folder_of(output.target)))
     bad_input(where, "is a link to " + output.target.string() + ", whose folder is not there", kWritable);
-  output.identity = exists ? identity_of(status) : identity_of(output.target);
+  output.identity = exists ? identity_of(status) : identity_of(output.target, where);
 
   const auto same = [&](const auto& other) { return other.identity == output.identity; };
   if (std::any_of(inputs_.begin(), inputs_.end(), same))
@@ -122,7 +123,7 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
     if (output.descriptor < 0 && access(file.c_str(), W_OK) != 0) bad_input(where, std::strerror(errno), kWritable);
   } else {  // tried, and not left there: whatever ends the work, nothing stays behind
     fs::path beside;
-    const int descriptor = open_beside(output.target, 0666, beside);
+    const int descriptor = open_beside(output.target, beside);
     if (descriptor < 0) bad_input(where, std::strerror(errno), kWritable);
     close(descriptor);
     fs::remove(beside);
@@ -164,21 +165,12 @@ void OutputFiles::stage() {
     if (output.stream || !output.text || !output.staged.empty()) continue;
     struct stat status {};
     const bool exists = stat(output.target.c_str(), &status) == 0;
-    const int descriptor = open_beside(output.target, 0666, output.staged);
-    int error = descriptor < 0 ? errno : 0;
-    if (descriptor < 0) output.staged.clear();
-    if (exists && error == 0 && fchmod(descriptor, status.st_mode & 0777) != 0) error = errno;
-    if (descriptor >= 0) {
-      const int failed = write_and_close(descriptor, *output.text);
-      if (error == 0) error = failed;
-    }
+    const int descriptor = open_beside(output.target, output.staged);
+    if (descriptor >= 0 && exists) static_cast<void>(fchmod(descriptor, status.st_mode & 0777));  // where there are such things
+    const int error = descriptor < 0 ? errno : write_and_close(descriptor, *output.text);
     if (error != 0) bad_input(place(output.option, output.name), std::strerror(error), kWritable);
   }
-}
-
-std::vector<fs::path> OutputFiles::commit() {
-  // Streams first: they may fail, and renaming seldom does.
-  for (const Output& output : outputs_) {
+  for (Output& output : outputs_) {
     if (!output.stream || !output.text) continue;
     int error = 0;
     if (output.descriptor >= 0) {
@@ -189,7 +181,11 @@ std::vector<fs::path> OutputFiles::commit() {
       error = descriptor < 0 ? errno : write_and_close(descriptor, *output.text);
     }
     if (error != 0) bad_input(place(output.option, output.name), std::strerror(error), "a pipe or device that takes the text");
+    output.text.reset();
   }
+}
+
+std::vector<fs::path> OutputFiles::commit() {
   std::vector<fs::path> removed;
   for (Output& output : outputs_) {
     std::error_code error;

@@ -6,6 +6,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -364,11 +365,26 @@ class Campaign(WithFolder):
     HEADER = "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason"
     EPISODES = 12
 
-    def campaign(self, name, *options, code=0, episodes=EPISODES):
+    def campaign(self, name, *options, code=0, episodes=EPISODES, problem=None):
         out = self.folder / name
-        done = run("campaign", self.PROBLEM, "--episodes", episodes, *self.QUICK, "--out", out, *options)
+        pairs = zip(self.QUICK[::2], self.QUICK[1::2])
+        quick = [word for pair in pairs if pair[0] not in options for word in pair]
+        done = run("campaign", problem or self.PROBLEM, "--episodes", episodes, *quick, "--out", out, *options)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done, out
+
+    def killed(self, name, *options, problem=None, rows=3):
+        """The .part file of a campaign that was killed after some rows."""
+        part = self.folder / (name + ".part")
+        many = (SWIVEL, "campaign", problem or self.PROBLEM, "--episodes", "20000", *self.QUICK, "--out", self.folder / name, *options)
+        with subprocess.Popen(list(map(str, many)), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            deadline = time.monotonic() + 60
+            while time.monotonic() < deadline and process.poll() is None and (not part.exists() or part.read_text().count("\n") < rows + 2):
+                time.sleep(0.005)
+            process.kill()
+            _, errors = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, -signal.SIGKILL, errors)
+        return part
 
     def rows(self, out):
         self.assertEqual(out.read_text().splitlines()[0], self.HEADER)
@@ -424,36 +440,78 @@ class Campaign(WithFolder):
         part = self.folder / "r.csv.part"
         whole = self.rows(out)
         lines = out.read_text().splitlines(keepends=True)
+        settings = self.killed("r.csv").read_text().splitlines(keepends=True)[0]
         # Marked, so that a row that was planned again would show.
         marked = [",".join([*line.split(",")[:3], "123456.000", *line.split(",")[4:]]) for line in lines[1:6]]
         for name, text, kept in (("whole lines", lines[0] + "".join(marked), 5), ("torn line", lines[0] + "".join(marked) + lines[6][:-3], 5),
-                                 ("torn header", lines[0][:20], 0), ("empty", "", 0), ("complete", "".join(lines), None)):
+                                 ("no rows", lines[0], 0), ("torn header", lines[0][:20], 0), ("no header", "", 0), ("complete", "".join(lines), None)):
             with self.subTest(name):
-                part.write_text(text)
+                part.write_text(settings + text)
                 again = self.rows(self.campaign("r.csv", "--threads", "2")[1])
                 self.assertEqual(self.without_times(again), self.without_times(whole))
                 if kept is not None:
                     self.assertEqual([row["plan_ms"] == "123456.000" for row in again], [k < kept for k in range(self.EPISODES)])
+        for text in ("", settings[:9], settings[:40]):  # torn within the first line
+            part.write_text(text)
+            self.assertEqual(self.without_times(self.rows(self.campaign("r.csv")[1])), self.without_times(whole))
         folder = self.folder / "trajectories"  # rows from a campaign without trajectories do not stand for them
-        part.write_text("".join(lines))
+        part.write_text(settings + "".join(lines))
         self.campaign("r.csv", "--trajectories", folder)
         self.assertEqual(len(list(folder.iterdir())), sum(row["status"] == "solved" for row in whole))
 
-    def test_a_part_of_another_seed_or_setting_is_left_alone(self):
-        lines = self.campaign("r.csv")[1].read_text().splitlines(keepends=True)
+    def test_a_killed_campaign_goes_on_with_its_own_settings_alone(self):
+        for folder in ("robots", "meshes", "paths", "problems"):
+            shutil.copytree(DATA / folder, self.folder / folder)
+        problem = self.folder / "problems" / self.PROBLEM.name
+        unbroken = self.rows(self.campaign("whole.csv", "--threads", "2", problem=problem)[1])
+        text = self.killed("r.csv", problem=problem).read_text()
         part = self.folder / "r.csv.part"
-        part.write_text("".join(lines[:4]))
-        for other in (("--seed", "6"), ("--planner", "lazy", "--seed", "7")):
-            done, _ = self.campaign("r.csv", *other, code=2)
+        part.write_text("".join(text.splitlines(keepends=True)[:5]))
+        text = part.read_text()
+
+        def refused(words, *options):
+            done, _ = self.campaign("r.csv", *options, code=2, problem=problem)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-            self.assertIn("r.csv.part:4: episode 2 comes out differently now: allowed", done.stderr)
-            self.assertEqual(part.read_text(), "".join(lines[:4]))
+            for word in ("r.csv.part:1: ", *words, "allowed"):
+                self.assertIn(word, done.stderr)
+            self.assertEqual(part.read_text(), text)
+
+        changed = 0
+        for options, words in ((("--seed", "6"), ["seed 1, this is 6"]), (("--planner", "lazy"), ["planner parallel, this is lazy"]), (("--ds", "0.021"), ["ds 0.02, this is 0.021"]),
+                               (("--dphi", "0.21"), ["dphi 0.2, this is 0.21"]), (("--edges", "continuous"), ["edges nodes, this is continuous"]), (("--shard", "0/2"), ["shard 0/1, this is 0/2"])):
+            with self.subTest(options=options):
+                refused(words, *options)
+                changed += 1
+        for name in ("problems/" + self.PROBLEM.name, "robots/sda5f.urdf", "robots/sda5f.srdf", "meshes/door_2k.stl", "paths/door_polish.csv"):
+            with self.subTest(name=name):
+                file = self.folder / name
+                before = file.read_bytes()
+                if name.endswith(".yaml"):
+                    after = before.replace(b"clearance: 0.005", b"clearance: 0.012")
+                elif name.endswith(".stl"):
+                    after = before[:100] + bytes([before[100] ^ 1]) + before[101:]
+                else:
+                    after = before + b"\n"
+                self.assertNotEqual(before, after)
+                file.write_bytes(after)
+                refused(["the problem file" if name.endswith(".yaml") else "../" + name])
+                file.write_bytes(before)
+                changed += 1
+        self.assertEqual(changed, 11)
+        for threads in ("1", "3"):  # from another folder and by another name, with other outputs
+            part.write_text(text)
+            (self.folder / "problems/other.yaml").write_bytes(problem.read_bytes())
+            done = subprocess.run([SWIVEL, "campaign", "problems/other.yaml", "--episodes", str(self.EPISODES), *self.QUICK, "--threads", threads, "--out", "r.csv", "--json", "s.json"], cwd=self.folder, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(self.without_times(self.rows(self.folder / "r.csv")), self.without_times(unbroken))
 
     def test_a_part_of_something_else_is_left_alone(self):
         lines = self.campaign("r.csv")[1].read_text().splitlines(keepends=True)
+        settings = self.killed("r.csv").read_text().splitlines(keepends=True)[0]
         part = self.folder / "r.csv.part"
         for text, options, episodes in (("".join(lines[:3]), ("--shard", "1/2"), self.EPISODES), (lines[0] + lines[2], (), self.EPISODES),
-                                        ("x,y,z\n", (), self.EPISODES), (lines[0] + "0,solved\n", (), self.EPISODES), ("".join(lines), (), 3)):
+                                        ("x,y,z\n", (), self.EPISODES), (lines[0], (), self.EPISODES), (lines[0] + "0,solved\n", (), self.EPISODES), ("".join(lines), (), 3)):
+            text = text if text == lines[0] else settings + text
             part.write_text(text)
             done, _ = self.campaign("r.csv", *options, code=2, episodes=episodes)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
@@ -475,7 +533,7 @@ class Campaign(WithFolder):
         self.assertFalse(out.exists())
         text = part.read_text()
         self.assertTrue(text.endswith("\n"))
-        self.assertEqual([line.split(",")[0] for line in text.splitlines()[1:]], [str(k) for k in range(text.count("\n") - 1)])
+        self.assertEqual([line.split(",")[0] for line in text.splitlines()[2:]], [str(k) for k in range(text.count("\n") - 2)])
         self.assertGreater(text.count("\n"), 2)
 
     def test_bad_input(self):

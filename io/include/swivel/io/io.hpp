@@ -94,7 +94,7 @@ class InputFiles {
 };
 
 /// The files that a command writes: all of them, or none. Names are judged before the work begins; afterwards stage() lays the
-/// texts beside their targets, where a full disk shows, and commit() renames them over. A link is followed and what it points to
+/// texts beside their targets and writes to pipes and devices, so that a full disk shows, and commit() renames. A link is followed and what it points to
 /// is replaced. Pipes and character devices are written to, never replaced nor removed; the name - is standard output.
 class OutputFiles {
  public:
@@ -117,7 +117,7 @@ class OutputFiles {
   void remove(const std::string& option);
 
   void stage();
-  /// Returns the files that were removed. Throws InputError, like stage().
+  /// After stage(). Returns the files that were removed. Throws InputError, like stage().
   std::vector<std::filesystem::path> commit();
 
  private:
