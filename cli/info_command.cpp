@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <memory>
 
+#include "arm_guess.hpp"
 #include "commands.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/nearest_name.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/io/io.hpp"
 
@@ -15,7 +19,7 @@ namespace {
 
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
-  std::vector<std::string> hold;
+  std::vector<std::string> hold, packages;
 };
 
 std::map<std::string, double> parse_hold(const std::vector<std::string>& items) {
@@ -36,31 +40,105 @@ std::map<std::string, double> parse_hold(const std::vector<std::string>& items) 
   return hold;
 }
 
-/// Without --tip: the deepest link, the first in the file among equals.
-std::string deepest_link(const RobotModel& robot) {
-  std::string deepest;
-  int most = -1;
-  for (const Link& link : robot.links) {
-    int joints = 0;
-    for (int j = link.parent_joint; j >= 0;
-         j = robot.links[static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(j)].parent_link)].parent_joint)
-      joints += robot.joints[static_cast<std::size_t>(j)].movable();
-    if (joints > most) {
-      most = joints;
-      deepest = link.name;
-    }
+std::map<std::string, std::filesystem::path> parse_packages(const std::vector<std::string>& items) {
+  std::map<std::string, std::filesystem::path> packages;
+  for (const std::string& item : items) {
+    const std::size_t equals = item.find('=');
+    if (equals == std::string::npos || equals == 0 || !std::filesystem::is_directory(item.substr(equals + 1)))
+      throw InputError("--packages: '" + item + "': allowed is NAME=FOLDER with an existing folder");
+    packages[item.substr(0, equals)] = item.substr(equals + 1);
   }
-  return deepest;
+  return packages;
+}
+
+/// Throws InputError in the name of the option where there is no such link or joint.
+template <class Item>
+void require_known(const char* option, const std::string& name, const std::vector<Item>& items, const char* kind,
+                   const std::string& source) {
+  std::vector<std::string> known;
+  for (const Item& item : items) known.push_back(item.name);
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw InputError(std::string(option) + ": unknown " + kind + " '" + name + "'" +
+                   (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'") + ": allowed are the " + kind +
+                   "s of " + source);
+}
+
+bool is_below(const RobotModel& robot, const std::string& tip, const std::string& base) {
+  int link = robot.find_link(tip);
+  while (link >= 0 && robot.links[static_cast<std::size_t>(link)].name != base) {
+    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
+    link = joint < 0 ? -1 : robot.joints[static_cast<std::size_t>(joint)].parent_link;
+  }
+  return link >= 0;
+}
+
+/// Base and tip as asked for; what was not is guessed. Appends the arms that were not taken to `others`.
+ArmGuess choose_arm(const RobotModel& robot, const std::string& base, const std::string& tip, std::vector<ArmGuess>& others) {
+  if (!base.empty()) require_known("--base", base, robot.links, "link", robot.source);
+  if (!tip.empty()) {
+    require_known("--tip", tip, robot.links, "link", robot.source);
+    return {base.empty() ? robot.links[static_cast<std::size_t>(robot.root_link)].name : base, tip};
+  }
+  ArmGuesses guesses = guess_arms(robot);
+  if (!base.empty()) {
+    std::erase_if(guesses.arms, [&](const ArmGuess& arm) { return !is_below(robot, arm.tip, base); });
+    for (ArmGuess& arm : guesses.arms) arm.base = base;
+  }
+  if (guesses.arms.empty()) {
+    const auto& row = guesses.longest_row;
+    throw InputError(robot.source + ": no arm of seven joints" + (base.empty() ? "" : " above '" + base + "'") +
+                     (row.empty() ? ": no joint turns"
+                                  : ": the longest row of joints that turn has " + std::to_string(row.size()) + ", from '" +
+                                        row.front() + "' to '" + row.back() + "'") +
+                     ": allowed are seven joints in a row, or --base and --tip");
+  }
+  others.assign(guesses.arms.begin() + 1, guesses.arms.end());
+  return guesses.arms.front();
+}
+
+/// Whether axes k, k + 1, k + 2 (from 0) meet in one point, within 1 mm.
+bool meet(const Chain& chain, std::size_t k) {
+  const auto line_distance = [&](const Vector3d& point, std::size_t j) {
+    return (point - chain.point[j]).cross(chain.axis[j]).norm();
+  };
+  // The point of the middle axis that is nearest to the first.
+  const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1], d = chain.point[k] - chain.point[k + 1];
+  const double sine2 = a.cross(b).squaredNorm();
+  if (sine2 < 1e-12) return false;
+  const Vector3d point = chain.point[k + 1] + (d.dot(b) - d.dot(a) * a.dot(b)) / sine2 * b;
+  constexpr double kMiss = 1e-3;
+  return line_distance(point, k) < kMiss && line_distance(point, k + 2) < kMiss;
+}
+
+/// Throws InputError, which says what the arm looks like, where it is not S-R-S.
+SrsArm fit(const ArmModel& arm, const ArmGuess& chosen, const std::string& source) {
+  try {
+    return fit_srs(arm.chain, source);
+  } catch (const InputError& error) {
+    const bool shoulder = meet(arm.chain, 0), wrist = meet(arm.chain, 4);
+    const std::string reason = std::string(error.what()).substr(source.size() + 2);
+    throw InputError(source + ": " + chosen.base + " to " + chosen.tip + ", joints " + arm.chain.joint_names.front() + " to " +
+                     arm.chain.joint_names.back() + ": a 7R arm with " +
+                     (shoulder ? "a spherical shoulder" : "no spherical shoulder") + " and " +
+                     (wrist ? "a spherical wrist" : "no spherical wrist") + ", " + reason);
+  }
 }
 
 int run(const InfoArguments& arguments) {
-  const auto robot = io::load_robot(arguments.urdf, arguments.srdf);
-  const std::string base = arguments.base.empty() ? robot->links[static_cast<std::size_t>(robot->root_link)].name : arguments.base;
-  const std::string tip = arguments.tip.empty() ? deepest_link(*robot) : arguments.tip;
-  const ArmModel arm = build_arm(*robot, base, tip, parse_hold(arguments.hold), Pose::Identity());
-  const SrsArm srs = fit_srs(arm.chain, robot->source);
+  std::vector<std::string> missing_meshes;
+  const auto robot = io::load_kinematics(arguments.urdf, parse_packages(arguments.packages), missing_meshes);
+  const std::map<std::string, double> hold = parse_hold(arguments.hold);
+  for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
+  std::vector<ArmGuess> others;
+  const ArmGuess chosen = choose_arm(*robot, arguments.base, arguments.tip, others);
+  const std::string &base = chosen.base, &tip = chosen.tip;
+  const ArmModel arm = build_arm(*robot, base, tip, hold, Pose::Identity());
+  const SrsArm srs = fit(arm, chosen, robot->source);
   std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
+  if (!missing_meshes.empty())
+    std::printf("meshes     %zu not found, which planning needs: %s\n", missing_meshes.size(), missing_meshes.front().c_str());
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
+  for (const ArmGuess& other : others) std::printf("other arm  %s to %s\n", other.base.c_str(), other.tip.c_str());
   const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
                       std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
   std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
@@ -98,9 +176,10 @@ void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
   auto arguments = std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("robot", arguments->urdf, "URDF file")->required();
-  command->add_option("--srdf", arguments->srdf, "SRDF file");
-  command->add_option("--base", arguments->base, "base link (default: the root)");
-  command->add_option("--tip", arguments->tip, "tip link (default: the deepest)");
+  command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
+  command->add_option("--packages", arguments->packages, "NAME=FOLDER, where meshes of package://NAME/... lie");
+  command->add_option("--base", arguments->base, "base link (default: base_link or the root)");
+  command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "mesh_name.hpp"
 
+#include <tinyxml2.h>
+
 #include <optional>
 #include <string_view>
 
@@ -24,6 +26,17 @@ std::optional<fs::path> find_in(const fs::path& folder, const std::string& packa
   return std::nullopt;
 }
 
+/// As ROS has it, whatever the folder is called.
+std::optional<std::string> name_of_package(const fs::path& folder) {
+  tinyxml2::XMLDocument document;
+  if (!is_file(folder / "package.xml") || document.LoadFile((folder / "package.xml").c_str()) != tinyxml2::XML_SUCCESS)
+    return std::nullopt;
+  const tinyxml2::XMLElement* const root = document.RootElement();
+  const tinyxml2::XMLElement* const name = root == nullptr ? nullptr : root->FirstChildElement("name");
+  if (name == nullptr || name->GetText() == nullptr) return std::nullopt;
+  return name->GetText();
+}
+
 fs::path resolve_package(const std::string& name, const std::string& path, const fs::path& urdf, const Packages& packages,
                          const std::string& where) {
   const std::string package = path.substr(0, path.find('/'));
@@ -41,8 +54,13 @@ fs::path resolve_package(const std::string& name, const std::string& path, const
     if (const auto file = find_in(folder, package, rest, folder.filename() == package)) return *file;
     if (folder == folder.parent_path()) break;
   }
+  // The folder may have been renamed, as by a download. One that says that it is another package is not meant.
+  for (fs::path folder = start;; folder = folder.parent_path()) {
+    if (is_file(folder / rest) && name_of_package(folder).value_or(package) == package) return folder / rest;
+    if (folder == folder.parent_path()) break;
+  }
   bad_input(where, what + " walking up from " + start.string(),
-            "a file " + rest + " in a folder '" + package + "' at or above the URDF, or robot.packages");
+            "a file " + rest + " in a folder at or above the URDF, or robot.packages: {" + package + ": its folder}");
 }
 
 }  // namespace

@@ -113,8 +113,7 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
   output.identity = exists ? identity_of(status) : identity_of(output.target, where);
 
   const auto same = [&](const auto& other) { return other.identity == output.identity; };
-  if (std::any_of(inputs_.begin(), inputs_.end(), same))
-    bad_input(where, "is one of the files that are read", "a file of its own");
+  if (std::any_of(inputs_.begin(), inputs_.end(), same)) bad_input(where, "is one of the files that are read", "a file of its own");
   const auto twice = std::find_if(outputs_.begin(), outputs_.end(), same);
   if (twice != outputs_.end() && !S_ISCHR(status.st_mode))
     bad_input(where, "is the file of " + twice->option + " as well", "a file of its own");

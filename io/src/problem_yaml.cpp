@@ -6,6 +6,7 @@
 #include "files.hpp"
 #include "srdf.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/nearest_name.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/io/io.hpp"
 #include "urdf.hpp"
@@ -113,9 +114,12 @@ class ProblemReader {
   [[nodiscard]] fs::path resolve(const YamlValue& name) const { return (file_.parent_path() / name.text()).lexically_normal(); }
 
   std::string link_name(const YamlValue& value) const {
-    if (problem_.robot->find_link(value.text()) < 0)
-      value.fail("unknown link '" + value.text() + "'", "a link of " + problem_.robot->source);
-    return value.text();
+    const std::string name = value.text();
+    if (problem_.robot->find_link(name) >= 0) return name;
+    std::vector<std::string> known;
+    for (const Link& link : problem_.robot->links) known.push_back(link.name);
+    value.fail("unknown link '" + name + "', nearest is '" + nearest_name(name, known) + "'",
+               "a link of " + problem_.robot->source);
   }
 
   [[nodiscard]] bool is_attached(const std::string& name) const {
@@ -158,10 +162,17 @@ class ProblemReader {
     return packages;
   }
 
+  [[nodiscard]] std::vector<std::string> joint_names() const {
+    std::vector<std::string> names;
+    for (const Joint& joint : problem_.robot->joints) names.push_back(joint.name);
+    return names;
+  }
+
   void read_hold(const YamlValue& value) {
     for (const auto& [joint, position] : value.entries()) {
       if (problem_.robot->find_joint(joint) < 0)
-        position.fail("unknown joint '" + joint + "'", "a joint of " + problem_.robot->source);
+        position.fail("unknown joint '" + joint + "', nearest is '" + nearest_name(joint, joint_names()) + "'",
+                      "a joint of " + problem_.robot->source);
       problem_.hold[joint] = position.number(Range::kCoordinate);
     }
   }

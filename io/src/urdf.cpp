@@ -108,7 +108,9 @@ Pose origin(const urdf::Pose& pose, const std::string& at) {
 /// Turns urdfdom's model into ours, in the order of the file, and checks what urdfdom leaves unchecked.
 class ModelBuilder {
  public:
-  ModelBuilder(const std::filesystem::path& urdf, const Packages& packages) : urdf_(urdf), packages_(packages) {}
+  /// With `missing_meshes` links get no shapes, and the names of meshes are looked up alone.
+  ModelBuilder(const std::filesystem::path& urdf, const Packages& packages, std::vector<std::string>* missing_meshes)
+      : urdf_(urdf), packages_(packages), missing_meshes_(missing_meshes) {}
 
   std::shared_ptr<RobotModel> build() {
     tinyxml2::XMLDocument document;
@@ -190,9 +192,23 @@ class ModelBuilder {
   void add_link(const tinyxml2::XMLElement& element) {
     Link link;
     link.name = element.Attribute("name");
-    for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array)
+    for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array) {
+      if (missing_meshes_ != nullptr) {
+        look_up_mesh(*collision->geometry, where(element));
+        continue;
+      }
       link.collision.push_back({shape(*collision->geometry, where(element)), origin(collision->origin, where(element))});
+    }
     model_->links.push_back(std::move(link));
+  }
+
+  void look_up_mesh(const urdf::Geometry& geometry, const std::string& at) const {
+    if (geometry.type != urdf::Geometry::MESH) return;
+    try {
+      static_cast<void>(resolve_mesh_name(static_cast<const urdf::Mesh&>(geometry).filename, urdf_, packages_, at));
+    } catch (const InputError& error) {
+      missing_meshes_->push_back(error.what());
+    }
   }
 
   Shape shape(const urdf::Geometry& geometry, const std::string& at) {
@@ -296,6 +312,7 @@ class ModelBuilder {
 
   const std::filesystem::path& urdf_;
   const Packages& packages_;
+  std::vector<std::string>* missing_meshes_;
   urdf::ModelInterfaceSharedPtr parsed_;
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
   MeshCache meshes_;
@@ -305,7 +322,13 @@ class ModelBuilder {
 }  // namespace
 
 std::shared_ptr<RobotModel> load_urdf(const std::filesystem::path& urdf, const Packages& packages) {
-  return ModelBuilder(urdf, packages).build();
+  return ModelBuilder(urdf, packages, nullptr).build();
+}
+
+std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
+                                                  const std::map<std::string, std::filesystem::path>& packages,
+                                                  std::vector<std::string>& missing_meshes) {
+  return ModelBuilder(urdf, packages, &missing_meshes).build();
 }
 
 std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf,

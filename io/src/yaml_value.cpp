@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 
 #include "bad_input.hpp"
 #include "files.hpp"
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/nearest_name.hpp"
 
 namespace swivel::io {
 
@@ -48,22 +48,6 @@ bool in_range(double value, Range range) {
       break;
   }
   return std::isfinite(value);
-}
-
-/// Levenshtein distance.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -162,11 +146,7 @@ YamlSection YamlValue::section(const std::vector<std::string>& known) const {
   auto found = entries();
   for (const auto& [name, value] : found) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const std::string& wrong = name;  // a structured binding cannot be captured
-    const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-      return edit_distance(wrong, a) < edit_distance(wrong, b);
-    });
-    value.fail("unknown key, nearest known key is '" + *nearest + "'", "one of " + joined(known));
+    value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'", "one of " + joined(known));
   }
   return {*this, std::move(found)};
 }

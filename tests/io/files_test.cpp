@@ -74,5 +74,88 @@ TEST(Files, CannotWrite) {
   expect_message(input_error([&] { write_trajectory(folder.path() / "none" / "t.csv", {}); }), {"none/t.csv"});
 }
 
+TEST(Files, AllOrNone) {
+  const TempFolder folder;
+  const fs::path first = folder.write("first", "old"), second = folder.write("second", "old"), third = folder.write("third", "old");
+  {
+    OutputFiles outputs;
+    outputs.add("--first", first);
+    outputs.add("--second", second);
+    outputs.write("--first", "new");
+    outputs.write("--nowhere", "is no error");
+    outputs.stage();
+    EXPECT_EQ(count_files(folder.path()), 4u);
+  }  // not committed
+  EXPECT_EQ(count_files(folder.path()), 3u);
+  EXPECT_EQ(TempFolder::read(first), "old");
+  OutputFiles outputs;
+  outputs.add("--first", first);
+  outputs.add("--second", second);
+  outputs.add("--third", third);
+  outputs.write("--first", "new");
+  outputs.remove("--second");
+  outputs.stage();
+  EXPECT_EQ(outputs.commit(), std::vector{second});
+  EXPECT_EQ(TempFolder::read(first), "new");
+  EXPECT_FALSE(fs::exists(second));
+  EXPECT_EQ(TempFolder::read(third), "old");
+  EXPECT_EQ(count_files(folder.path()), 2u);
+}
+
+TEST(Files, InputsAreNotedWithTheirContents) {
+  const TempFolder folder;
+  const fs::path file = folder.write("t.csv", "s,phi,branch,1,2,3,4,5,6,7\n0,0,0,0,0,0,0,0,0,0\n1,0,0,0,0,0,0,0,0,0\n");
+  const std::array<std::string, kDof> names{"1", "2", "3", "4", "5", "6", "7"};
+  const auto noted = [&] {
+    const InputFiles inputs(InputFiles::Contents::kHash);
+    (void)load_trajectory(file, names);
+    (void)load_trajectory(file, names);
+    return inputs.files();
+  };
+  const auto before = noted();
+  ASSERT_EQ(before.size(), 1u);
+  EXPECT_EQ(before[0].name, file);
+  fs::create_hard_link(file, folder.path() / "same");
+  OutputFiles outputs(before);
+  expect_message(input_error([&] { outputs.add("--out", folder.path() / "same"); }), {"--out", "same", "read"});
+  folder.write("t.csv", TempFolder::read(file) + "\n");
+  const auto after = noted();
+  EXPECT_NE(before[0].hash, after[0].hash);
+  (void)load_trajectory(file, names);  // nobody listens
+}
+
+TEST(Files, CampaignsKnowTheirSettings) {
+  const TempFolder folder;
+  const fs::path csv = folder.path() / "r.csv";
+  const CampaignSettings settings{{{"version", "1"}, {"seed", "2"}}, {{"the problem file", 3}, {"a,\"b\".stl", 4}}};
+  const Shard shard;
+  std::string written;
+  {
+    CampaignFile file(csv, settings, shard, 3);
+    file.append(EpisodeRow(0, std::string("broken, \"twice\"")));
+    written = file.csv();
+  }
+  CampaignSettings other = settings;
+  other.values[0].second = "2";
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "begun with version 1, this is 2"});
+  other = settings;
+  other.files[1].second = 5;
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "a,\"b\".stl was another"});
+  other = settings;
+  other.files.pop_back();
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "more settings or files"});
+  other = settings;
+  other.files.emplace_back("more", 1);
+  expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "begun without more"});
+  CampaignFile file(csv, settings, shard, 3);
+  ASSERT_EQ(file.rows().size(), 1u);
+  EXPECT_EQ(file.rows()[0].status, PlanStatus::kError);
+  EXPECT_EQ(file.rows()[0].reason, "broken, \"twice\"");
+  EXPECT_EQ(file.csv(), written);
+  expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"another campaign"});
+  file.finish();
+  EXPECT_EQ(count_files(folder.path()), 0u);
+}
+
 }  // namespace
 }  // namespace swivel::io::test

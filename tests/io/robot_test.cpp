@@ -128,6 +128,33 @@ TEST(Robot, PackagesAreFoundByWalkingUp) {
   EXPECT_EQ(load_robot(folder.write("ws/pkg/r2.urdf", robot(mesh_link("a", "package://other_pkg/box.stl"))))->links.size(), 1u);
 }
 
+TEST(Robot, PackagesInFoldersOfOtherNames) {
+  const TempFolder folder;
+  const std::string text = robot(mesh_link("a", "package://pkg/meshes/box.stl"));
+  const auto load = [&] { return load_robot(folder.write("ws/download-1.2/urdf/r.urdf", text)); };
+  folder.write("ws/download-1.2/meshes/box.stl", box_stl(9, 9, 9));
+  const auto size = [&] { return std::cbrt(volume(*std::get<MeshPtr>(load()->links[0].collision[0].shape))); };
+  EXPECT_NEAR(size(), 9, 1e-6);
+  folder.write("ws/download-1.2/package.xml", "<package format='2'><name>pkg</name></package>");
+  EXPECT_NEAR(size(), 9, 1e-6);
+  folder.write("ws/download-1.2/package.xml", "<package><name>another</name></package>");
+  expect_message(input_error([&] { (void)load(); }), {"package://pkg/meshes/box.stl", "robot.packages: {pkg: "});
+  folder.write("ws/meshes/box.stl", box_stl(7, 7, 7));  // further up
+  EXPECT_NEAR(size(), 7, 1e-6);
+  folder.write("pkg/meshes/box.stl", box_stl(5, 5, 5));  // the right name goes first
+  EXPECT_NEAR(size(), 5, 1e-6);
+}
+
+TEST(Robot, KinematicsNeedNoMeshes) {
+  const TempFolder folder;
+  std::vector<std::string> missing;
+  const auto model = load_kinematics(folder.write("r.urdf", robot(mesh_link("a", "package://pkg/box.stl"))), {}, missing);
+  EXPECT_EQ(model->links.at(0).name, "a");
+  EXPECT_TRUE(model->links.at(0).collision.empty());
+  ASSERT_EQ(missing.size(), 1u);
+  expect_message(missing.front(), {"link 'a'", "package://pkg/box.stl"});
+}
+
 TEST(Robot, PackagesFromTheMapGoFirst) {
   const TempFolder folder;
   folder.write("pkg/box.stl", box_stl());

@@ -33,6 +33,11 @@ using MeshCache = std::map<std::string, MeshPtr>;
                                                            const std::filesystem::path& srdf = {},
                                                            const std::map<std::string, std::filesystem::path>& packages = {});
 
+/// Links and joints of a URDF without shapes. Meshes are not read; `missing_meshes` gets a message for each that is not found.
+[[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
+                                                                const std::map<std::string, std::filesystem::path>& packages,
+                                                                std::vector<std::string>& missing_meshes);
+
 /// Tool path: header x,y,z,qw,qx,qy,qz; at least two rows. Quaternions as written, of length 1 within 1e-3.
 [[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
 
@@ -94,8 +99,9 @@ class InputFiles {
 };
 
 /// The files that a command writes: all of them, or none. Names are judged before the work begins; afterwards stage() lays the
-/// texts beside their targets and writes to pipes and devices, so that a full disk shows, and commit() renames. A link is followed and what it points to
-/// is replaced. Pipes and character devices are written to, never replaced nor removed; the name - is standard output.
+/// texts beside their targets and writes to pipes and devices, so that a full disk shows, and commit() renames. A link is followed
+/// and what it points to is replaced. Pipes and character devices are written to, never replaced nor removed; the name - is
+/// standard output.
 class OutputFiles {
  public:
   /// `inputs`: what no output may replace.
