@@ -54,8 +54,9 @@ fs::path resolve_package(const std::string& name, const std::string& path, const
     if (const auto file = find_in(folder, package, rest, folder.filename() == package)) return *file;
     if (folder == folder.parent_path()) break;
   }
-  // The folder may have been renamed, as by a download. One that says that it is another package is not meant.
-  for (fs::path folder = start;; folder = folder.parent_path()) {
+  // The folder may have been renamed, as by a download. One that says that it is another package is not meant, and a bare file
+  // name says too little.
+  for (fs::path folder = start; fs::path(rest).has_parent_path(); folder = folder.parent_path()) {
     if (is_file(folder / rest) && name_of_package(folder).value_or(package) == package) return folder / rest;
     if (folder == folder.parent_path()) break;
   }
