@@ -34,8 +34,7 @@ class Guesser {
     for (std::size_t k = 0; k < order.size(); ++k)
       for (const Joint* joint : children_[index(order[k])]) order.push_back(joint->child_link);
     for (auto link = order.rbegin(); link != order.rend(); ++link)
-      for (const Joint* joint : children_[index(*link)])
-        depth_[index(*link)] = std::max(depth_[index(*link)], depth_below(*joint));
+      for (const Joint* joint : children_[index(*link)]) depth_[index(*link)] = std::max(depth_[index(*link)], depth_below(*joint));
   }
 
   ArmGuesses run() {
@@ -95,7 +94,7 @@ class Guesser {
         continue;
       }
       for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {  // the first in the file is visited first
-        constexpr int kFinger = 4;  // movable joints, at most; so have heads and wheels
+        constexpr int kFinger = 4;                                           // movable joints, at most; so have heads and wheels
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
         Visit next{(*joint)->child_link, visit.count, visit.chain};
         if ((*joint)->movable()) next.count = is_arm_joint(**joint) ? visit.count + 1 : 0;
@@ -134,7 +133,8 @@ class Guesser {
     for (std::size_t k = 0; k < fixed.size(); ++k)
       for (const Joint* joint : children_[index(fixed[k])])
         if (!joint->movable()) fixed.push_back(joint->child_link);
-    for (const char* const word : {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
+    for (const char* const word :
+         {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
       for (const int link : fixed)
         if (ends_with_word(robot_.links[index(link)].name, word)) return robot_.links[index(link)].name;
     // The last link before the hand.

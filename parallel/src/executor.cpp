@@ -3,6 +3,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -18,7 +19,8 @@ namespace swivel {
 struct Executor::Impl {
   int threads = 1;
   Backend backend = Backend::kTbb;
-  /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where more are asked for.
+  /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where more are asked for. Not set for
+  /// fewer: the least of all controls holds for the whole process.
   std::unique_ptr<tbb::global_control> allowed;
   std::unique_ptr<tbb::task_arena> arena;
 };
