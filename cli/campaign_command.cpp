@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 
 struct CampaignArguments {
   std::string problem, shard, out, trajectories, json, report;
+  std::vector<std::string> rows;
   std::uint64_t episodes = 100, seed = 1;
   SearchOptions search;
 };
@@ -132,6 +133,21 @@ io::CampaignSettings settings_of(const CampaignArguments& arguments, const Campa
   return settings;
 }
 
+/// The rows of --rows in the order of the campaign. Throws InputError where they are not its first.
+std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files, const CampaignOptions& options) {
+  std::vector<EpisodeRow> rows;
+  for (const std::string& file : files) {
+    const std::vector<EpisodeRow> found = io::load_rows(file);
+    rows.insert(rows.end(), found.begin(), found.end());
+  }
+  std::sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) { return a.episode < b.episode; });
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (k >= options.shard.size(options.episodes) || rows[k].episode != options.shard.episode(k))
+      throw InputError("--rows: the rows from episode " + std::to_string(rows[k].episode) +
+                       " on are not the next of this campaign: allowed are its first rows, each once");
+  return rows;
+}
+
 int run(const CampaignArguments& arguments) {
   CampaignOptions options;
   options.plan = arguments.search.plan_options();
@@ -163,10 +179,11 @@ int run(const CampaignArguments& arguments) {
     options.planned = [&](std::uint64_t episode, const PlanResult& result) { trajectories->write(episode, result); };
   }
   const std::uint64_t size = options.shard.size(options.episodes);
-  std::vector<EpisodeRow> rows;
+  std::vector<EpisodeRow> rows = given_rows(arguments.rows, options);
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
     file.emplace(arguments.out, settings_of(arguments, options, problem, inputs), options.shard, options.episodes);
+    for (std::size_t k = file->rows().size(); k < rows.size(); ++k) file->append(rows[k]);
     if (trajectories) {  // the campaign that was killed may have been run without
       const auto& found = file->rows();
       const auto lacking =
@@ -228,6 +245,9 @@ void add_campaign(CLI::App& app, int& exit_code) {
   arguments->search.add_to(*command);
   command->add_option("--out", arguments->out,
                       "results file (CSV); an interrupted campaign goes on from FILE.part, which must be of the same settings");
+  command->add_option(
+      "--rows", arguments->rows,
+      "results files of shards of this campaign, to be put together; that they are of the same settings is not checked");
   command->add_option("--trajectories", arguments->trajectories, "folder for the trajectories of solved episodes, episode_K.csv");
   command->add_option("--report", arguments->report,
                       "the campaign as one HTML file: verdicts, times, costs, where and why episodes fail");

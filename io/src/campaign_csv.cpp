@@ -17,6 +17,7 @@
 
 #include "bad_input.hpp"
 #include "files.hpp"
+#include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::io {
@@ -108,6 +109,21 @@ std::optional<EpisodeRow> row_of(std::string_view line) {
   return read ? std::optional(row) : std::nullopt;
 }
 
+/// The rows of a text from a byte on that is the beginning of a line; `line` is its number. `visit` gets each, what names its
+/// place, and the byte after it.
+template <class Visit>
+void read_rows(std::string_view text, std::size_t begin, const std::string& file, int line, const std::string& allowed,
+               const Visit& visit) {
+  for (; begin < text.size(); ++line) {
+    const std::size_t end = text.find('\n', begin) + 1;
+    const std::string where = at_line(file, line);
+    const auto row = row_of(text.substr(begin, end - 1 - begin));
+    if (!row) bad_input(where, "not a row of results", allowed);
+    visit(*row, where, end);
+    begin = end;
+  }
+}
+
 constexpr std::string_view kSettingsMark = "# swivel campaign ";
 
 /// One line, for people and for comparison.
@@ -174,26 +190,39 @@ CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings
   if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(kHeader))
     refuse(part_.string() + ":2", "another header", mine);
 
-  std::size_t begin = complete > first.size() ? preamble.size() : 0;
+  const std::size_t begin = complete > first.size() ? preamble.size() : 0;
   ends_.push_back(begin);
-  while (begin > 0 && begin < complete) {
-    const std::size_t end = text.find('\n', begin) + 1;
-    const std::size_t k = rows_.size();
-    const std::string where = at_line(part_.string(), static_cast<int>(k) + 3);
-    const auto row = row_of(std::string_view(text).substr(begin, end - 1 - begin));
-    if (!row) refuse(where, "not a row of results", mine);
-    if (k >= shard.size(episodes)) refuse(where, "more rows than the shard has episodes", mine);
-    if (row->episode != shard.episode(k))
-      refuse(where, "episode " + std::to_string(row->episode) + " where the shard has " + std::to_string(shard.episode(k)), mine);
-    rows_.push_back(*row);
-    ends_.push_back(end);
-    begin = end;
-  }
+  if (begin > 0) try {
+      read_rows(std::string_view(text).substr(0, complete), begin, part_.string(), 3, mine,
+                [&](const EpisodeRow& row, const std::string& where, std::size_t end) {
+                  const std::size_t k = rows_.size();
+                  if (k >= shard.size(episodes)) bad_input(where, "more rows than the shard has episodes", mine);
+                  if (row.episode != shard.episode(k))
+                    bad_input(where,
+                              "episode " + std::to_string(row.episode) + " where the shard has " + std::to_string(shard.episode(k)),
+                              mine);
+                  rows_.push_back(row);
+                  ends_.push_back(end);
+                });
+    } catch (const InputError&) {
+      close(descriptor_);
+      throw;
+    }
   keep(rows_.size());  // cuts what is torn
-  if (begin == 0) {
+  if (ends_.front() == 0) {
     write(preamble);
     ends_.front() = preamble.size();
   }
+}
+
+std::vector<EpisodeRow> load_rows(const fs::path& csv) {
+  const std::string text = read_file(csv, "CSV file");
+  const std::string allowed = "the results of a campaign or a shard, as it wrote them";
+  if (!std::string_view(text).starts_with(kHeader) || text.back() != '\n') bad_input(csv.string(), "not a results file", allowed);
+  std::vector<EpisodeRow> rows;
+  read_rows(text, kHeader.size(), csv.string(), 2, allowed,
+            [&](const EpisodeRow& row, const std::string&, std::size_t) { rows.push_back(row); });
+  return rows;
 }
 
 CampaignFile::~CampaignFile() {

@@ -414,6 +414,20 @@ class Campaign(WithFolder):
             union += shard
         self.assertEqual(self.without_times(one), self.without_times(sorted(union, key=lambda row: int(row["episode"]))))
 
+    def test_rows_of_shards_are_put_together(self):
+        whole = self.rows(self.campaign("whole.csv")[1])
+        shards = [self.campaign(f"shard{k}.csv", "--shard", f"{k}/3")[1] for k in (2, 0, 1)]
+        done, joined = self.campaign("joined.csv", "--rows", *shards, "--json", "-")
+        self.assertEqual(self.without_times(self.rows(joined)), self.without_times(whole))
+        self.assertEqual([row["plan_ms"] for row in self.rows(joined)][::3], [row["plan_ms"] for row in self.rows(shards[1])])  # not planned again
+        more = self.rows(self.campaign("more.csv", "--rows", joined, episodes=self.EPISODES + 2)[1])
+        self.assertEqual(self.without_times(more)[: self.EPISODES], self.without_times(whole))
+        self.assertEqual(len(more), self.EPISODES + 2)
+        for rows in (shards[:2], [*shards, shards[0]], [self.PROBLEM]):
+            done, _ = self.campaign("bad.csv", "--rows", *rows, code=2)
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertFalse((self.folder / "bad.csv.part").exists())
+
     def test_a_row_is_what_plan_says(self):
         folder = self.folder / "trajectories"
         done, out = self.campaign("r.csv", "--seed", "5", "--trajectories", folder, "--json", "-")

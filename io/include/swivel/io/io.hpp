@@ -182,6 +182,9 @@ class CampaignFile {
   int descriptor_ = -1;
 };
 
+/// The rows of a finished RESULTS.csv.
+[[nodiscard]] std::vector<EpisodeRow> load_rows(const std::filesystem::path& csv);
+
 /// The answer to `campaign --json -`.
 [[nodiscard]] std::string to_json(const CampaignSummary& summary);
 
