@@ -19,9 +19,9 @@ struct CampaignOptions {
 };
 
 /// Plans the episodes of a shard and delivers their rows in episode order, one call at a time. Stops when cancelled or timed out;
-/// what was delivered is then a beginning of the shard, without a gap. An internal error of an episode is its row, of status kError,
-/// without a call of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws InvalidArgument as plan()
-/// does, InputError where an episode makes no sense, and for a problem without `vary` and more than one episode.
+/// what was delivered is then a beginning of the shard, without a gap. An internal error of an episode is its row, of status
+/// kError, without a call of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws InvalidArgument
+/// as plan() does, InputError where an episode makes no sense, and for a problem without `vary` and more than one episode.
 void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 
