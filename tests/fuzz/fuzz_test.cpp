@@ -154,7 +154,7 @@ TEST(Fuzz, EveryReaderRefusesWhatItCannotRead) {
 
 /// What the watchdog is for.
 TEST(Fuzz, TheWatchdogBites) {
-  const Tally tally = watch(9, {2, 400}, [](int k) {
+  const Tally tally = watch(9, {3, 250}, [](int k) {
     switch (k) {
       case 1:
         throw InputError("a.yaml:1: key: allowed is more");
@@ -170,7 +170,7 @@ TEST(Fuzz, TheWatchdogBites) {
           (void)busy;
         }
       case 6: {
-        std::vector<char> large(std::size_t{500} << 20, 'x');
+        std::vector<char> large(std::size_t{300} << 20, 'x');
         volatile char used = large[large.size() / 2];
         (void)used;
         return;
