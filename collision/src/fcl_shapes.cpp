@@ -36,7 +36,7 @@ struct PrimitiveVisitor {
 }  // namespace
 
 MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)), triangles_(tree_of(*mesh_)) {
-  if (!triangles_) throw InputError(mesh_->source + ": mesh: no triangle with an area: at least one is needed");
+  if (!triangles_) throw InputError(mesh_->source + ": mesh: no triangle with an area: allowed is at least one");
   if (mesh_->closed) solid_.emplace(*mesh_);
   part_points_ = one_point_per_part(*mesh_);
 }

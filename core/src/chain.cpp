@@ -177,7 +177,7 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
   }
   if (arm.size() < kDof)
     fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
-                    tip_link + "': at least seven are needed");
+                    tip_link + "': allowed are at least seven");
   arm.erase(arm.begin(), arm.end() - kDof);
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)

@@ -77,7 +77,7 @@ std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
     result.push_back(moved);
   }
   if (result.size() < 2)
-    throw InputError(problem.source + ": path: " + std::to_string(result.size()) + " waypoint(s): at least two are needed");
+    throw InputError(problem.source + ": path: " + std::to_string(result.size()) + " waypoint(s): allowed are at least two");
   return result;
 }
 

@@ -37,7 +37,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     X.translation() = p;
     return X;
   };
-  if (waypoints.empty()) throw InputError(source + ": path: no waypoints: at least two are needed");
+  if (waypoints.empty()) throw InputError(source + ": path: no waypoints: allowed are at least two");
   layers_.push_back({0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
   Waypoint from = waypoints[0];
   double s = 0;
@@ -75,7 +75,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     s += length;
     from = to;
   }
-  if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: at least two distinct ones are needed");
+  if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
 }
 
 Pose ToolPath::at(int i, double t) const {
