@@ -216,7 +216,7 @@ CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings
 }
 
 std::vector<EpisodeRow> load_rows(const fs::path& csv) {
-  const std::string text = read_file(csv, "CSV file");
+  const std::string text = read_file(csv, "CSV file", kMostTableBytes);
   const std::string allowed = "the results of a campaign or a shard, as it wrote them";
   if (!std::string_view(text).starts_with(kHeader) || text.back() != '\n') bad_input(csv.string(), "not a results file", allowed);
   std::vector<EpisodeRow> rows;

@@ -39,12 +39,4 @@ void InputFiles::note(const std::filesystem::path& file, std::string_view text) 
   files.push_back({file, identity, listening->contents_ == Contents::kHash ? fnv1a(text) : 0});
 }
 
-void InputFiles::note(const std::filesystem::path& file) {
-  if (listening == nullptr) return;
-  if (listening->contents_ == Contents::kHash)
-    static_cast<void>(read_file(file, "file"));  // notes it
-  else
-    note(file, {});
-}
-
 }  // namespace swivel::io

@@ -90,8 +90,6 @@ class InputFiles {
 
   /// For loaders: the file was read, and this was in it.
   static void note(const std::filesystem::path& file, std::string_view text);
-  /// The same for a file that another library reads.
-  static void note(const std::filesystem::path& file);
 
  private:
   std::vector<File> files_;
