@@ -68,11 +68,11 @@ std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
   bench::set_resolution(problem, bench::kSettings[3]);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World world(robot.world(), problem.scene);
+  const World world(robot.world(), problem);
   World::Query query(world);
   for (int slot = 0; slot < lattice.width(); ++slot) {
     const auto q = lattice.node(0, slot);
-    if (q && lattice.manipulable(*q) && !query.first_below(*q, problem.limits.clearance)) return q;
+    if (q && lattice.manipulable(*q) && !query.first_below(*q, Keep::kNode)) return q;
   }
   return std::nullopt;
 }

@@ -49,10 +49,8 @@ struct Fixture {
         robot(problem),
         path(waypoints_in_base(problem), problem.resolution, problem.source),
         lattice(robot.arm().chain, robot.srs(), path, problem),
-        world(robot.world(), problem.scene) {
-    rule.radii = robot.radii();
-    rule.d_edge = problem.limits.d_edge();
-    rule.h = problem.limits.edge_tolerance;
+        world(robot.world(), problem) {
+    rule = world.edge_rule(robot.radii());
     LayerNodes here, next;
     while (nodes.size() < kPool) {
       const int layer = static_cast<int>(random.uniform(0, lattice.layers() - 1));
@@ -67,7 +65,7 @@ struct Fixture {
         edges.push_back({a, b, *q});
     }
     World::Query query(world);  // FCL's trees of meshes are built at its first question
-    for (const Node& x : nodes) static_cast<void>(query.first_below(x.q, problem.limits.clearance));
+    for (const Node& x : nodes) static_cast<void>(query.first_below(x.q, Keep::kNode));
   }
   Fixture(const Fixture&) = delete;
 
@@ -236,13 +234,13 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
   options.planner = PlannerKind::kLazy;
   add("posture/kept", [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
     World::Query query(c.world, Certificates::kOn);
-    cycle(state, rows, [&](const TrajectoryRow& row) { return query.next_below(row.q, c.problem.limits.clearance); });
+    cycle(state, rows, [&](const TrajectoryRow& row) { return query.next_below(row.q, Keep::kNode); });
   });
   for (const auto& [name, certificates] : {std::pair{"fcl", Certificates::kOff}, {"certificates", Certificates::kOn}}) {
     const auto who = certificates;  // a structured binding cannot be captured
     add(std::string("posture/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);
-      cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.first_below(x.q, c.problem.limits.clearance); });
+      cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.first_below(x.q, Keep::kNode); });
     });
     add(std::string("motion/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);

@@ -7,6 +7,7 @@
 
 #include "arm_guess.hpp"
 #include "commands.hpp"
+#include "pairs_report.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
@@ -20,6 +21,7 @@ namespace {
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
   std::vector<std::string> hold, packages;
+  bool pairs = false;
 };
 
 std::map<std::string, double> parse_hold(const std::vector<std::string>& items) {
@@ -125,6 +127,10 @@ SrsArm fit(const ArmModel& arm, const ArmGuess& chosen, const std::string& sourc
 }
 
 int run(const InfoArguments& arguments) {
+  if (arguments.pairs) {
+    print_pairs(arguments.urdf);
+    return kOk;
+  }
   std::vector<std::string> missing_meshes;
   const auto robot = io::load_kinematics(arguments.urdf, parse_packages(arguments.packages), missing_meshes);
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
@@ -175,12 +181,14 @@ int run(const InfoArguments& arguments) {
 void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
   auto arguments = std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
-  command->add_option("robot", arguments->urdf, "URDF file")->required();
+  command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
   command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
   command->add_option("--packages", arguments->packages, "NAME=FOLDER, where meshes of package://NAME/... lie");
   command->add_option("--base", arguments->base, "base link (default: base_link or the root)");
   command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
+  command->add_flag("--pairs", arguments->pairs, "which bodies of the robot are kept apart, and how far")
+      ->excludes("--srdf", "--packages", "--base", "--tip", "--hold");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

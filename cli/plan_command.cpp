@@ -47,6 +47,9 @@ void print_summary(const PlanResult& result) {
       if (result.evidence.tool_path_error)
         std::printf(", tool-path error %.3f mm mean %.3f mm max", result.tool_path_error_mm.mean, result.tool_path_error_mm.max);
       if (result.min_clearance) std::printf(", clearance at least %.1f mm", 1e3 * *result.min_clearance);
+      if (const auto& least = result.min_margin)
+        std::printf(", %.1f mm more than asked (%s - %s keep %.3g mm)", 1e3 * least->margin, least->bodies[0].c_str(),
+                    least->bodies[1].c_str(), 1e3 * least->required);
       std::printf("\n");
       break;
     }

@@ -32,7 +32,7 @@ void print(const char* name, const baselines::TrackResult& result, double length
 /// s, the clearance (m, empty when nothing is near) and the joints of each row.
 void write_rows(const std::filesystem::path& file, const PreparedRobot& robot, const Problem& problem,
                 const std::vector<std::pair<double, Config>>& rows) {
-  const World world(robot.world(), problem.scene);
+  const World world(robot.world(), problem);
   World::Query query(world);
   std::ostringstream text;
   text.precision(17);

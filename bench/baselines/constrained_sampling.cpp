@@ -139,7 +139,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   const auto begin = std::chrono::steady_clock::now();
   const Chain& chain = robot.arm().chain;
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const World world(robot.world(), problem.scene);
+  const World world(robot.world(), problem);
   World::Query query(world, Certificates::kOn);
   const auto constraint = std::make_shared<OnPath>(chain, path);
   const auto valid = [&](const Eigen::VectorXd& x) {
@@ -149,7 +149,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
       const double margin = problem.limits.joint_margin - kSlack;
       if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin)) return false;
     }
-    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack && !query.first_below(joints(x), problem.limits.clearance);
+    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack && !query.first_below(joints(x), Keep::kNode);
   };
 
   const auto ambient = std::make_shared<ob::RealVectorStateSpace>(kDof + 1);

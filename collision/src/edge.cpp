@@ -6,26 +6,28 @@
 
 namespace swivel {
 
-double EdgeRule::motion(const Config& q0, const Config& q1) const {
+double EdgeRule::motion(const Config& q0, const Config& q1, int first, int last) const {
   double bound = 0;
-  for (int j = 0; j < kDof; ++j) bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+  for (int j = first; j < last; ++j) bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
   return bound;
 }
 
-std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1) const {
+std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tolerance) const {
   const double bound = motion(q0, q1);
   std::int64_t n = 1;
-  while (bound / (2.0 * static_cast<double>(n)) > h) n *= 2;
+  while (bound / (2.0 * static_cast<double>(n)) > tolerance) n *= 2;
   return n;
 }
 
-std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                     const Budget& budget) {
-  const std::int64_t leaves = rule.midpoints(q0, q1);
-  const double step = rule.motion(q0, q1) / static_cast<double>(leaves);
+namespace {
+
+/// below(q, level, suspect) names a pair too near, or none. No pair comes nearer by more than `bound` on the whole motion.
+template <class Below>
+std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, const Budget& budget,
+                               const Below& below) {
+  const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
-  query.forget();
   std::vector<std::int64_t> open{0}, next;  // first leaves of the intervals of this size that are not decided yet
   for (std::int64_t size = leaves; !open.empty(); size /= 2) {
     const double half_bound = step * static_cast<double>(size) / 2;
@@ -35,12 +37,12 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
       const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {
-        if (const auto pair = query.next_below(q, rule.d_edge + rule.h)) return pair;
+        if (const auto pair = below(q, Keep::kMidpoint, std::nullopt)) return pair;
         continue;
       }
-      const auto near = query.next_below(q, rule.d_edge + rule.h + half_bound);
-      if (!near) continue;
-      if (const auto pair = query.next_below(q, rule.d_edge, near)) return pair;
+      const auto suspect = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt);
+      if (!suspect) continue;
+      if (const auto pair = below(q, Keep::kMotion, suspect)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }
@@ -49,12 +51,42 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
   return std::nullopt;
 }
 
+/// The distance that a level asks of a pair that is near by design.
+double distance_of(const Level& level, const EdgeRule::Near& pair) {
+  return pair.d_edge + (level.keep == Keep::kMidpoint ? pair.h : 0) + level.more;
+}
+
+}  // namespace
+
+std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
+                                     const Budget& budget) {
+  query.forget();
+  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
+    return query.next_below(q, level, suspect);
+  };
+  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), budget, any)) return pair;
+  for (const EdgeRule::Near& near : rule.near) {
+    const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
+      return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
+    };
+    const double bound = rule.motion(q0, q1, near.first_joint, near.last);
+    if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, budget, this_one)) return pair;
+  }
+  return std::nullopt;
+}
+
 std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
-  const std::int64_t leaves = rule.midpoints(q0, q1);
   const Config delta = q1 - q0;
-  for (std::int64_t m = 0; m < leaves; ++m) {
-    const double t = (static_cast<double>(m) + 0.5) / static_cast<double>(leaves);
-    if (const auto pair = query.first_below(q0 + t * delta, rule.d_edge + rule.h)) return pair;
+  const auto midpoint = [&](std::int64_t m, std::int64_t leaves) -> Config {
+    return q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(leaves) * delta;
+  };
+  const std::int64_t leaves = rule.midpoints(q0, q1);
+  for (std::int64_t m = 0; m < leaves; ++m)
+    if (const auto pair = query.first_below(midpoint(m, leaves), Keep::kMidpoint)) return pair;
+  for (const EdgeRule::Near& near : rule.near) {
+    const std::int64_t own = rule.midpoints(q0, q1, near.h);
+    for (std::int64_t m = 0; m < own; ++m)
+      if (query.pair_below(midpoint(m, own), near.pair, near.d_edge + near.h)) return near.pair;
   }
   return std::nullopt;
 }

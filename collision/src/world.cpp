@@ -2,40 +2,39 @@
 #include "swivel/collision/world.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <tuple>
 
 #include "certificate.hpp"
 #include "nearest_points.hpp"
-#include "pair_rules.hpp"
 #include "pair_test.hpp"
+#include "robot_part.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
 namespace {
 
-/// What does not depend on the scene.
-struct RobotPart {
-  Chain chain;
-  std::vector<RobotBody> bodies;
-  std::vector<FclShape> shapes;
-  std::vector<BodyPair> pairs;
-};
+/// What one pair must keep, by Keep.
+using Kept = std::array<double, 4>;
+constexpr auto kMotionIndex = static_cast<std::size_t>(Keep::kMotion), kMidpointIndex = static_cast<std::size_t>(Keep::kMidpoint);
+Kept kept(const PairKeeps& keeps, double forgiven) {
+  const double motion = std::max(0.0, keeps.motion - forgiven);
+  return {0, std::max(0.0, keeps.node - forgiven), motion, motion + keeps.tolerance};
+}
 
-std::shared_ptr<const RobotPart> make_robot_part(const RobotModel& robot, const ArmModel& arm, const Problem& problem,
-                                                 MeshStore& meshes, const Budget& budget) {
-  auto part = std::make_shared<RobotPart>();
-  part->chain = arm.chain;
-  part->bodies = robot_bodies(robot, arm, problem.attached);
-  for (const RobotBody& body : part->bodies) {
-    budget.poll();
-    part->shapes.push_back(make_fcl_shape(body.shape, meshes));
-  }
-  const double near = std::max(problem.limits.clearance, problem.limits.d_edge() + problem.limits.edge_tolerance);
-  part->pairs = drop_always_near(candidate_robot_pairs(robot, part->bodies), robot.has_srdf, part->chain, part->bodies,
-                                 part->shapes, near, budget);
-  return part;
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
+  return text;
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 5;
+  std::string list;
+  for (std::size_t k = 0; k < std::min(names.size(), kMost); ++k) list += (k == 0 ? "" : ", ") + names[k];
+  return names.size() <= kMost ? list : list + " and " + std::to_string(names.size() - kMost) + " more";
 }
 
 }  // namespace
@@ -48,15 +47,25 @@ struct World::Impl {
   };
   std::shared_ptr<const RobotPart> robot;  // shared: the worlds of one robot
   std::shared_ptr<MeshStore> meshes;       // shared: the same
+  Limits limits;
+  std::vector<RobotPair> robot_pairs;
   std::vector<Body> bodies;
   std::vector<std::string> names;
   std::vector<BodyPair> pairs;
+  std::vector<Kept> keeps;  // by pair
+  std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
 
   Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene,
-       const Budget& budget, const Impl* like = nullptr)
-      : robot(std::move(robot_part)), meshes(std::move(store)), pairs(robot->pairs) {
+       const Limits& of_problem, const Budget& budget, double forgiven, const Impl* like = nullptr)
+      : robot(std::move(robot_part)),
+        meshes(std::move(store)),
+        limits(of_problem),
+        robot_pairs(robot->pairs(limits, budget)),
+        warnings(robot->warnings()) {
     const Span span("world");
+    for (const RobotPair& p : robot_pairs)
+      if (!p.dropped) pairs.push_back(p.pair);
     for (std::size_t i = 0; i < robot->bodies.size(); ++i)
       add(robot->bodies[i].name, {robot->shapes[i], robot->bodies[i].group, robot->bodies[i].pose});
     for (const SceneObject& object : scene) {
@@ -71,7 +80,53 @@ struct World::Impl {
       }
     }
     sort_pairs();
+    keeps.reserve(pairs.size());
+    for (const BodyPair& p : pairs) {
+      keeps.push_back(kept(keeps_of(p), forgiven));
+      const RobotPair* known = robot_pair(p);
+      if (known == nullptr || !known->near) continue;
+      Kept& own = keeps.back();
+      const auto [first_joint, last] = std::minmax(body(p.a).group, body(p.b).group);
+      near.push_back({p, own[kMotionIndex], known->keeps.tolerance, first_joint, last});
+      own[kMotionIndex] = own[kMidpointIndex] = -std::numeric_limits<double>::infinity();
+    }
+    warn_of_pairs();
     warm_up();
+  }
+
+  /// What is asked of one of `pairs`, m. The environment comes first, and all of it keeps the same.
+  [[nodiscard]] double required(std::size_t k, const Level& level) const {
+    return keeps[k][static_cast<std::size_t>(level.keep)] + level.more;
+  }
+  [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
+    if (level.keep == Keep::kNothing) return level.more;
+    if (p.b >= static_cast<int>(robot->bodies.size())) return required(0, level);
+    const auto found = std::find(pairs.rbegin(), pairs.rend(), p);
+    return required(static_cast<std::size_t>(pairs.rend() - found) - 1, level);
+  }
+  [[nodiscard]] PairKeeps keeps_of(const BodyPair& p) const {
+    const RobotPair* known = robot_pair(p);
+    return known ? known->keeps : PairKeeps{limits.clearance, limits.d_edge(), limits.edge_tolerance};
+  }
+  [[nodiscard]] const RobotPair* robot_pair(const BodyPair& p) const {
+    if (p.b >= static_cast<int>(robot->bodies.size())) return nullptr;
+    return &*std::find_if(robot_pairs.begin(), robot_pairs.end(), [&](const RobotPair& x) { return x.pair == p; });
+  }
+
+  void warn_of_pairs() {
+    std::vector<std::string> dropped, reduced;
+    for (const RobotPair& p : robot_pairs) {
+      if (!p.dropped && !p.reduced) continue;
+      const std::string text = names[static_cast<std::size_t>(p.pair.a)] + " - " + names[static_cast<std::size_t>(p.pair.b)];
+      if (p.dropped)
+        dropped.push_back(text);
+      else
+        reduced.push_back(text + " " + millimetres(p.keeps.node));
+    }
+    if (!dropped.empty()) warnings.push_back("robot pairs that touch in every posture are not kept apart: " + list_of(dropped));
+    if (!reduced.empty())
+      warnings.push_back("robot pairs that are near by design keep less than " + millimetres(limits.d_self()) + ": " +
+                         list_of(reduced));
   }
 
   void add(const std::string& name, Body body) {
@@ -113,17 +168,24 @@ struct World::Impl {
 
 World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
   auto meshes = std::make_shared<MeshStore>();
-  auto part = make_robot_part(robot, arm, problem, *meshes, budget);
-  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, budget);
+  auto part = std::make_shared<const RobotPart>(robot, arm, problem, *meshes, budget);
+  impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits, budget, 0);
 }
 World::World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget)
-    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, budget, like.impl_.get())) {}
+    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_->limits, budget, 0, like.impl_.get())) {
+}
+World::World(const World& like, const Problem& problem, const Budget& budget, double forgiven)
+    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, problem.scene, problem.limits, budget, forgiven,
+                                   like.impl_.get())) {}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;
 
 const std::vector<std::string>& World::body_names() const {
   return impl_->names;
+}
+std::array<std::string, 2> World::names(const BodyPair& pair) const {
+  return {impl_->names[static_cast<std::size_t>(pair.a)], impl_->names[static_cast<std::size_t>(pair.b)]};
 }
 const std::vector<BodyPair>& World::pairs() const {
   return impl_->pairs;
@@ -134,6 +196,18 @@ const std::vector<RobotBody>& World::bodies() const {
 bool World::has_meshes() const {
   const auto is_mesh = [](const Impl::Body& body) { return std::holds_alternative<MeshPtr>(body.shape.shape); };
   return std::any_of(impl_->bodies.begin(), impl_->bodies.end(), is_mesh);
+}
+PairKeeps World::keeps(const BodyPair& pair) const {
+  return impl_->keeps_of(pair);
+}
+const std::vector<RobotPair>& World::robot_pairs() const {
+  return impl_->robot_pairs;
+}
+std::vector<RobotPair> World::robot_pairs_with_medians() const {
+  return impl_->robot->pairs_with_medians(impl_->limits);
+}
+EdgeRule World::edge_rule(const std::array<double, kDof>& radii) const {
+  return {radii, impl_->limits.edge_tolerance, impl_->near};
 }
 const std::vector<std::string>& World::warnings() const {
   return impl_->warnings;
@@ -204,31 +278,37 @@ struct World::Query::Impl {
     for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) put(i);
   }
 
-  std::optional<BodyPair> first_below(double d, const std::optional<BodyPair>& suspect, bool keep) {
+  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& suspect, bool keep) {
     certain = certificates != Certificates::kOff;
-    const auto found = first(d, suspect, keep && certain);
+    const auto found = first(level, suspect, keep && certain);
     (found ? own.certified_colliding : own.certified_free) += certain;
     return found;
   }
-  std::optional<BodyPair> first(double d, const std::optional<BodyPair>& suspect, bool keep) {
-    if (suspect && below(*suspect, d)) return suspect;
+  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& suspect, bool keep) {
+    if (suspect && below(*suspect, level)) return suspect;
     put_all();
-    if (keep) return first_due(d, suspect);
-    for (const BodyPair& p : world->pairs)
-      if (p != suspect && is_below(p, d, certify_pair(p, d))) return p;
-    return std::nullopt;
-  }
-  std::optional<BodyPair> first_due(double d, const std::optional<BodyPair>& suspect) {
-    move_on();
-    find_due(d + kKeptSafety);
-    if (certificates == Certificates::kCompared) compare_others(d);
-    for (const std::size_t k : due) {
+    if (keep) return first_due(level, suspect);
+    for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
-      if (p != suspect && is_below(p, d, renewed(k, d))) return p;
+      const double d = world->required(k, level);
+      if (d >= 0 && p != suspect && is_below(p, d, certify_pair(p, d))) return p;
     }
     return std::nullopt;
   }
-  bool below(const BodyPair& p, double d) {
+  std::optional<BodyPair> first_due(const Level& level, const std::optional<BodyPair>& suspect) {
+    move_on();
+    find_due(level);
+    if (certificates == Certificates::kCompared) compare_others(level);
+    for (const std::size_t k : due) {
+      const BodyPair& p = world->pairs[k];
+      const double d = world->required(k, level);
+      if (d >= 0 && p != suspect && is_below(p, d, renewed(k, d))) return p;
+    }
+    return std::nullopt;
+  }
+  bool below(const BodyPair& p, const Level& level) {
+    const double d = world->required(p, level);
+    if (!(d >= 0)) return false;
     put(p.a);
     put(p.b);
     return is_below(p, d, certify_pair(p, d));
@@ -264,19 +344,20 @@ struct World::Query::Impl {
   [[nodiscard]] double moved_together(const BodyPair& p) const {
     return moved[static_cast<std::size_t>(p.a)] + moved[static_cast<std::size_t>(p.b)];
   }
-  void find_due(double enough) {
+  void find_due(const Level& level) {
     due.resize(reserve.size());
     std::size_t found = 0;
     for (std::size_t k = 0; k < reserve.size(); ++k) {
       due[found] = k;
-      found += !(reserve[k] - moved_together(world->pairs[k]) >= enough);  // NaN is due
+      found += !(reserve[k] - moved_together(world->pairs[k]) >= world->required(k, level) + kKeptSafety);  // NaN is due
     }
     due.resize(found);
     own.pairs_kept += static_cast<std::int64_t>(reserve.size() - found);
   }
-  void compare_others(double d) {
+  void compare_others(const Level& level) {
     for (std::size_t k = 0; k < reserve.size(); ++k) {
-      if (std::binary_search(due.begin(), due.end(), k)) continue;
+      const double d = world->required(k, level);
+      if (d < 0 || std::binary_search(due.begin(), due.end(), k)) continue;
       own.contradictions += test.below(placed(world->pairs[k].a), placed(world->pairs[k].b), d);
     }
   }
@@ -306,14 +387,14 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::first_below(const Config& q, double d, const std::optional<BodyPair>& suspect) {
+std::optional<BodyPair> World::Query::first_below(const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
   impl_->move_to(q);
-  return impl_->first_below(d, suspect, false);
+  return impl_->first_below(level, suspect, false);
 }
 
-std::optional<BodyPair> World::Query::next_below(const Config& q, double d, const std::optional<BodyPair>& suspect) {
+std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
   impl_->move_to(q);
-  return impl_->first_below(d, suspect, true);
+  return impl_->first_below(level, suspect, true);
 }
 
 void World::Query::forget() {
@@ -324,33 +405,49 @@ bool World::Query::surely_below() const {
   return impl_->surely;
 }
 
-bool World::Query::pair_below(const Config& q, const BodyPair& pair, double d) {
-  if (d < 0) return false;
+bool World::Query::pair_below(const Config& q, const BodyPair& pair, const Level& level) {
   impl_->move_to(q);
-  return impl_->below(pair, d);
+  return impl_->below(pair, level);
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {
   impl_->move_to(q);
   impl_->put_all();
-  const auto& pairs = impl_->world->pairs;
-  std::vector<std::pair<double, std::size_t>> order;  // least possible distance, index of the pair
+  const World::Impl& world = *impl_->world;
+  const auto& pairs = world.pairs;
+  struct Candidate {
+    double floor;  ///< least possible distance, m
+    std::size_t pair;
+    double required;
+  };
+  std::vector<Candidate> order;
   order.reserve(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const BodyPair& p = pairs[k];
-    order.emplace_back(distance_floor(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b)), k);
+    order.push_back({distance_floor(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b)), k,
+                     world.required(k, Keep::kNode)});
   }
-  std::sort(order.begin(), order.end());
+  std::sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
+    return std::tuple(x.floor - x.required, x.pair) < std::tuple(y.floor - y.required, y.pair);
+  });
 
-  double least = std::numeric_limits<double>::max();
-  std::size_t where = pairs.size();
-  for (const auto& [floor, k] : order) {
-    if (floor - kBoundSafety > least) break;
-    const double found = impl_->test.clearance(impl_->placed(pairs[k].a), impl_->placed(pairs[k].b));
-    if (std::tie(found, k) < std::tie(least, where)) std::tie(least, where) = std::tie(found, k);
+  constexpr double kMost = std::numeric_limits<double>::max();
+  std::tuple<bool, double, std::size_t> least{true, kMost, pairs.size()};  // does not touch, margin, pair
+  Clearance answer{kMost, {}, 0, kMost};
+  for (const Candidate& c : order) {
+    const bool may_touch = c.floor <= kBoundSafety, may_be_nearest = c.floor - kBoundSafety <= answer.least;
+    if (!may_touch && !may_be_nearest && c.floor - c.required - kBoundSafety > std::get<1>(least)) continue;
+    const double found = impl_->test.clearance(impl_->placed(pairs[c.pair].a), impl_->placed(pairs[c.pair].b));
+    answer.least = std::min(answer.least, found);
+    if (const std::tuple mine{found > 0, found - c.required, c.pair}; mine < least) {
+      least = mine;
+      answer.distance = found;
+      answer.pair = pairs[c.pair];
+      answer.required = c.required;
+    }
   }
-  if (where == pairs.size()) return std::nullopt;
-  return Clearance{least, pairs[where]};
+  if (order.empty()) return std::nullopt;
+  return answer;
 }
 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {

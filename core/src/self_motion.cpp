@@ -13,12 +13,12 @@ namespace swivel {
 
 namespace {
 
-constexpr int kSeeds = 32;             // lock values, evenly over a turn
-constexpr double kStep = 0.1;          // rad, Euclidean
-constexpr double kLeastStep = 1e-4;    // rad: below this a curve is singular
-constexpr double kReached = 1e-11;     // m, rad
-constexpr double kOnCurve = 0.02;      // rad from a chord: a seed there is known
-constexpr double kFarSlack = 1;        // relative discriminant of complex roots that give seeds
+constexpr int kSeeds = 32;           // lock values, evenly over a turn
+constexpr double kStep = 0.1;        // rad, Euclidean
+constexpr double kLeastStep = 1e-4;  // rad: below this a curve is singular
+constexpr double kReached = 1e-11;   // m, rad
+constexpr double kOnCurve = 0.02;    // rad from a chord: a seed there is known
+constexpr double kFarSlack = 1;      // relative discriminant of complex roots that give seeds
 constexpr int kMostPoints = 20000;
 
 Config difference(const Config& a, const Config& b) {
@@ -127,7 +127,8 @@ Curve trace(const Chain& chain, const Pose& tool, const Point& seed) {
   return curve;
 }
 
-std::vector<Curve> trace_all(const Chain& chain, const Pose& tool, int lock, const std::vector<std::pair<double, ClosedForm>>& forms) {
+std::vector<Curve> trace_all(const Chain& chain, const Pose& tool, int lock,
+                             const std::vector<std::pair<double, ClosedForm>>& forms) {
   std::vector<Curve> curves;
   const auto add_seed = [&](const Config& q) {
     const Point seed{q, tangent(chain, q)};
@@ -296,7 +297,9 @@ std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool) const {
           // Not through the image: ends stand on limits bit for bit.
           if (!bounded_[at] || q[j] < lower_[at] || q[j] > upper_[at]) q[j] = image(q[j], at);
         }
-      const auto less = [](const Config& a, const Config& b) { return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end()); };
+      const auto less = [](const Config& a, const Config& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+      };
       if (arc.closed) {
         std::rotate(arc.q.begin(), std::min_element(arc.q.begin(), arc.q.end(), less), arc.q.end());
         if (less(arc.q.back(), arc.q[1])) std::reverse(arc.q.begin() + 1, arc.q.end());

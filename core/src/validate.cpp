@@ -174,6 +174,7 @@ void validate_numbers(const Field& root, const Problem& problem) {
   const Field field = root("limits");
   const Limits& limits = problem.limits;
   number(field("clearance"), limits.clearance, kNonNegative);
+  number(field("self_clearance"), limits.self_clearance, kNonNegative);
   number(field("manipulability"), limits.manipulability, kNonNegative);
   number(field("joint_margin"), limits.joint_margin, kNonNegative);
   number(field("joint_step"), limits.joint_step, kPositive);

@@ -279,11 +279,12 @@ class ProblemReader {
   }
 
   void read_limits(const YamlValue& value) {
-    const YamlSection section =
-        value.section({"clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "step_error", "tool_path_error",
-                       "tool_angle_error", "tool_speed", "tool_turn_speed", "edges", "edge_clearance", "edge_tolerance"});
+    const YamlSection section = value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step",
+                                               "arm_slope", "step_error", "tool_path_error", "tool_angle_error", "tool_speed",
+                                               "tool_turn_speed", "edges", "edge_clearance", "edge_tolerance"});
     Limits& limits = problem_.limits;
     set(section, "clearance", Range::kExtent, limits.clearance);
+    set(section, "self_clearance", Range::kExtent, limits.self_clearance);
     set(section, "manipulability", Range::kNonNegative, limits.manipulability);
     set(section, "joint_margin", Range::kNonNegative, limits.joint_margin);
     set(section, "joint_step", Range::kPositive, limits.joint_step);

@@ -81,6 +81,28 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   return rows;
 }
 
+Json margin_json(const LeastMargin& least) {
+  return {{"margin", least.margin},
+          {"clearance", least.clearance},
+          {"required", least.required},
+          {"bodies", least.bodies},
+          {"row", least.row}};
+}
+
+Json reduced_json(const std::vector<SpecialPair>& pairs) {
+  Json list = Json::array();
+  for (const SpecialPair& pair : pairs)
+    list.push_back(
+        {{"bodies", pair.bodies}, {"median", pair.median}, {"clearance", pair.clearance}, {"edge_clearance", pair.edge_clearance}});
+  return list;
+}
+
+Json dropped_json(const std::vector<SpecialPair>& pairs) {
+  Json list = Json::array();
+  for (const SpecialPair& pair : pairs) list.push_back({{"bodies", pair.bodies}});
+  return list;
+}
+
 Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
 }
@@ -119,10 +141,12 @@ std::string to_json(const PlanResult& result) {
   json["tool_path_error_mm"] = {{"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},
                                 {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
   json["min_clearance"] = or_null(result.min_clearance);
+  json["min_margin"] = result.min_margin ? margin_json(*result.min_margin) : Json(nullptr);
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
+  json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};
   json["warnings"] = result.warnings;
   json["joint_names"] = result.joint_names;
   // File and joint names need not be UTF-8: replace what is not, rather than fail.

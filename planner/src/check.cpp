@@ -61,15 +61,14 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
 class Contacts {
  public:
   Contacts(const PreparedRobot& robot, const Problem& problem)
-      : world_(robot.world(), problem.scene), query_(world_), rule_(edge_rule(problem.limits, robot.radii())) {
-    rule_.d_edge = std::max(0.0, rule_.d_edge - kVerdictBand);
-  }
+      : world_(robot.world(), problem, {}, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())) {}
   std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
   std::optional<BodyPair> on_the_way(const Config& from, const Config& to) { return edge_blocked(query_, rule_, from, to); }
   [[nodiscard]] std::string names(const BodyPair& pair) const {
     const auto& name = world_.body_names();
     return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" + name[static_cast<std::size_t>(pair.b)] + "'";
   }
+  [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const { return world_.keeps(pair); }
   [[nodiscard]] std::int64_t fcl_calls() const { return query_.counters().fcl_calls; }
 
  private:
@@ -315,12 +314,12 @@ class Check {
     }
     const auto clearance = contacts_.clearance(row.q);
     if (!clearance) return;
-    result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->distance), clearance->distance);
+    result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
     if (!(clearance->distance > 0))
       fail("row %zu: %s touch", k, contacts_.names(clearance->pair).c_str());
-    else if (!(clearance->distance >= limits_.clearance - kVerdictBand))
+    else if (!(clearance->margin() >= 0))
       fail("row %zu: clearance %.3f mm between %s is below %.3f mm", k, 1e3 * clearance->distance,
-           contacts_.names(clearance->pair).c_str(), 1e3 * limits_.clearance);
+           contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.keeps(clearance->pair).node);
   }
 
   /// Arm angle and branch of a row are those of its joints.
@@ -355,7 +354,8 @@ class Check {
     examine_step_error(k);
     if (limits_.edges != EdgeMode::kContinuous) return;
     if (const auto pair = contacts_.on_the_way(from, to))
-      fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(), 1e3 * limits_.d_edge());
+      fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(),
+           1e3 * contacts_.keeps(*pair).motion);
   }
 
   bool may_move(std::size_t k) {

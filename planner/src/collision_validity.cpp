@@ -4,14 +4,6 @@
 #include "swivel/core/timeline.hpp"
 namespace swivel {
 
-EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii) {
-  EdgeRule rule;
-  rule.radii = radii;
-  rule.d_edge = limits.d_edge();
-  rule.h = limits.edge_tolerance;
-  return rule;
-}
-
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
                                      Executor& executor, int lanes, const Budget& budget, const Progress& progress)
     : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), budget_(budget), progress_(progress) {
@@ -53,7 +45,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, World::Query& q
   const int bodies = static_cast<int>(world_->body_names().size());
   std::optional<BodyPair> suspect;
   if (question.suspect != kNoFault) suspect = {question.suspect / bodies, question.suspect % bodies};
-  const auto pair = query.next_below(question.q, lattice_->limits().clearance, suspect);
+  const auto pair = query.next_below(question.q, Keep::kNode, suspect);
   if (!pair) return {.valid = true};
   return {false, dependence(*lattice_, *world_, query, question.q, *pair), pair->a * bodies + pair->b};
 }
@@ -73,7 +65,7 @@ std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query
       depends |= kOfGroup[static_cast<std::size_t>(world.bodies()[static_cast<std::size_t>(body)].group)];
   }
   if (!lattice.arm().exact && depends != 0) return kOnNodeAlone;
-  if (!query.surely_below() && !query.pair_below(q, pair, lattice.limits().clearance - kVerdictBand)) return kOnNodeAlone;
+  if (!query.surely_below() && !query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand))) return kOnNodeAlone;
   return depends;
 }
 

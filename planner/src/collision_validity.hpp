@@ -49,7 +49,4 @@ class CollisionValidity final : public Validity {
 [[nodiscard]] std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query& query, const Config& q,
                                       const BodyPair& pair);
 
-/// The edge rule of a problem.
-[[nodiscard]] EdgeRule edge_rule(const Limits& limits, const std::array<double, kDof>& radii);
-
 }  // namespace swivel

@@ -174,10 +174,18 @@ void fill_tool_path_error(const PreparedRobot& robot, const Lattice& lattice, co
   result.evidence.tool_path_error = true;
 }
 
+void list_special_pairs(const World& world, PlanResult& result) {
+  for (const RobotPair& p : world.robot_pairs())
+    if (p.dropped || p.reduced)
+      (p.dropped ? result.dropped_pairs : result.reduced_pairs)
+          .push_back({world.names(p.pair), p.median, p.keeps.node, p.keeps.motion});
+}
+
 void fill_postures(const PreparedRobot& robot, const Lattice& lattice, const World& world, const Budget& budget,
                    PlanResult& result) {
   World::Query query(world);
   std::optional<double> least;
+  std::optional<LeastMargin> margin;
   double manipulability = std::numeric_limits<double>::infinity();
   std::vector<double> arm_angle;
   for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
@@ -186,9 +194,13 @@ void fill_postures(const PreparedRobot& robot, const Lattice& lattice, const Wor
     manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
     arm_angle.push_back(conventional_arm_angle(robot.srs(), lattice.path().layer(static_cast<int>(i)).tool, q));
     const auto clearance = query.clearance(q);
-    if (clearance) least = std::min(least.value_or(clearance->distance), clearance->distance);
+    if (!clearance) continue;
+    least = std::min(least.value_or(clearance->least), clearance->least);
+    if (!margin || clearance->margin() < margin->margin)
+      margin = {clearance->margin(), clearance->distance, clearance->required, world.names(clearance->pair), static_cast<int>(i)};
   }
   result.min_clearance = least;
+  result.min_margin = std::move(margin);
   result.min_manipulability = manipulability;
   result.arm_angle = std::move(arm_angle);
   result.evidence.postures = true;
@@ -238,14 +250,15 @@ void find(const PreparedRobot& robot, const Problem& problem, const PlanOptions&
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
   result.time_ms["lattice"] = watch.lap();
-  const World world(robot.world(), problem.scene, budget);
+  const World world(robot.world(), problem, budget);
   result.time_ms["world"] = watch.lap();
   result.warnings = limit_warnings(robot.arm().chain);
   result.warnings.insert(result.warnings.end(), world.warnings().begin(), world.warnings().end());
+  list_special_pairs(world, result);
   result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
                     lattice.nodes(),  path.merged_waypoints()};
 
-  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  const EdgeRule rule = world.edge_rule(robot.radii());
   if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
   CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, lanes_of(options), budget, options.progress);
   const Found found = search(lattice, validity, options, budget, result);

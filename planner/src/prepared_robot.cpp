@@ -9,12 +9,6 @@ namespace swivel {
 
 namespace {
 
-/// What the list of robot pairs was made for, m; 0 where it does not depend on the problem's limits.
-double pair_distance_of(const Problem& problem) {
-  if (problem.robot->has_srdf && problem.attached.empty()) return 0;
-  return std::max(problem.limits.clearance, problem.limits.d_edge() + problem.limits.edge_tolerance);
-}
-
 bool same(const AttachedBody& a, const AttachedBody& b) {
   return a.name == b.name && a.shape == b.shape && a.pose.matrix() == b.pose.matrix() && a.link == b.link;
 }
@@ -30,7 +24,6 @@ PreparedRobot::Basis::Basis(const Problem& problem) {
   tool = problem.tool;
   hold = problem.hold;
   attached = problem.attached;
-  pair_distance = pair_distance_of(problem);
 }
 
 PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
@@ -53,8 +46,6 @@ void PreparedRobot::require_prepared_for(const Problem& problem) const {
   require(problem.hold == basis_.hold, "hold");
   require(std::equal(problem.attached.begin(), problem.attached.end(), basis_.attached.begin(), basis_.attached.end(), same),
           "attached");
-  require(pair_distance_of(problem) == basis_.pair_distance,
-          "limits.clearance, edge_clearance or edge_tolerance, which decides which pairs of robot bodies are asked about,");
 }
 
 }  // namespace swivel

@@ -41,7 +41,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
   robot.require_prepared_for(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  const World world(robot.world(), problem.scene, budget);
+  const World world(robot.world(), problem, budget);
   World::Query query(world, Certificates::kOn);
 
   LatticeMap map;
@@ -79,7 +79,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
       }
       const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
       const std::int64_t before = decided(query.counters());
-      const auto pair = query.first_below(q, problem.limits.clearance);
+      const auto pair = query.first_below(q, Keep::kNode);
       node.certified = decided(query.counters()) > before;
       node.state = pair ? NodeState::kBlocked : NodeState::kFree;
       if (pair)

@@ -202,7 +202,7 @@ class Clearances {
     values.push_back(kUnknown);
     if (asked_++ % each_ != 0 && !surely) return;
     if (const auto clearance = query_.clearance(q))
-      values.back() = static_cast<std::uint16_t>(std::min(1e4 * clearance->distance, kUnknown - 1.0));
+      values.back() = static_cast<std::uint16_t>(std::min(1e4 * clearance->least, kUnknown - 1.0));
   }
   void skip() { values.push_back(kUnknown); }
   std::vector<std::uint16_t> values;
@@ -294,7 +294,7 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                     const std::string& result_json, const Budget& budget) {
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  const World world(robot.world(), problem.scene, budget);
+  const World world(robot.world(), problem, budget);
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   const std::string reason = diagnosis.is_object() ? diagnosis.value("reason", "") : "";

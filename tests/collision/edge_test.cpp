@@ -66,9 +66,7 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
   const ArmModel arm = arm_of(robot);
   Problem problem = problem_for(robot);
   const World base(robot, arm, problem);
-  EdgeRule rule;
-  rule.radii = motion_radii(arm.chain, base.bodies());
-  rule.d_edge = 0.0025;
+  const EdgeRule rule = base.edge_rule(motion_radii(arm.chain, base.bodies()));
   int blocked = 0, free = 0, in_band = 0;
   std::int64_t leaves = 0;
   for (int w = 0; w < 100; ++w) {
@@ -88,7 +86,7 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
       for (std::int64_t m = 0; m < n; ++m)
         least =
             std::min(least, query.clearance(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0))->distance);
-      EXPECT_NEAR(least, rule.d_edge + rule.h, kTau);
+      EXPECT_NEAR(least, problem.limits.d_edge() + rule.h, kTau);
       ++in_band;
     }
   }
@@ -115,9 +113,7 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   Pose pose = Pose::Identity();
   pose.translation() = arm.chain.tool(middle).translation();
   const World world(empty, {{"speck", Sphere{0.001}, pose, {}}});
-  EdgeRule rule;
-  rule.radii = motion_radii(arm.chain, world.bodies());
-  rule.d_edge = 0.0025;
+  const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
   World::Query query(world);
   EXPECT_FALSE(query.first_below(q0, 0.01));
   EXPECT_FALSE(query.first_below(q1, 0.01));
@@ -127,6 +123,51 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   EXPECT_TRUE(edge_blocked(query, rule, q1, q0));
   World::Query other(empty);
   EXPECT_FALSE(edge_blocked(other, rule, q0, q1));
+}
+
+/// Pairs that are near by design have motions, and where the median is small tolerances, of their own.
+TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
+  Random random(42);
+  int blocked = 0, free = 0, in_band = 0;
+  for (const double gap : {0.0006, 0.002, 0.004}) {
+    const RobotModel robot = near_wrist_arm(gap);
+    const ArmModel arm = arm_of(robot);
+    const World world(robot, arm, problem_for(robot));
+    const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
+    ASSERT_EQ(rule.near.size(), 1u);
+    const EdgeRule::Near wrist = rule.near[0];
+    EXPECT_EQ(wrist.first_joint, 5);
+    EXPECT_EQ(wrist.last, 7);
+    EXPECT_EQ(wrist.h < rule.h, gap < 0.001);
+    World::Query fast(world, Certificates::kOn), plain(world);
+    for (int k = 0; k < 60; ++k) {
+      Config q0 = random.config(0.5);  // stretched, so that nothing else is near
+      q0[5] = random.uniform(-2.5, 2.5);
+      q0[6] = random.uniform(-2.5, 2.5);
+      const Config q1 = q0 + random.config(0.04);
+      const auto found = edge_blocked(fast, rule, q0, q1), expected = edge_blocked_plain(plain, rule, q0, q1);
+      ++(expected ? blocked : free);
+      const auto clearance = [&](double t) { return plain.clearance(q0 + t * (q1 - q0))->least; };
+      if (found.has_value() != expected.has_value()) {
+        const std::int64_t n = rule.midpoints(q0, q1, wrist.h);
+        double least = 1;
+        for (std::int64_t m = 0; m < n; ++m)
+          least = std::min(least, clearance((static_cast<double>(m) + 0.5) / static_cast<double>(n)));
+        EXPECT_NEAR(least, wrist.d_edge + wrist.h, kTau);
+        ++in_band;
+        continue;
+      }
+      if (expected) {
+        EXPECT_EQ(*found, wrist.pair);
+        continue;
+      }
+      for (int i = 0; i <= 20; ++i) ASSERT_GE(clearance(i / 20.0), wrist.d_edge - kTau) << gap;
+    }
+  }
+  std::printf("%d blocked, %d free, %d in the band\n", blocked, free, in_band);
+  EXPECT_GT(blocked, 20);
+  EXPECT_GT(free, 40);
+  EXPECT_LE(in_band, 3);
 }
 
 TEST(EdgeBlocked, StandingStill) {

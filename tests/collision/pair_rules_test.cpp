@@ -2,6 +2,8 @@
 // Which pairs count. design.md 1.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <set>
 
 #include "support.hpp"
@@ -86,6 +88,160 @@ TEST(PairRules, WithoutSrdfAlwaysNearPairsDoNotCount) {
   EXPECT_TRUE(pairs_of(robot, problem_for(robot)).count({"l2", "l4"}));
   robot = capsule_arm();
   EXPECT_TRUE(pairs_of(robot, problem_for(robot)).count({"l0", "l7"}));
+}
+
+/// By the limits' own formulas, from the medians.
+void expect_keeps(const World& world, const Limits& limits) {
+  for (const RobotPair& p : world.robot_pairs_with_medians()) {
+    if (p.dropped) continue;
+    const double self = limits.self_clearance.value_or(limits.clearance), h = limits.edge_tolerance;
+    EXPECT_DOUBLE_EQ(p.keeps.node, std::min(self, p.median / 2));
+    EXPECT_DOUBLE_EQ(p.keeps.motion, std::min(limits.edge_clearance.value_or(self / 2), p.median / 4));
+    if (p.median / 2 > kVerdictBand) {
+      EXPECT_DOUBLE_EQ(p.keeps.tolerance, std::min(h, p.median / 2));
+    }
+    EXPECT_GT(p.keeps.tolerance, 0);
+    EXPECT_EQ(p.reduced, p.keeps.node < self || p.keeps.motion < limits.edge_clearance.value_or(self / 2) || p.keeps.tolerance < h);
+    const PairKeeps keeps = world.keeps(p.pair);
+    EXPECT_EQ(keeps.node, p.keeps.node);
+    EXPECT_EQ(keeps.motion, p.keeps.motion);
+  }
+}
+
+const RobotPair& find_pair(const std::vector<RobotPair>& pairs, const World& world, const std::string& a, const std::string& b) {
+  const auto found = std::find_if(pairs.begin(), pairs.end(), [&](const RobotPair& p) {
+    return world.names(p.pair) == std::array<std::string, 2>{a, b};
+  });
+  EXPECT_NE(found, pairs.end());
+  return *found;
+}
+
+TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
+  const RobotModel robot = near_wrist_arm(0.002);
+  Config apart = Config::Zero(), meeting = Config::Zero();
+  meeting[5] = kPi / 2;
+  for (const double clearance : {0.0, 0.001, 0.005, 0.05}) {
+    Problem problem = problem_for(robot);
+    problem.limits.clearance = clearance;
+    const World world(robot, arm_of(robot), problem);
+    const auto pairs = world.robot_pairs_with_medians();
+    const RobotPair& wrist = find_pair(pairs, world, "l5", "l7");
+    EXPECT_FALSE(wrist.dropped);
+    EXPECT_NEAR(wrist.median, 0.002, 0.0004);
+    for (const Certificates certificates : {Certificates::kOff, Certificates::kOn}) {
+      World::Query query(world, certificates);
+      EXPECT_FALSE(query.first_below(apart, Keep::kNode)) << clearance;
+      const auto pair = query.first_below(meeting, Keep::kNode);
+      ASSERT_TRUE(pair) << clearance;
+      EXPECT_EQ(*pair, wrist.pair);
+    }
+    World::Query query(world);
+    const auto at = query.clearance(apart);
+    ASSERT_TRUE(at);
+    EXPECT_EQ(at->pair, wrist.pair);
+    EXPECT_NEAR(at->distance, 0.002, kVerdictBand);
+    EXPECT_DOUBLE_EQ(at->required, std::min(clearance, wrist.median / 2));
+    EXPECT_EQ(at->least, at->distance);
+    EXPECT_EQ(query.clearance(meeting)->distance, 0);
+    expect_keeps(world, problem.limits);
+  }
+}
+
+TEST(PairRules, WhatPairsKeepGrowsWithTheLimits) {
+  const std::vector<RobotModel> robots{near_wrist_arm(0.0006), near_wrist_arm(0.002), capsule_arm()};
+  Random random(51);
+  int pairs = 0, reduced = 0, plain = 0;
+  for (const RobotModel& robot : robots) {
+    Problem problem = problem_for(robot);
+    const World first(robot, arm_of(robot), problem);
+    for (int trial = 0; trial < 20; ++trial) {
+      problem.limits = {};
+      if (trial % 3 == 1) problem.limits.self_clearance = random.uniform(0, 0.02);
+      if (trial % 4 == 1) problem.limits.edge_clearance = random.uniform(0, 0.02);
+      std::vector<RobotPair> before;
+      for (double clearance = 0; clearance < 0.2; clearance += random.uniform(0, 0.02)) {
+        problem.limits.clearance = clearance;
+        const World world(first, problem);  // prepared for other limits
+        const std::vector<RobotPair> now = world.robot_pairs();
+        for (std::size_t k = 0; k < before.size(); ++k) {
+          ASSERT_EQ(now[k].pair, before[k].pair);
+          ASSERT_EQ(now[k].dropped, before[k].dropped);
+          ASSERT_GE(now[k].keeps.node, before[k].keeps.node);
+          ASSERT_GE(now[k].keeps.motion, before[k].keeps.motion);
+          ASSERT_EQ(now[k].keeps.tolerance, before[k].keeps.tolerance);
+          ++pairs;
+          ++(now[k].reduced ? reduced : plain);
+        }
+        before = now;
+      }
+      expect_keeps(World(first, problem), problem.limits);
+    }
+  }
+  std::printf("%d pairs compared, %d reduced, %d not\n", pairs, reduced, plain);
+  EXPECT_GT(reduced, 300);
+  EXPECT_GT(plain, 300);
+}
+
+TEST(PairRules, AnSrdfLeavesNothingToSamples) {
+  RobotModel robot = near_wrist_arm(0.002);
+  robot.has_srdf = true;
+  Problem problem = problem_for(robot);
+  problem.limits.self_clearance = 0.003;
+  const World world(robot, arm_of(robot), problem);
+  for (const RobotPair& p : world.robot_pairs()) {
+    EXPECT_FALSE(p.dropped || p.reduced);
+    EXPECT_EQ(p.keeps.node, 0.003);
+    EXPECT_EQ(p.keeps.motion, 0.0015);
+  }
+  EXPECT_TRUE(world.warnings().empty());
+  EXPECT_TRUE(World::Query(world).first_below(Config::Zero(), Keep::kNode));  // 2 mm apart
+}
+
+TEST(PairRules, ForgivenNearnessIsNoContact) {
+  RobotModel robot = near_wrist_arm(0.002);
+  robot.has_srdf = true;
+  Problem problem = problem_for(robot);
+  Config touching = Config::Zero();
+  touching[5] = kPi / 2;
+  for (const auto& [clearance, apart_is_forgiven] : {std::pair(0.00203, true), std::pair(0.0021, false), std::pair(0.0, true)}) {
+    problem.limits.clearance = clearance;
+    const World strict(robot, arm_of(robot), problem), forgiving(strict, problem, {}, kVerdictBand);
+    World::Query query(forgiving);
+    EXPECT_EQ(World::Query(strict).first_below(Config::Zero(), Keep::kNode).has_value(), clearance > 0.002);
+    EXPECT_EQ(query.first_below(Config::Zero(), Keep::kNode).has_value(), !apart_is_forgiven) << clearance;
+    EXPECT_TRUE(query.first_below(touching, Keep::kNode)) << clearance;
+    EXPECT_TRUE(edge_blocked(query, forgiving.edge_rule({1, 1, 1, 1, 1, 0.2, 0.2}), touching, touching));
+  }
+}
+
+TEST(PairRules, SpecialPairsAreTold) {
+  RobotModel robot = near_wrist_arm(0.002);
+  EXPECT_EQ(World(robot, arm_of(robot), problem_for(robot)).warnings().size(), 1u);
+  robot.links[2].collision[0] = {Sphere{0.3}, Pose::Identity()};  // in contact with l0 everywhere
+  const World world(robot, arm_of(robot), problem_for(robot));
+  ASSERT_EQ(world.warnings().size(), 2u);
+  EXPECT_NE(world.warnings()[0].find("touch in every posture"), std::string::npos);
+  EXPECT_NE(world.warnings()[0].find("l0 - l2"), std::string::npos);
+  EXPECT_NE(world.warnings()[1].find("keep less than 5 mm: l5 - l7"), std::string::npos);
+  EXPECT_FALSE(pairs_of(robot, problem_for(robot)).count({"l0", "l2"}));
+}
+
+TEST(PairRules, LinksWithoutAShapeAreTold) {
+  RobotModel robot = arm_with_gripper();
+  robot.has_srdf = true;
+  EXPECT_TRUE(World(robot, arm_of(robot), problem_for(robot)).warnings().empty());
+  robot.links[7].collision.clear();  // the flange and the finger move with it and have shapes
+  EXPECT_TRUE(World(robot, arm_of(robot), problem_for(robot)).warnings().empty());
+  robot.links[3].collision.clear();
+  robot.links[5].collision.clear();
+  const auto warnings = World(robot, arm_of(robot), problem_for(robot)).warnings();
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].rfind("l3:", 0), 0u) << warnings[0];
+  EXPECT_EQ(warnings[1].rfind("l5:", 0), 0u) << warnings[1];
+  for (Link& link : robot.links) link.collision.clear();
+  const World bare(robot, arm_of(robot), problem_for(robot));
+  ASSERT_EQ(bare.warnings().size(), 1u);
+  EXPECT_NE(bare.warnings()[0].find("no collision shape at all"), std::string::npos);
 }
 
 TEST(PairRules, AttachedBodies) {

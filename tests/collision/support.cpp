@@ -197,6 +197,14 @@ RobotModel capsule_arm() {
   return robot;
 }
 
+RobotModel near_wrist_arm(double gap) {
+  RobotModel robot = capsule_arm();
+  Pose eccentric = Pose::Identity();  // of the centre about joint 6, which is 0.09 above the end of link 5's axis
+  eccentric.translation() = Vector3d(1.1 * gap, 0, -0.08);
+  robot.links[7].collision = {{Sphere{0.09 - 0.065 - gap}, eccentric}};
+  return robot;
+}
+
 Problem problem_for(const RobotModel& robot) {
   Problem problem;
   problem.source = "test";

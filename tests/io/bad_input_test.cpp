@@ -108,6 +108,7 @@ const Case kCases[] = {
     {"JointStepZero", "limits", "{joint_step: 0}", {"limits.joint_step", "> 0"}},
     {"ArmSlopeZero", "limits", "{arm_slope: 0}", {"limits.arm_slope", "> 0"}},
     {"EdgeToleranceZero", "limits", "{edge_tolerance: 0}", {"limits.edge_tolerance", "> 0"}},
+    {"SelfClearanceNegative", "limits", "{self_clearance: -1}", {"limits.self_clearance", ">= 0"}},
     {"EdgeClearanceNegative", "limits", "{edge_clearance: -1}", {"limits.edge_clearance", ">= 0"}},
     {"StepErrorZero", "limits", "{step_error: 0}", {"limits.step_error", "> 0"}},
     {"ToolPathErrorZero", "limits", "{tool_path_error: 0}", {"limits.tool_path_error", "> 0"}},

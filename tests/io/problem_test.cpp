@@ -20,6 +20,7 @@ TEST(ProblemFile, Defaults) {
   EXPECT_EQ(problem.limits.tool_path_error, 0.001);
   EXPECT_EQ(problem.limits.edges, EdgeMode::kContinuous);
   EXPECT_FALSE(problem.limits.edge_clearance);
+  EXPECT_FALSE(problem.limits.self_clearance);
   EXPECT_FALSE(problem.start);
   EXPECT_EQ(problem.cost.metric, CostMetric::kL2);
   EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() && problem.attached.empty());
@@ -49,7 +50,8 @@ TEST(ProblemFile, EveryKey) {
        "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, 1], quat: [0.9995, 0, 0, 0]}]}"},
       {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3}"},
       {"limits",
-       "{clearance: 0.01, manipulability: 0.02, joint_margin: 0.03, joint_step: 0.4, arm_slope: 5, step_error: 0.6, "
+       "{clearance: 0.01, self_clearance: 0.002, manipulability: 0.02, joint_margin: 0.03, joint_step: 0.4, arm_slope: 5, "
+       "step_error: 0.6, "
        "tool_path_error: null, "
        "tool_angle_error: 0.8, tool_speed: 0.9, tool_turn_speed: 1, edges: nodes, edge_clearance: 0, edge_tolerance: 0.001}"},
       {"start", "{joints: [1, 2, 3, 4, 5, 6, 7]}"},
@@ -90,6 +92,7 @@ TEST(ProblemFile, EveryKey) {
   EXPECT_EQ(limits.tool_turn_speed, 1);
   EXPECT_EQ(limits.edges, EdgeMode::kNodes);
   EXPECT_EQ(limits.edge_clearance, 0);
+  EXPECT_EQ(limits.self_clearance, 0.002);
   EXPECT_EQ(limits.edge_tolerance, 0.001);
   ASSERT_TRUE(problem.start);
   EXPECT_EQ((*problem.start)[6], 7);

@@ -26,6 +26,9 @@ PlanResult solved() {
   result.evidence = Evidence::all();
   result.tool_path_error_mm = {0.1, 0.2};
   result.min_clearance = 0.012;
+  result.min_margin = {0.001, 0.003, 0.002, {"link_5", "link_7"}, 4};
+  result.reduced_pairs = {{{"link_5", "link_7"}, 0.004, 0.002, 0.001}};
+  result.dropped_pairs = {{{"link_1", "link_3"}, 0, 0, 0}};
   result.min_manipulability = 0.05;
   result.arm_angle = {0.1, -0.2};
   TrajectoryRow row;
@@ -41,9 +44,10 @@ PlanResult solved() {
 
 TEST(Result, KeysInOrder) {
   const Json json = Json::parse(to_json(solved()));
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
-                                                     "tool_path_error_mm", "min_clearance", "min_manipulability", "arm_angle",
-                                                     "diagnosis", "trajectory", "warnings", "joint_names"}));
+  EXPECT_EQ(keys_of(json),
+            (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
+                                      "tool_path_error_mm", "min_clearance", "min_margin", "min_manipulability", "arm_angle",
+                                      "diagnosis", "trajectory", "robot_pairs", "warnings", "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
             (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints"}));
   EXPECT_EQ(keys_of(json["counters"]),
@@ -66,6 +70,11 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["time_ms"]["stages"], Json({{"search", 0.25}}));
   EXPECT_EQ(json["tool_path_error_mm"]["max"], 0.2);
   EXPECT_EQ(json["min_clearance"], 0.012);
+  EXPECT_EQ(json["min_margin"],
+            Json({{"margin", 0.001}, {"clearance", 0.003}, {"required", 0.002}, {"bodies", {"link_5", "link_7"}}, {"row", 4}}));
+  EXPECT_EQ(json["robot_pairs"]["dropped"], Json::parse(R"([{"bodies": ["link_1", "link_3"]}])"));
+  EXPECT_EQ(json["robot_pairs"]["reduced"],
+            Json::parse(R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002, "edge_clearance": 0.001}])"));
   EXPECT_TRUE(json["diagnosis"].is_null());
   ASSERT_EQ(json["trajectory"].size(), 2u);
   EXPECT_EQ(json["trajectory"][0]["phi"].get<double>(), kPi);
@@ -88,7 +97,7 @@ TEST(Result, Infeasible) {
   result.diagnosis.layers_known = 16;
   const Json json = Json::parse(to_json(result));
   EXPECT_EQ(json["status"], "infeasible");
-  for (const char* key : {"cost", "min_clearance", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
+  for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   const Json& diagnosis = json["diagnosis"];
   EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "shortfall", "empty_layers",

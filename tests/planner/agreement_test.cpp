@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "collision_validity.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/planner/check.hpp"
@@ -32,14 +31,13 @@ Answer brute_force(const Problem& problem) {
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const World& world = robot.world();
   World::Query query(world);
-  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  const EdgeRule rule = world.edge_rule(robot.radii());
   const auto layers = static_cast<std::size_t>(lattice.layers()), width = static_cast<std::size_t>(lattice.width());
   std::vector<std::vector<std::optional<Config>>> nodes(layers, std::vector<std::optional<Config>>(width));
   for (std::size_t i = 0; i < layers; ++i)
     for (std::size_t slot = 0; slot < width; ++slot) {
       const auto q = lattice.node(static_cast<int>(i), static_cast<int>(slot));
-      if (q && robot.arm().chain.manipulability(*q) >= problem.limits.manipulability &&
-          !query.first_below(*q, problem.limits.clearance))
+      if (q && robot.arm().chain.manipulability(*q) >= problem.limits.manipulability && !query.first_below(*q, Keep::kNode))
         nodes[i][slot] = q;
     }
   const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
@@ -128,12 +126,17 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
 TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Agreement");
   const auto robots = all_robots();
+  // Whose own bodies are near each other, and no SRDF says so.
+  const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")), without_srdf(data_robot("iiwa14"))};
+  int reduced = 0, near_motions = 0;
   int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0;
   std::int64_t certified = 0, lazy_fcl_calls = 0;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem = random_problem(trial % 8 == 7 ? bare[static_cast<std::size_t>(trial / 8) % bare.size()]
+                                                          : robots[static_cast<std::size_t>(trial) % robots.size()],
+                                           random);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
     const Answer truth = brute_force(problem);
@@ -164,6 +167,8 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       expect_same(results[0], results[k], what + " planner " + results[k].planner);
       if (HasFatalFailure()) return;
     }
+    reduced += !results[0].reduced_pairs.empty();
+    near_motions += !results[0].reduced_pairs.empty() && truth.solved && problem.limits.edges == EdgeMode::kContinuous;
     continuous += problem.limits.edges == EdgeMode::kContinuous;
     started += problem.start.has_value();
     obstacles += !problem.scene.empty();
@@ -187,7 +192,9 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       ++infeasible;
       ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
       ASSERT_FALSE(results[0].diagnosis.reason.empty()) << what;
-      ASSERT_TRUE(results[0].diagnosis.complete) << what;
+      // Pairs that are near by design cost questions, of which a diagnosis asks so many and no more.
+      ASSERT_TRUE(results[0].diagnosis.complete || trial % 8 == 7) << what;
+      if (!results[0].diagnosis.complete) continue;
       std::vector<int> empty;
       for (const EmptyLayer& layer : results[0].diagnosis.empty_layers) empty.push_back(layer.layer);
       ASSERT_EQ(empty, truth.empty) << what;
@@ -198,6 +205,9 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
       count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
       static_cast<long long>(lazy_fcl_calls));
+  std::printf("%d problems with reduced pairs, of which %d solved with motions\n", reduced, near_motions);
+  EXPECT_GE(reduced, count / 24);
+  EXPECT_GT(near_motions, 2);
   EXPECT_GE(solved, count / 4);
   EXPECT_GT(certified, 10 * lazy_fcl_calls);
   EXPECT_GE(infeasible, count / 20);
@@ -323,7 +333,8 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
       if (HasFatalFailure()) return;
     }
     ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
-    ASSERT_EQ(results[0].warnings.empty(), trial % 3 != 0) << what;
+    const auto of_limits = [](const std::string& warning) { return warning.find("turns apart") != std::string::npos; };
+    ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits), trial % 3 != 0) << what;
     if (!truth.solved) continue;
     ASSERT_EQ(results[0].cost, truth.cost) << what;
     ASSERT_EQ(results[0].trajectory[0].q, q) << what;

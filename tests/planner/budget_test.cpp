@@ -63,7 +63,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
   const ToolPath path(waypoints, problem.resolution, problem.source);
   const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const World world(robot.world(), problem.scene);
-  const EdgeRule rule = edge_rule(problem.limits, robot.radii());
+  const EdgeRule rule = world.edge_rule(robot.radii());
   Executor executor(2);
   const auto validity = [&] { return CollisionValidity(lattice, world, rule, Certificates::kOn, executor, 4, spent, {}); };
   const auto long_path = [&] {

@@ -465,13 +465,14 @@ std::optional<TrajectoryRow> row_between(const Good& good, double place) {
 }
 
 /// Whether a move keeps all rules, with something to spare; by samples.
-bool keeps_rules(const Good& good, World::Query& query, const TrajectoryRow& a, double begin, const TrajectoryRow& b, double end) {
+bool keeps_rules(const Good& good, const World& world, World::Query& query, const TrajectoryRow& a, double begin,
+                 const TrajectoryRow& b, double end) {
   const Limits& limits = good.problem.limits;
   const Config move = b.q - a.q;
   const double steps = std::max(1.0, std::floor(end - begin + 1e-9));
   if (move.lpNorm<Eigen::Infinity>() > std::min(3.0, 0.9 * steps * limits.joint_step)) return false;
   if (deviation(good, a.q, b.q, begin, end, 0.5 * *limits.tool_path_error, 0.01) > 1) return false;
-  return !query.first_below(b.q, limits.clearance) && !edge_blocked_plain(query, edge_rule(limits, good.robot->radii()), a.q, b.q);
+  return !query.first_below(b.q, Keep::kNode) && !edge_blocked_plain(query, world.edge_rule(good.robot->radii()), a.q, b.q);
 }
 
 TEST(Check, LegalResamplingsPass) {
@@ -500,17 +501,17 @@ TEST(Check, LegalResamplingsPass) {
     for (std::size_t k = 1; k < places.size(); ++k) {
       const auto next = row_at(places[k]);
       if (!next) continue;
-      if (!keeps_rules(good, query, rows.back(), place, *next, places[k])) {
+      if (!keeps_rules(good, world, query, rows.back(), place, *next, places[k])) {
         // All the layers on the way instead: the planner's own moves; from a row between layers to the next layer.
         bool kept = true;
         for (double layer = std::floor(place) + 1; layer < places[k] && kept; ++layer) {
           const TrajectoryRow& row = good.rows[static_cast<std::size_t>(layer)];
-          kept = place == layer - 1 || keeps_rules(good, query, rows.back(), place, row, layer);
+          kept = place == layer - 1 || keeps_rules(good, world, query, rows.back(), place, row, layer);
           rows.push_back(row);
           place = layer;
         }
         if (!kept || (!(place == places[k] - 1 && places[k] == std::floor(places[k])) &&
-                      !keeps_rules(good, query, rows.back(), place, *next, places[k])))
+                      !keeps_rules(good, world, query, rows.back(), place, *next, places[k])))
           break;
       } else {
         dropped += static_cast<int>(std::ceil(places[k]) - std::floor(place)) - 1;

@@ -28,7 +28,7 @@ struct Laid {
         lattice(robot.arm().chain, robot.srs(), path, problem) {}
   Diagnosis diagnose_from(int deepest) const {
     Diagnosis diagnosis;
-    diagnose(lattice, robot.world(), edge_rule(problem.limits, robot.radii()), deepest, true, {}, diagnosis);
+    diagnose(lattice, robot.world(), robot.world().edge_rule(robot.radii()), deepest, true, {}, diagnosis);
     return diagnosis;
   }
 };
@@ -40,7 +40,7 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   for (int slot = 0; slot < laid.lattice.width(); ++slot) {
     const auto q = laid.lattice.node(layer, slot);
     if (!q) continue;
-    const auto pair = query.first_below(*q, laid.problem.limits.clearance);
+    const auto pair = query.first_below(*q, Keep::kNode);
     const auto& names = laid.robot.world().body_names();
     const auto name = [&](int body) { return names[static_cast<std::size_t>(body)]; };
     ++reasons[!laid.lattice.manipulable(*q) ? "manipulability" : pair ? name(pair->a) + " - " + name(pair->b) : ""];

@@ -40,7 +40,7 @@ Problem full_problem() {
   Limits& limits = problem.limits;
   limits.step_error = limits.tool_path_error = limits.tool_angle_error = 1;
   limits.tool_speed = limits.tool_turn_speed = 0.01;
-  limits.edge_clearance = 0.001;
+  limits.edge_clearance = limits.self_clearance = 0.001;
   limits.edges = EdgeMode::kNodes;
   return problem;
 }
@@ -79,6 +79,7 @@ std::vector<Case> all_cases() {
   optional_limit("tool_angle_error", &Limits::tool_angle_error, not_positive);
   optional_limit("tool_speed", &Limits::tool_speed, not_positive);
   optional_limit("tool_turn_speed", &Limits::tool_turn_speed, not_positive);
+  optional_limit("self_clearance", &Limits::self_clearance, negative);
   optional_limit("edge_clearance", &Limits::edge_clearance, negative);
   add_number(
       cases, "resolution.ds", [](Problem& p) -> double& { return p.resolution.ds; }, not_positive);
@@ -230,7 +231,7 @@ TEST(Validate, EndsOfWhatIsAllowed) {
   problem.cost.weights = {0, 1e-6, 1e6, 1, 0, 0, 0};
   problem.resolution.dphi = kTwoPi;
   problem.limits.clearance = problem.limits.manipulability = problem.limits.joint_margin = 0;
-  problem.limits.edge_clearance = 0;
+  problem.limits.edge_clearance = problem.limits.self_clearance = 0;
   problem.limits.tool_path_error = problem.limits.tool_speed = std::nullopt;
   problem.tool.linear() = Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()).toRotationMatrix() * (1 + 1e-8);
   EXPECT_EQ(message_of([&] { validate(problem); }), "accepted");
@@ -311,9 +312,6 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
          p.attached.push_back({"more", Sphere{0.01}, Pose::Identity(), "tool0"});
        }},
       {"attached", [](Problem& p) { p.attached.clear(), p.scene[0].allow = {}; }},
-      {"limits.clearance", [](Problem& p) { p.limits.clearance = 0.02; }},
-      {"limits.clearance", [](Problem& p) { p.limits.edge_clearance = 0.03; }},
-      {"limits.clearance", [](Problem& p) { p.limits.edge_tolerance = 0.05; }},
   };
   for (const auto& [what, changes] : others) {
     Problem other = good;
@@ -330,16 +328,12 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   moved.resolution.ds = 0.03;
   moved.waypoints[0].position.z() += 0.01;
   moved.limits.joint_step = 1;
+  moved.limits.clearance = 0.02;
+  moved.limits.self_clearance = 0.01;
+  moved.limits.edge_clearance = 0.03;
+  moved.limits.edge_tolerance = 0.05;
   moved.cost.metric = CostMetric::kMax;
   EXPECT_EQ(message_of([&] { (void)plan(robot, moved); }), "accepted");
-
-  // An SRDF decides about all pairs where nothing is attached: distances are not baked in then.
-  Problem bare = good;
-  bare.attached.clear();
-  bare.scene[0].allow.clear();
-  const PreparedRobot bare_robot(bare);
-  bare.limits.clearance = 0.02;
-  EXPECT_EQ(message_of([&] { (void)plan(bare_robot, bare); }), "accepted");
 }
 
 }  // namespace

@@ -114,6 +114,34 @@ TestRobot with_limits(const TestRobot& robot, const Change& change) {
   return {robot.name, model, robot.base_link, robot.tip_link};
 }
 
+/// The same robot without its SRDF.
+inline TestRobot without_srdf(TestRobot robot) {
+  auto model = std::make_shared<RobotModel>(*robot.model);
+  model->has_srdf = false;
+  model->disabled_pairs.clear();
+  robot.model = model;
+  robot.name += " without SRDF";
+  return robot;
+}
+
+/// Links 5 and 7 are some 2 mm apart, whatever the joints, and meet where sin q6 cos q7 > 0.91. No SRDF.
+inline TestRobot near_wrist_robot() {
+  TestRobot robot = continuous_robot();
+  auto model = std::make_shared<RobotModel>(*robot.model);
+  const auto put = [&](const char* name, const Shape& shape, const Vector3d& at) {
+    PlacedShape placed;
+    placed.shape = shape;
+    placed.pose.translation() = at;
+    model->links[static_cast<std::size_t>(model->find_link(name))].collision = {placed};
+  };
+  put("l4", Capsule{0.05, 0.2}, Vector3d(0, 0, 0.12));
+  put("l5", Sphere{0.065}, Vector3d(0, 0, -0.09));
+  put("l7", Sphere{0.023}, Vector3d(0.0022, 0, 0));
+  robot.model = model;
+  robot.name = "near wrist";
+  return robot;
+}
+
 inline std::vector<TestRobot> all_robots() {
   return {data_robot("sda5f"), data_robot("sda10f"), data_robot("iiwa14"), continuous_robot(), windings_robot()};
 }

@@ -20,8 +20,65 @@ struct BodyPair {
   bool operator==(const BodyPair&) const = default;
 };
 
+/// How near a pair may come, m.
+struct PairKeeps {
+  double node = 0;       ///< on layers; contact is never allowed
+  double motion = 0;     ///< between layers
+  double tolerance = 0;  ///< h: a motion is proved by midpoints that are clear by motion + h; > 0
+};
+
+/// A pair of robot bodies that the model does not take out (SRDF, one rigid group, parent and child).
+///
+/// An SRDF says which pairs can never meet. Where none speaks for a pair (no SRDF, or an attached body), many seeded postures
+/// inside the joint limits do. A pair that touches in all of them touches by design and is dropped. A pair that is near by design
+/// could not keep the clearance asked: it keeps at most half of its median clearance on layers, a quarter between them, and its
+/// tolerance is half of it where it is below 2 h. All other pairs keep self_clearance, and edge_clearance (or half of
+/// self_clearance). What a pair keeps never shrinks as a limit grows, so that no larger clearance makes a path.
+struct RobotPair {
+  BodyPair pair;
+  bool dropped = false;
+  bool near = false;     ///< by design: the median is small or reduces what the pair keeps
+  bool reduced = false;  ///< keeps less than other robot pairs
+  double median = 0;     ///< m, over the samples; infinite where an SRDF speaks for the pair or it is too far to matter
+  PairKeeps keeps;       ///< unless dropped
+};
+
+/// What every pair's clearance is compared with: a distance, or what the pair must keep, and so much more.
+enum class Keep {
+  kNothing,
+  kNode,      ///< PairKeeps::node
+  kMotion,    ///< PairKeeps::motion; pairs that are near by design are left to EdgeRule
+  kMidpoint,  ///< the same and PairKeeps::tolerance
+};
+struct Level {
+  Level(double distance) : more(distance) {}  // implicit: "all pairs below 5 mm"
+  Level(Keep what, double and_more = 0) : keep(what), more(and_more) {}
+  Keep keep = Keep::kNothing;
+  double more = 0;  ///< m; no pair is below a level less than zero
+};
+
 /// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. design.md 1.
 inline constexpr double kVerdictBand = 0.05e-3;
+
+/// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
+/// continuous joints): every pair keeps its PairKeeps::motion. design.md 1 "Edge collision". Made by World::edge_rule.
+struct EdgeRule {
+  std::array<double, kDof> radii{};  ///< core motion_radii, m
+  double h = 0.0005;                 ///< m; > 0
+  /// A pair that is near by design (RobotPair). On most motions it would need many midpoints; how its bodies move against each
+  /// other, by the joints between them alone, proves it with few.
+  struct Near {
+    BodyPair pair;
+    double d_edge = 0, h = 0;       ///< m
+    int first_joint = 0, last = 0;  ///< first_joint <= j < last
+  };
+  std::vector<Near> near;
+  /// A bound on how far any point moves, m: sum |dq_j| R_j; for joints first <= j < last: as seen from the link below them.
+  [[nodiscard]] double motion(const Config& q0, const Config& q1, int first = 0, int last = kDof) const;
+  /// Number of midpoints N: the smallest power of two with B / (2 N) <= tolerance, B = motion of all joints.
+  [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1, double tolerance) const;
+  [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1) const { return midpoints(q0, q1, h); }
+};
 
 /// Work counted per query object; add up over threads.
 struct CollisionCounters {
@@ -55,27 +112,36 @@ enum class Certificates {
 /// capsule the equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:
-  /// Which pairs count (design.md 1): not disabled by the SRDF, not rigid to each other, not parent and child, not allowed to
-  /// touch; without an SRDF, and for attached bodies, also not below max(d_safe, d_edge + h) in all of many seeded samples. Throws
-  /// InputError for a mesh without triangles, and Stopped.
+  /// Which pairs count: of the robot those of RobotPair that are not dropped; of robot and scene those that move and are not
+  /// allowed to touch. Throws InputError for a mesh without triangles, and Stopped.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
   /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that a
   /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on
   /// one `like`.
   World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
+  /// The same with the problem's scene and limits. Pairs may be nearer by `forgiven` than they should, m, but not touch.
+  World(const World& like, const Problem& problem, const Budget& budget = {}, double forgiven = 0);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
   /// Robot bodies in the order of bodies(), then scene objects. A link with several shapes has its name several times.
   [[nodiscard]] const std::vector<std::string>& body_names() const;
+  [[nodiscard]] std::array<std::string, 2> names(const BodyPair& pair) const;
   /// In the order in which first_below asks: the environment before the robot itself, inflated booleans before distances, the tool
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
   /// Of the robot or the scene: questions then take a hundred times as long.
   [[nodiscard]] bool has_meshes() const;
-  /// Open meshes (treated as surfaces) and the like.
+  /// One of pairs(): what it must keep, by the limits of this world.
+  [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const;
+  [[nodiscard]] const std::vector<RobotPair>& robot_pairs() const;
+  /// The same with every median known, however far.
+  [[nodiscard]] std::vector<RobotPair> robot_pairs_with_medians() const;
+  /// How motions are proved free here; radii as of core motion_radii.
+  [[nodiscard]] EdgeRule edge_rule(const std::array<double, kDof>& radii) const;
+  /// Open meshes (treated as surfaces), links without a shape, pairs that count less or not.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
 
   /// Mutable state of one caller: where the bodies are, counters. Cheap enough to make one per thread, not one per question.
@@ -87,22 +153,28 @@ class World {
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
 
-    /// First of pairs() whose clearance at q is below d >= 0, or none: "clearance >= d" for all pairs. A pair suspected is asked
-    /// before the others. A function of the arguments alone.
-    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, double d, const std::optional<BodyPair>& suspect = {});
+    /// First of pairs() whose clearance at q is below its level, or none: "clearance >= level" for all pairs. A pair suspected is
+    /// asked before the others. A function of the arguments alone.
+    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, const Level& level,
+                                                      const std::optional<BodyPair>& suspect = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
     /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before,
     /// back to the last forget(). With Certificates::kOff nothing is kept.
-    [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, double d, const std::optional<BodyPair>& suspect = {});
+    [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, const Level& level,
+                                                     const std::optional<BodyPair>& suspect = {});
     void forget();
-    /// Of the pair that one of these has just named: its clearance is proved below d by more than FCL may err.
+    /// Of the pair that one of these has just named: its clearance is proved below its level by more than FCL may err.
     [[nodiscard]] bool surely_below() const;
-    /// Whether one pair's clearance is below d. False for d < 0.
-    [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, double d);
-    /// Exact-as-FCL least clearance over all pairs, and the first pair that has it; none when there are no pairs.
+    /// Whether one pair's clearance is below its level.
+    [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, const Level& level);
+    /// Exact as FCL: the pair with the least margin, the first that has it, and one that touches before any that does not; none
+    /// when there are no pairs.
     struct Clearance {
       double distance = 0;  ///< m; 0 when touching or one inside the other
       BodyPair pair;
+      double required = 0;  ///< what the pair must keep on layers, m
+      double least = 0;     ///< clearance of the nearest of all pairs, m
+      [[nodiscard]] double margin() const { return distance - required; }
     };
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
     /// A point of each of the two bodies of clearance(q), base frame, as far apart as the bodies are: within 0.1 mm. For drawing.
@@ -120,19 +192,10 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What edge_blocked must prove: clearance >= d_edge on the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0);
-/// the caller unwraps continuous joints). design.md 1 "Edge collision".
-struct EdgeRule {
-  std::array<double, kDof> radii{};  ///< core motion_radii, m
-  double d_edge = 0, h = 0.0005;     ///< m; h > 0
-  /// A bound on how far any point moves, m: sum |dq_j| R_j.
-  [[nodiscard]] double motion(const Config& q0, const Config& q1) const;
-  /// Number of midpoints N: the smallest power of two with B / (2 N) <= h, B = motion.
-  [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1) const;
-};
-/// None when every midpoint t = (m + 1/2) / N has clearance >= d_edge + h; else a pair that comes too near. By bisection, coarse to
-/// fine: an interval is free when its middle is clear by as much as the interval can move, blocked when its middle is below d_edge.
-/// Forgets what the query kept before, so that counters depend on the edge alone. Throws Stopped.
+/// None when every pair is clear by its PairKeeps::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes too near.
+/// N is of the pair's own h. By bisection, coarse to fine: an interval is free when its middle is clear by as much as the interval
+/// can move, blocked when its middle is below PairKeeps::motion. The query is of the world that the rule is of. Forgets what the
+/// query kept before, so that counters depend on the edge alone. Throws Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                                    const Budget& budget = {});
 /// The same by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint that fails.

@@ -85,6 +85,22 @@ struct Evidence {
   [[nodiscard]] static Evidence all() { return {true, true, true}; }
 };
 
+/// The row and pair that come nearest to what must be kept there.
+struct LeastMargin {
+  double margin = 0;     ///< clearance - required, m
+  double clearance = 0;  ///< of this pair; another may be nearer that must keep less
+  double required = 0;   ///< what the pair must keep on layers
+  std::array<std::string, 2> bodies;
+  int row = 0;
+};
+
+/// A robot pair without an SRDF's word that is not kept apart as others are.
+struct SpecialPair {
+  std::array<std::string, 2> bodies;
+  double median = 0;                         ///< clearance over sampled postures, m
+  double clearance = 0, edge_clearance = 0;  ///< what it keeps on layers and between them, m
+};
+
 struct PlanResult {
   PlanStatus status = PlanStatus::kInfeasible;
   double cost = 0;
@@ -96,14 +112,17 @@ struct PlanResult {
   std::map<std::string, double> time_ms;  ///< load, prepare, plan, report, and stages
   struct {
     double mean = 0, max = 0;
-  } tool_path_error_mm;                 ///< of solved problems, where asked for; so are the next three
-  std::optional<double> min_clearance;  ///< m; null when nothing is near
+  } tool_path_error_mm;                 ///< of solved problems, where asked for; so are the next four
+  std::optional<double> min_clearance;  ///< of the nearest pair on any row, m; null when nothing is near
+  std::optional<LeastMargin> min_margin;
   double min_manipulability = 0;
   std::vector<double> arm_angle;          ///< conventional arm angle of each row, rad
   std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
   std::array<std::string, kDof> joint_names;
-  Diagnosis diagnosis;                ///< filled when infeasible
-  std::vector<std::string> warnings;  ///< open meshes, merged waypoints, ...
+  Diagnosis diagnosis;                     ///< filled when infeasible
+  std::vector<SpecialPair> dropped_pairs;  ///< touch in every posture: not kept apart
+  std::vector<SpecialPair> reduced_pairs;  ///< near by design: keep less
+  std::vector<std::string> warnings;       ///< open meshes, merged waypoints, ...
 };
 
 }  // namespace swivel

@@ -41,6 +41,7 @@ enum class CostMetric { kL2, kMax, kTime };
 /// design.md 1 and 4. Unset optionals mean "no such limit".
 struct Limits {
   double clearance = 0.005;                       ///< d_safe, m
+  std::optional<double> self_clearance;           ///< the same between the robot's own bodies, m; default clearance
   double manipulability = 0.0;                    ///< least sqrt(det(J J^T))
   double joint_margin = 0.0;                      ///< rad, kept from both ends of every bounded joint
   double joint_step = 0.5;                        ///< rad, largest move of any joint between neighbouring layers
@@ -54,6 +55,8 @@ struct Limits {
   std::optional<double> edge_clearance;  ///< d_edge, m; default clearance / 2
   double edge_tolerance = 0.0005;        ///< h, m
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
+  [[nodiscard]] double d_self() const { return self_clearance.value_or(clearance); }
+  [[nodiscard]] double d_self_edge() const { return edge_clearance.value_or(d_self() / 2); }
 };
 
 struct Resolution {

@@ -54,7 +54,7 @@ struct PlanOptions {
   std::function<void(const std::string&)> progress;
 };
 
-/// What depends on the robot alone, not on path, scene poses or start: built once, shared by every plan of the robot.
+/// What depends on the robot alone, not on path, scene poses, limits or start: built once, shared by every plan of the robot.
 /// Immutable and safe to share between threads.
 class PreparedRobot {
  public:
@@ -62,8 +62,7 @@ class PreparedRobot {
   /// Stopped, only with a budget.
   explicit PreparedRobot(const Problem& problem, const Budget& budget = {});
   /// Throws InvalidArgument for a problem that another robot would have to be prepared for: another model, base_link, tip_link,
-  /// tool, hold or attached body; and, where pairs are left out by sampling (no SRDF, or attached bodies), other distances to be
-  /// kept.
+  /// tool, hold or attached body. Limits may differ.
   void require_prepared_for(const Problem& problem) const;
   [[nodiscard]] const ArmModel& arm() const { return arm_; }
   [[nodiscard]] const SrsArm& srs() const { return srs_; }
@@ -80,7 +79,6 @@ class PreparedRobot {
     Pose tool;
     std::map<std::string, double> hold;
     std::vector<AttachedBody> attached;
-    double pair_distance;  // m
   };
   Basis basis_;
   ArmModel arm_;

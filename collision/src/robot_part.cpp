@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "robot_part.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+
+#include "certificate.hpp"
+#include "pair_rules.hpp"
+#include "pair_test.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr int kSamples = 1000;
+/// The first of these, an odd number: what a pair keeps is half of a median, which needs no third digit.
+constexpr std::size_t kMedianSamples = 201;
+
+/// Postures inside the joint limits, always the same.
+class Samples {
+ public:
+  explicit Samples(const Chain& chain) : chain_(&chain) {}
+  std::array<Pose, kDof + 1> next() {
+    Config q;
+    for (int j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
+      const double lower = limit.continuous ? -kPi : limit.lower, upper = limit.continuous ? kPi : limit.upper;
+      // The library's distributions differ by vendor.
+      q[j] = lower + static_cast<double>(random_() >> 11) * 0x1.0p-53 * (upper - lower);
+    }
+    return chain_->displacements(q);
+  }
+
+ private:
+  const Chain* chain_;
+  std::mt19937_64 random_{20141};
+};
+
+/// One pair of the robot's bodies at one posture.
+struct PlacedPair {
+  PlacedPair(const RobotPart& part, const BodyPair& pair, const std::array<Pose, kDof + 1>& moved)
+      : shape_a(&part.shapes[static_cast<std::size_t>(pair.a)]),
+        shape_b(&part.shapes[static_cast<std::size_t>(pair.b)]),
+        pose_a(pose(part.bodies[static_cast<std::size_t>(pair.a)], moved)),
+        pose_b(pose(part.bodies[static_cast<std::size_t>(pair.b)], moved)) {}
+  static Pose pose(const RobotBody& body, const std::array<Pose, kDof + 1>& moved) {
+    return moved[static_cast<std::size_t>(body.group)] * body.pose;
+  }
+  [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
+  [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
+  [[nodiscard]] Certificate certificate(double d) const {
+    if (surely_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound, place(shape_b->bound, pose_b),
+                     d + kVerdictBand))
+      return Certificate::kFree;
+    return certify(a(), b(), d);
+  }
+  [[nodiscard]] bool touching(PairTest& fcl) const {
+    const Certificate proof = certificate(0);
+    return proof == Certificate::kNone ? fcl.below(a(), b(), 0) : proof == Certificate::kColliding;
+  }
+  const FclShape *shape_a, *shape_b;
+  Pose pose_a, pose_b;
+};
+
+/// Where a joint moves no shape at all, nothing keeps what it moves clear of anything.
+std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm, const std::vector<RobotBody>& bodies) {
+  std::array<bool, kDof + 1> has_shape{};
+  for (const RobotBody& body : bodies) has_shape[static_cast<std::size_t>(body.group)] = true;
+  if (std::find(has_shape.begin() + 1, has_shape.end(), true) == has_shape.end())
+    return {robot.name + ": the arm has no collision shape at all: it is kept clear of nothing"};
+  std::vector<std::string> warnings;
+  for (std::size_t group = 1; group <= kDof; ++group) {
+    if (has_shape[group]) continue;
+    std::string links;
+    for (std::size_t l = 0; l < robot.links.size(); ++l)
+      if (arm.links[l].group == static_cast<int>(group)) links += (links.empty() ? "" : ", ") + robot.links[l].name;
+    warnings.push_back(links + ": no collision shape on what joint " + arm.chain.joint_names[group - 1] +
+                       " moves: it is kept clear of nothing");
+  }
+  return warnings;
+}
+
+/// From this median on, a pair keeps what others keep, and is no burden on motions.
+double far_enough(const Limits& limits) {
+  constexpr double kNoBurden = 0.01;
+  return std::max({2 * limits.d_self(), 4 * limits.d_self_edge(), 2 * limits.edge_tolerance, kNoBurden});
+}
+
+}  // namespace
+
+RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes, const Budget& budget)
+    : chain(arm.chain), bodies(robot_bodies(robot, arm, problem.attached)), warnings_(shapeless_links(robot, arm, bodies)) {
+  for (const RobotBody& body : bodies) {
+    budget.poll();
+    shapes.push_back(make_fcl_shape(body.shape, meshes));
+  }
+  const auto attached = [&](int i) { return bodies[static_cast<std::size_t>(i)].attached; };
+  for (const BodyPair& pair : candidate_robot_pairs(robot, bodies))
+    candidates_.push_back({pair, !robot.has_srdf || attached(pair.a) || attached(pair.b)});
+  medians_.assign(candidates_.size(), kFar);
+  drop_always_touching(budget);
+}
+
+void RobotPart::drop_always_touching(const Budget& budget) {
+  const Span span("pairs that touch by design");
+  std::vector<Candidate*> suspects;
+  for (Candidate& candidate : candidates_)
+    if (candidate.sampled) suspects.push_back(&candidate);
+  Samples samples(chain);
+  PairTest fcl;
+  for (int sample = 0; sample < kSamples && !suspects.empty(); ++sample) {
+    const auto moved = samples.next();
+    std::erase_if(suspects, [&](const Candidate* c) {
+      budget.poll();
+      return !PlacedPair(*this, c->pair, moved).touching(fcl);
+    });
+  }
+  for (Candidate* candidate : suspects) candidate->dropped = true;
+}
+
+double RobotPart::median(const BodyPair& pair, double far, const std::vector<std::array<Pose, kDof + 1>>& samples,
+                         const Budget& budget) const {
+  constexpr std::size_t kHalf = kMedianSamples / 2;
+  std::vector<const std::array<Pose, kDof + 1>*> near;
+  near.reserve(samples.size());
+  for (const auto& moved : samples) {
+    budget.poll();
+    if (far == kFar || PlacedPair(*this, pair, moved).certificate(far) != Certificate::kFree) near.push_back(&moved);
+    const std::size_t asked = static_cast<std::size_t>(&moved - samples.data()) + 1;
+    if (asked - near.size() > kHalf) return kFar;
+  }
+  PairTest fcl;
+  std::vector<double> clearances;
+  for (const auto* moved : near) {
+    budget.poll();
+    const PlacedPair placed(*this, pair, *moved);
+    clearances.push_back(fcl.clearance(placed.a(), placed.b()));
+  }
+  const auto middle = clearances.begin() + static_cast<std::ptrdiff_t>(kHalf);
+  std::nth_element(clearances.begin(), middle, clearances.end());
+  return *middle;
+}
+
+std::vector<RobotPair> RobotPart::pairs(const Limits& limits, const Budget& budget) const {
+  return pairs(limits, far_enough(limits), budget);
+}
+std::vector<RobotPair> RobotPart::pairs_with_medians(const Limits& limits) const {
+  return pairs(limits, kFar, {});
+}
+
+std::vector<RobotPair> RobotPart::pairs(const Limits& limits, double far, const Budget& budget) const {
+  const std::lock_guard lock(mutex_);
+  if (far > medians_up_to_) {
+    const Span span("medians of robot pairs");
+    std::vector<std::array<Pose, kDof + 1>> samples;
+    Samples random(chain);
+    for (std::size_t k = 0; k < candidates_.size(); ++k) {
+      if (!candidates_[k].sampled || candidates_[k].dropped || medians_[k] < medians_up_to_) continue;
+      while (samples.size() < kMedianSamples) samples.push_back(random.next());
+      medians_[k] = median(candidates_[k].pair, far, samples, budget);
+    }
+    medians_up_to_ = far;
+  }
+  std::vector<RobotPair> pairs;
+  pairs.reserve(candidates_.size());
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    const double m = medians_[k], h = limits.edge_tolerance;
+    RobotPair pair;
+    pair.pair = candidates_[k].pair;
+    pair.dropped = candidates_[k].dropped;
+    if (!pair.dropped) {
+      pair.median = m;
+      // Where the median is nearly zero, the tolerance is still one that can be proved with.
+      pair.keeps = {std::min(limits.d_self(), m / 2), std::min(limits.d_self_edge(), m / 4),
+                    std::min(h, std::max(m / 2, kVerdictBand))};
+      pair.near = m < far_enough(limits);
+      pair.reduced = pair.keeps.node < limits.d_self() || pair.keeps.motion < limits.d_self_edge() || pair.keeps.tolerance < h;
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+}  // namespace swivel
