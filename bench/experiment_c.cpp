@@ -67,7 +67,7 @@ PlanResult plan_at(const PreparedRobot& robot, Problem problem, PlannerKind plan
 std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
   bench::set_resolution(problem, bench::kSettings[3]);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const World world(robot.world(), problem);
   World::Query query(world);
   for (int slot = 0; slot < lattice.width(); ++slot) {

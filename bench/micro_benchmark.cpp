@@ -14,7 +14,7 @@
 #include "pair_test.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/isa.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
@@ -59,7 +59,7 @@ struct Fixture {
     }
     while (edges.size() < kPool) {
       const Node& a = nodes[static_cast<std::size_t>(random.uniform(0, static_cast<double>(nodes.size())))];
-      const int b = lattice.label_of(a.slot) * lattice.angles() + lattice.successors(a.layer, a.slot).first;
+      const int b = lattice.label_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
       const auto q = lattice.node(a.layer + 1, b);
       if (q && lattice.in_window(a.layer, a.slot, b) && lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
         edges.push_back({a, b, *q});
@@ -82,7 +82,7 @@ struct Fixture {
   Problem problem;
   PreparedRobot robot;
   ToolPath path;
-  Lattice lattice;
+  SrsLattice lattice;
   World world;
   EdgeRule rule;
   std::vector<Node> nodes;
@@ -132,7 +132,7 @@ void cycle(benchmark::State& state, const Pool& pool, Body body) {
 
 void add_kinematics(Fixture& c) {
   const std::string unit = std::string("/") + to_string(active_isa());
-  const Lattice& lattice = c.lattice;
+  const SrsLattice& lattice = c.lattice;
   add("ik/layer" + unit, [&](benchmark::State& state) {
     LayerNodes nodes;
     int layer = 0;
@@ -177,22 +177,22 @@ void add_kinematics(Fixture& c) {
 
 void add_search(Fixture& c) {
   const std::string unit = std::string("/") + to_string(active_isa());
-  for (const auto& [name, what] : {std::pair{"whole", CostToGo::Extent::kWhole}, {"bounded", CostToGo::Extent::kBounded}}) {
+  for (const auto& [name, what] : {std::pair{"whole", Extent::kWhole}, {"bounded", Extent::kBounded}}) {
     const auto extent = what;  // a structured binding cannot be captured
     add(std::string("sweep/") + name + unit, [&c, extent](benchmark::State& state) {
       for (auto _ : state) {
-        CostToGo togo(c.lattice, extent);
-        togo.sweep(c.lattice.layers() - 1);
-        benchmark::DoNotOptimize(togo.best());
+        const auto togo = make_cost_to_go(c.lattice, extent);
+        togo->sweep(c.lattice.layers() - 1);
+        benchmark::DoNotOptimize(togo->best());
       }
       state.SetItemsProcessed(state.iterations() * c.lattice.nodes());
     });
   }
   add("a_star/expansion", [&](benchmark::State& state) {
-    CostToGo togo(c.lattice);
-    togo.sweep(c.lattice.layers() - 1);
+    const auto togo = make_cost_to_go(c.lattice);
+    togo->sweep(c.lattice.layers() - 1);
     std::int64_t expansions = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(best_path(togo, expansions).data());
+    for (auto _ : state) benchmark::DoNotOptimize(best_path(*togo, expansions).data());
     state.SetItemsProcessed(expansions);
   });
 }

@@ -187,7 +187,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   const auto definition = std::make_shared<ob::ProblemDefinition>(information);
   definition->addStartState(state_of(coordinates(*problem.start, 0)));
   const auto goals = std::make_shared<ob::GoalStates>(information);
-  const Lattice lattice(chain, robot.srs(), path, problem);
+  const SrsLattice lattice(chain, robot.srs(), path, problem);
   std::vector<Eigen::VectorXd> ends;
   for (int slot = 0; slot < lattice.width(); ++slot)
     if (const auto q = lattice.node(lattice.layers() - 1, slot))

@@ -2,42 +2,20 @@
 #include "swivel/core/lattice.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <limits>
 
-#include "kernels/kernels.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/memory.hpp"
-#include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {
 
 namespace {
 
-constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
-constexpr double kSingularSine = 1e-6;
-constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole turns without another image
-constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
-constexpr double kMostWindings = 1024;
-constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
-
-int wrapped_index(long long j, int n) {
-  return static_cast<int>(((j % n) + n) % n);
-}
-
-/// Least k with q + 2 pi k >= base; as the kernels compute it.
-double image_from(double q, double base) {
-  return q + kTwoPi * std::ceil((base - q) / kTwoPi);
-}
-
-/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the nearest that leaves 31 turns to both
-/// limits.
-double turn_within(const JointLimit& limit) {
-  constexpr double kFromLimits = (kMostTurns / 2 - 1) * kTwoPi;
-  return std::clamp(-kPi, limit.lower + kFromLimits, limit.upper - kFromLimits - kTwoPi);
+/// Rounds to a multiple of 2^-40 units (for |x| < 2048 units): sums of costs are then exact in any order.
+double rounded(double x, double unit) {
+  const double shift = 6144.0 * unit;  // 1.5 * 2^12, whose last place is 2^-40
+  return (x + shift) - shift;
 }
 
 /// The least power of two >= x > 0; 1 for x = 0.
@@ -46,435 +24,129 @@ double power_of_two_from(double x) {
   return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
 }
 
-std::uint64_t next_id() {
-  static std::atomic<std::uint64_t> last{0};
-  return ++last;
-}
+/// The tool's straight line from a layer to the next; a point where they coincide.
+class Step {
+ public:
+  Step(const ToolPath& path, int layer) : start_(path.layer(layer).tool.translation()) {
+    const Vector3d along = path.layer(layer + 1).tool.translation() - start_;
+    length_ = along.norm();
+    if (length_ >= kShortest) direction_ = along / length_;
+  }
+  /// Distance of a point from the line, m.
+  [[nodiscard]] double aside(const Vector3d& p) const {
+    const Vector3d d = p - start_;
+    return (d - d.dot(direction_) * direction_).norm();
+  }
+  /// Where on the step the foot of a point lies, 0 to 1; none on a point.
+  [[nodiscard]] std::optional<double> fraction(const Vector3d& p) const {
+    if (length_ < kShortest) return std::nullopt;
+    return std::clamp((p - start_).dot(direction_) / length_, 0.0, 1.0);
+  }
 
-std::string gigabytes(double bytes) {
-  return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
-}
+ private:
+  static constexpr double kShortest = 1e-9;  // m
+  Vector3d start_, direction_ = Vector3d::Zero();
+  double length_;
+};
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
-    : id_(next_id()), chain_(&chain), arm_(&arm), path_(&path), limits_(problem.limits), cost_(problem.cost) {
-  const Span span("lattice");
-  const Resolution& resolution = problem.resolution;
-  const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
+Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem)
+    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
-  double windings = 1;
-  std::string wound;  // the joints that have more than one image
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    const auto fail = [&](const std::string& what) {
-      throw InputError(problem.source + ": joint '" + chain.joint_names[j] + "'" + what);
-    };
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const JointLimit& limit = chain.limit[k];
     if ((timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
       throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
-                       chain.joint_names[j] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
-    cost_scale_[j] = cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[j];
-    if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[j]))
-      fail(": its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
-    Images& images = images_[j];
-    continuous_[j] = limit.continuous || limit.wide();
-    if (continuous_[j]) {
-      images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
-    } else {
-      const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
-      if (lower > upper)
-        throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[j] +
-                         "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
-      images = images_between(lower, upper, problem.start ? (*problem.start)[static_cast<Eigen::Index>(j)] : lower);
-    }
-    if (!(std::abs(images.base) <= kFarthest))
-      fail(": its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
-    if (images.count > 1) wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
-    windings *= images.count;
+                       chain.joint_names[k] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+    continuous_[k] = limit.continuous || limit.wide();
+    cost_scale_[k] = cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[k];
+    if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
+      throw InputError(problem.source + ": joint '" + chain.joint_names[k] +
+                       "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
-  if (windings > kMostWindings) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.4g", windings);
-    throw InputError(problem.source + ": joint limits allow " + number + " windings (" + wound +
-                     "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
-                     "counts as continuous");
-  }
-  windings_ = static_cast<int>(windings);
   cost_unit_ = power_of_two_from(*std::max_element(cost_scale_.begin(), cost_scale_.end()));
-
-  tracks_ = 2;
-  if (arm.exact) {
-    for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
-    tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
-  } else {
-    tracks_ += static_cast<std::size_t>(labels()) * (kDof + 1);
-  }
-
-  const double width = wanted * kBranches * windings_;
-  const double needed = width * layers() * 17.0;  // cost-to-go, states, search
-  if (width > 1e8 || !fits_in_memory(needed))
-    throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " +
-                     std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) + ", this machine has " +
-                     gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
-  angles_ = static_cast<int>(wanted);
-  window_ = static_cast<int>(
-      std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
-  window_ = std::max(window_, angles_ > 1 ? 1 : 0);
-
-  sine_.resize(static_cast<std::size_t>(3 * angles_));
-  cosine_.resize(sine_.size());
-  for (int j = 0; j < angles_; ++j)
-    for (const int k : {j, j + angles_, j + 2 * angles_}) {
-      const double phi_j = -kPi + kTwoPi * j / angles_;
-      sine_[static_cast<std::size_t>(k)] = std::sin(phi_j);
-      cosine_[static_cast<std::size_t>(k)] = std::cos(phi_j);
-    }
-
-  const auto m = static_cast<std::size_t>(layers());
-  planes_.reserve(m);
-  reach_.reserve(m);
-  circles_.reserve(m);  // half a kilobyte each: touched as they come
-  for (int i = 0; i < layers(); ++i) {
-    if (i % 64 == 0) budget.poll();
-    const Pose& tool = path.layer(i).tool;
-    planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
-    reach_.push_back(reach_status(arm, planes_.back().reach));
-    const bool reachable = reach_.back() == ReachStatus::kReachable;
-    auto& circles = circles_.emplace_back();
-    if (reachable) circles = elbow_circles(arm, planes_.back(), tool);
-    const Images& images = images_[kElbowJoint];
-    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it
-      elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
-  }
-
-  step_bounds_.resize(timed ? m - 1 : 1, Config::Constant(limits_.joint_step));
-  if (timed)
-    for (int i = 0; i + 1 < layers(); ++i) {
-      const PathLayer& layer = path.layer(i);
-      double dt = 0;
-      if (limits_.tool_speed) dt = std::max(dt, layer.step_length / *limits_.tool_speed);
-      if (limits_.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits_.tool_turn_speed);
-      if (dt <= 0) continue;  // a step that the given speed does not time
-      for (int k = 0; k < kDof; ++k) {
-        double& bound = step_bounds_[static_cast<std::size_t>(i)][k];
-        bound = std::min(bound, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
-      }
-    }
-
-  if (problem.start) place_start(*problem.start, problem.source);
-}
-
-Lattice::Images Lattice::images_between(double lower, double upper, double start) {
-  const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
-  Images images;
-  images.upper = upper + kLimitTolerance;
-  images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
-  images.base = lower - kLimitTolerance;
-  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
-  const double length = images.count * kTwoPi;
-  if (start >= images.base + length) images.base = images.upper - length;
-  return images;
-}
-
-void Lattice::place_start(const Config& q, const std::string& source) {
-  const Pose reached = chain_->tool(q);
-  const Pose& first = path_->layer(0).tool;
-  const double distance = (reached.translation() - first.translation()).norm();
-  const double angle = Eigen::AngleAxisd(reached.linear().transpose() * first.linear()).angle();
-  for (int k = 0; k < kDof; ++k) {
-    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
-    const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
-    if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
-      throw InputError(source + ": start.joints: joint '" + chain_->joint_names[static_cast<std::size_t>(k)] + "' at " +
-                       std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) + " to " +
-                       std::to_string(upper));
-  }
-  if (!(distance <= 1e-6 && angle <= 1e-6)) {
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  ": start.joints: the tool is %.3g m and %.3g rad from the path's first pose: allowed are 1e-6 m and 1e-6 rad",
-                  distance, angle);
-    throw InputError(source + text);
-  }
-  Start start;
-  start.q = q;
-  start.phi = planes_[0].angle_of(arm_->elbow_axis(q));
-  int winding = 0;
-  for (int k = 0; k < kDof; ++k) {
-    const Images& images = images_[static_cast<std::size_t>(k)];
-    const int image =
-        images.count == 1 ? 0 : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)), 0, images.count - 1);
-    winding = winding * images.count + image;
-  }
-  const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
-  start.slot = (arm_->branch(q) * windings_ + winding) * angles_ + nearest;
-  start_ = start;
-}
-
-double Lattice::phi(int layer, int slot) const {
-  if (layer == 0 && start_) return start_->phi;
-  return -kPi + kTwoPi * angle_of(slot) / angles_;
-}
-
-int Lattice::winding_images(int winding, int joint) const {
-  if (windings_ == 1) return 0;
-  for (int k = kDof - 1; k > joint; --k) winding /= images_[static_cast<std::size_t>(k)].count;
-  return winding % images_[static_cast<std::size_t>(joint)].count;
-}
-
-void Lattice::solve(int layer, int first, int count, LayerNodes& out) const {
-  lay_out(layer, first, count, out);
-  for (int elbow = 0; elbow < 2; ++elbow) solve_part(elbow, 0, count, out);
-}
-
-void LayerNodes::repeat(int from, int to, int count) {
-  for (Eigen::Index array = 0; array + count_ <= data_.size(); array += count_)
-    std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
-}
-
-std::optional<double> Lattice::elbow_angle(int layer, int elbow) const {
-  const Images& images = images_[kElbowJoint];
-  if (!arm_->exact || images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow))
-    return std::nullopt;
-  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4, images.base);
-}
-
-void Lattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
-  const auto n = static_cast<std::size_t>(count);
-  out.layer_ = layer;
-  out.first_ = first;
-  const bool start = layer == 0 && start_;
-  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start};
-  if (layout == out.layout_ && !start) return;
-  out.layout_ = layout;
-  out.count_ = count;
-  out.offsets_.resize(static_cast<std::size_t>(labels()));
-  const auto needed = static_cast<Eigen::Index>(tracks_ * n);
-  if (out.data_.size() < needed) out.data_.setZero(needed);
-  std::size_t used = 0;
-  const auto allot = [&](int arrays = 1) {
-    const std::size_t offset = used;
-    used += static_cast<std::size_t>(arrays) * n;
-    return offset;
-  };
-  const std::size_t free = allot(), never = allot();
-  std::fill_n(out.data_.data() + free, n, 0.0);
-  std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
-  if (start) {
-    for (LayerNodes::Offsets& label : out.offsets_) label = {.q = {}, .bar = {never, free}, .alive = false};
-    return lay_out_start(out);
-  }
-  for (int elbow = 0; elbow < 2; ++elbow) {
-    const bool alive = elbow_alive(layer, elbow);
-    // Exact arms: one array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
-    std::array<std::array<std::size_t, kDof>, 2> track{};
-    std::array<std::array<std::size_t, 2>, 2> bar{};  // [sign][triple]
-    if (alive && arm_->exact)
-      for (std::size_t sign = 0; sign < 2; ++sign) {
-        for (std::size_t j = 0; j < kDof; ++j)
-          track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
-        for (std::size_t& triple : bar[sign]) triple = windings_ == 1 ? allot() : never;
-      }
-    for (int winding = 0, first_label = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
-      const int label = first_label + winding, branch = label / windings_;
-      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
-      offsets.alive = alive;
-      offsets.bar = {never, free};
-      if (!alive) continue;
-      const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
-      if (windings_ == 1 && arm_->exact)
-        offsets.bar = {bar[shoulder][0], bar[wrist][1]};
-      else
-        offsets.bar = {allot(), free};
-      for (int j = 0; j < kDof; ++j)
-        offsets.q[static_cast<std::size_t>(j)] = arm_->exact
-                                                     ? track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
-                                                           static_cast<std::size_t>(winding_images(label % windings_, j)) * n
-                                                     : allot();
+  step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, Config::Constant(limits_.joint_step));
+  for (int i = 0; timed && i + 1 < layers(); ++i) {
+    const PathLayer& layer = path.layer(i);
+    double dt = 0;
+    if (limits_.tool_speed) dt = std::max(dt, layer.step_length / *limits_.tool_speed);
+    if (limits_.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits_.tool_turn_speed);
+    if (dt <= 0) continue;  // a step that the given speed does not time
+    for (int k = 0; k < kDof; ++k) {
+      double& bound = step_bounds_[static_cast<std::size_t>(i)][k];
+      bound = std::min(bound, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
     }
   }
-}
-
-void Lattice::lay_out_start(LayerNodes& out) const {
-  const int label = label_of(start_->slot), n = out.count_;
-  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
-  offsets.alive = true;
-  std::size_t used = 2 * static_cast<std::size_t>(n);
-  for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
-    offsets.q[j] = used;
-    std::fill_n(out.data_.data() + used, n, start_->q[static_cast<Eigen::Index>(j)]);
-  }
-  offsets.bar[0] = used;
-  double* const bar = out.data_.data() + used;
-  std::fill_n(bar, n, std::numeric_limits<double>::infinity());
-  if (fault(0, start_->slot).status != NodeStatus::kValid) return;
-  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_) bar[k] = 0;
-}
-
-void Lattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
-  if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
-  if (arm_->exact)
-    solve_exact(elbow, begin, end, out);
-  else
-    solve_polished(elbow, begin, end, out);
-}
-
-void Lattice::solve_exact(int elbow, int begin, int end, LayerNodes& out) const {
-  const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
-  const int first_label = elbow ? kElbowBit * windings_ : 0;
-  double* const data = out.data_.data();
-  // Of the first winding: the images 0.
-  const std::array<LayerNodes::Offsets*, 2> sign{&out.offsets_[static_cast<std::size_t>(first_label)],
-                                                 &out.offsets_[static_cast<std::size_t>(first_label + 3 * windings_)]};
-  static_assert((kShoulderBit | kWristBit) == 3);
-  const bool shares_bars = windings_ == 1;
-  std::vector<double> unlimited;  // bars of singularity alone, where the limits are each winding's own
-  if (!shares_bars) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
-  for (int triple = 0; triple < 2; ++triple) {
-    const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
-    TripleTask task;
-    const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
-    for (std::size_t row = 0; row < 5; ++row)
-      for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
-    task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
-    task.least_sine = kSingularSine;
-    task.n = end - begin;
-    task.sin_phi = sine_.data() + out.first_ + begin;
-    task.cos_phi = cosine_.data() + out.first_ + begin;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Images& images = images_[static_cast<std::size_t>(joint0) + j];
-      task.base[j] = images.base;
-      task.upper[j] = shares_bars ? images.upper : std::numeric_limits<double>::infinity();
-      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s]->q[static_cast<std::size_t>(joint0) + j] + begin;
-    }
-    for (std::size_t s = 0; s < 2; ++s)
-      task.bar[s] = shares_bars ? data + sign[s]->bar[static_cast<std::size_t>(triple)] + begin
-                                : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
-    circle_kernels().solve_triple(task);
-  }
-  std::fill(data + sign[0]->q[kElbowJoint] + begin, data + sign[0]->q[kElbowJoint] + end,
-            image_from(circle.q4, images_[kElbowJoint].base));
-  if (shares_bars) return;
-
-  const std::size_t n = static_cast<std::size_t>(out.count_);
-  for (std::size_t s = 0; s < 2; ++s)
-    for (std::size_t j = 0; j < kDof; ++j)
-      for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image) {
-        const double* from = data + sign[s]->q[j];
-        double* to = data + sign[s]->q[j] + image * n;
-        for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
-      }
-  const auto length = static_cast<std::size_t>(end - begin);
-  for (int label = first_label; label < first_label + 4 * windings_; ++label) {
-    const int branch = label / windings_;
-    const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
-    const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
-    double* bar = data + out.offsets_[static_cast<std::size_t>(label)].bar[0] + begin;
-    for (std::size_t k = 0; k < length; ++k) {
-      double excess = shoulder[k] + wrist[k];
-      for (int j = 0; j < kDof; ++j)
-        excess =
-            std::max(excess, out.q(label, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
-      bar[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
-    }
-  }
-}
-
-void Lattice::solve_polished(int elbow, int begin, int end, LayerNodes& out) const {
-  constexpr double kLargestMove = 0.05;  // of polish(): limits further off than this stay violated
-  const auto layer = static_cast<std::size_t>(out.layer_);
-  const int first_branch = elbow ? kElbowBit : 0;
-  for (int label = first_branch * windings_; label < (first_branch + 4) * windings_; ++label) {
-    double* bar = out.data_.data() + out.offsets_[static_cast<std::size_t>(label)].bar[0];
-    std::fill(bar + begin, bar + end, std::numeric_limits<double>::infinity());
-  }
-  for (int k = begin; k < end; ++k) {
-    const double phi_k = -kPi + kTwoPi * ((out.first_ + k) % angles_) / angles_;
-    for (int branch = first_branch; branch < first_branch + 4; ++branch) {
-      const Config seed = srs_ik(*arm_, circles_[layer], phi_k, branch);
-      if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine ||
-          std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine)
-        continue;
-      bool hopeless = false;
-      for (int j = 0; j < kDof && !hopeless; ++j) {
-        const Images& images = images_[static_cast<std::size_t>(j)];
-        hopeless = image_from(seed[j], images.base - kLargestMove) > images.upper + kLargestMove;
-      }
-      if (hopeless) continue;
-      const auto polished = polish(*chain_, *arm_, planes_[layer], path_->layer(out.layer_).tool, phi_k, seed);
-      if (!polished) continue;
-      for (int winding = 0; winding < windings_; ++winding) {
-        const LayerNodes::Offsets& label = out.offsets_[static_cast<std::size_t>(branch * windings_ + winding)];
-        bool inside = true;
-        for (int j = 0; j < kDof; ++j) {
-          const Images& images = images_[static_cast<std::size_t>(j)];
-          const double q = image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j);
-          inside = inside && q <= images.upper;
-          out.data_[static_cast<Eigen::Index>(label.q[static_cast<std::size_t>(j)]) + k] = q;
-        }
-        if (inside) out.data_[static_cast<Eigen::Index>(label.bar[0]) + k] = 0;
-      }
-    }
-  }
-}
-
-std::optional<Config> Lattice::node(int layer, int slot) const {
-  LayerNodes nodes;
-  solve(layer, angle_of(slot), 1, nodes);
-  if (!nodes.valid(label_of(slot), 0)) return std::nullopt;
-  return nodes.config(label_of(slot), 0);
 }
 
 bool Lattice::manipulable(const Config& q) const {
   return !asks_manipulability() || chain_->manipulability(q) >= limits_.manipulability;
 }
 
-Lattice::NodeFault Lattice::fault(int layer, int slot) const {
-  NodeFault fault;
-  const bool given = layer == 0 && start_;
-  if (given && slot != start_->slot) return {NodeStatus::kNoIk};
-  const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
-  if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
-  if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
-  Config q = given ? start_->q : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
-  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine)
-    return {NodeStatus::kSingular};
-  if (given) return fault;
-  const auto polished =
-      polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
-  if (!polished) return {NodeStatus::kNoIk};
-  fault.q = *polished;
-  const int winding = label_of(slot) % windings_;
-  for (int j = 0; j < kDof; ++j) {
-    const Images& images = images_[static_cast<std::size_t>(j)];
-    if (image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j) > images.upper)
-      fault.joints |= static_cast<std::uint8_t>(1 << j);
+Config Lattice::delta(const Config& q0, const Config& q1) const {
+  Config d = q1 - q0;
+  for (int k = 0; k < kDof; ++k)
+    if (continuous_[static_cast<std::size_t>(k)]) d[k] = wrap_angle(d[k]);
+  return d;
+}
+
+bool Lattice::step_allowed(int layer, const Config& delta) const {
+  const Config& bound = step_bound(layer);
+  for (int k = 0; k < kDof; ++k)
+    if (!(std::abs(delta[k]) <= bound[k])) return false;
+  return true;
+}
+
+double Lattice::edge_cost(const Config& delta) const {
+  double x[kDof];
+  for (std::size_t k = 0; k < kDof; ++k) x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];
+  if (cost_.metric == CostMetric::kL2)
+    // Shoulder, elbow, wrist: the order in which the vector sweep adds, so that the bits agree.
+    return rounded(
+        std::sqrt(((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6])),
+        cost_unit_);
+  double most = 0;
+  for (const double value : x) most = std::max(most, std::abs(value));
+  return rounded(most, cost_unit_);
+}
+
+bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
+  const auto within = [](const std::array<double, 3>& deviation, double limit) {
+    return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+  };
+  const Config move = delta(q0, q1);
+  if (limits_.tool_path_error && !within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error)) return false;
+  if (limits_.tool_angle_error && !within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
+    return false;
+  return !limits_.step_error || step_error_allowed(layer, a, b);
+}
+
+std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+  const Step step(path, layer);
+  // t = 1/2 as it is; 1/4 and 3/4 are a quarter of the move, h, before and after it.
+  Config c, s, c_before, s_before, c_after, s_after;
+  for (int k = 0; k < kDof; ++k) {
+    const double middle = q0[k] + 0.5 * delta[k], h = 0.25 * delta[k];
+    c[k] = std::cos(middle), s[k] = std::sin(middle);
+    const double ch = std::cos(h), sh = std::sin(h);
+    c_before[k] = c[k] * ch + s[k] * sh, s_before[k] = s[k] * ch - c[k] * sh;
+    c_after[k] = c[k] * ch - s[k] * sh, s_after[k] = s[k] * ch + c[k] * sh;
   }
-  if (fault.joints) fault.status = NodeStatus::kLimit;
-  return fault;
+  return {step.aside(chain.tool_point(c_before, s_before)), step.aside(chain.tool_point(c, s)),
+          step.aside(chain.tool_point(c_after, s_after))};
 }
 
-bool Lattice::in_window(int layer, int a, int b) const {
-  if (layer == 0 && start_) return std::abs(wrap_angle(phi(1, b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
-  const int apart = std::abs(angle_of(a) - angle_of(b));
-  return std::min(apart, angles_ - apart) <= window_;
-}
-
-Lattice::Run Lattice::grid_run(double phi_from) const {
-  const double step = kTwoPi / angles_;
-  const auto first = static_cast<long long>(std::ceil((phi_from + kPi - 1e-9) / step - window_));
-  const auto last = static_cast<long long>(std::floor((phi_from + kPi + 1e-9) / step + window_));
-  return {wrapped_index(first, angles_), static_cast<int>(std::min<long long>(last - first + 1, angles_))};
-}
-
-Lattice::Run Lattice::successors(int layer, int a) const {
-  if (layer == 0 && start_) return grid_run(start_->phi);
-  return {wrapped_index(static_cast<long long>(angle_of(a)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
-}
-
-Lattice::Run Lattice::predecessors(int layer, int b) const {
-  if (layer == 0 && start_) return in_window(0, start_->slot, b) ? Run{angle_of(start_->slot), 1} : Run{0, 0};
-  return {wrapped_index(static_cast<long long>(angle_of(b)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {
+  const Step step(path, layer);
+  std::array<double, 3> deviation{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double t = 0.25 * static_cast<double>(k + 1);
+    const Pose tool = chain.tool(q0 + t * delta);
+    const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
+    deviation[k] = Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
+  }
+  return deviation;
 }
 
 }  // namespace swivel

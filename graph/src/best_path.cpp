@@ -90,8 +90,8 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
   const Vertex root = graph.root();
   const auto heuristic = [&](Vertex v) -> Estimate {
     if (v == root) return {cost_to_go.best(), 0};
-    const std::int64_t depth = graph.layer_of(v), width = cost_to_go.lattice().width();
-    return {graph.cost_to_go(v), (cost_to_go.goal_layer() - depth) * width + graph.slot_of(v)};
+    const std::int64_t depth = graph.layer_of(v);
+    return {graph.cost_to_go(v), (cost_to_go.goal_layer() - depth) * graph.width() + graph.slot_of(v)};
   };
   record(records, root).distance = 0;
   record(records, root).rank = {cost_to_go.best(), 0};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/graph/chord_bound.hpp"
+#include "chord_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,7 +18,7 @@ constexpr int kRun = 16;  // angles relaxed at once
 
 /// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the arm angle may
 /// turn.
-int stride_of(const Lattice& lattice) {
+int stride_of(const SrsLattice& lattice) {
   constexpr double kTurn = 0.8;
   const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
   return turn_per_layer > 0 ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0)) : 4;
@@ -33,7 +33,7 @@ struct Interval {
   [[nodiscard]] float gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
 };
 
-constexpr std::array<std::size_t, 3> kMiddle{1, 3, 5};  // a branch flips only through the zero of one of these
+constexpr auto kMiddle = SrsLattice::kMiddleJoints;
 
 using Lanes = Eigen::Array<float, kRun, 1>;
 using Track = Eigen::Map<const Eigen::ArrayXd>;
@@ -74,7 +74,7 @@ struct Circle {
 
 class Chords {
  public:
-  Chords(const Lattice& lattice, int stride, const Budget& budget)
+  Chords(const SrsLattice& lattice, int stride, const Budget& budget)
       : lattice_(lattice), budget_(budget), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
@@ -143,7 +143,7 @@ class Chords {
       const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
       to.value.resize(length, kNever);
       Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
-      value = (Track(nodes_.shoulder_bar(label), n_) + Track(nodes_.wrist_bar(label), n_)).cast<float>();
+      value = (Track(nodes_.bar(label, 0), n_) + Track(nodes_.bar(label, 1), n_)).cast<float>();
       to.alive = value.minCoeff() == 0;
       if (!to.alive) continue;
       for (int k = 0; k < kDof; ++k) {
@@ -214,7 +214,7 @@ class Chords {
     relax_kernels().chord(task_);
   }
 
-  const Lattice& lattice_;
+  const SrsLattice& lattice_;
   const Budget& budget_;
   int n_, window_;
   RelaxTask<float> task_;
@@ -227,7 +227,7 @@ class Chords {
 
 }  // namespace
 
-ChordBound::ChordBound(const Lattice& lattice, const Budget& budget)
+ChordBound::ChordBound(const SrsLattice& lattice, const Budget& budget)
     : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const Span span("chord bound");
   Chords chords(lattice, stride_, budget);

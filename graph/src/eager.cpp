@@ -60,17 +60,18 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
   std::vector<std::uint8_t> answers;
   std::vector<std::pair<std::size_t, std::size_t>> candidate_ends;
   std::vector<EdgeCost> candidate_costs;
+  Successors successors(lattice);
   for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
-    const std::vector<int> index = index_by_slot(lattice, next);
+    successors.enter(layer, next);
     questions.clear();
     candidate_ends.clear();
     candidate_costs.clear();
     for (std::size_t a = 0; a < valid.layers[i].size(); ++a) {
       if (a % 16 == 0) budget.poll();
       const ValidNodes::Node& node = valid.layers[i][a];
-      for_each_successor(lattice, layer, node, next, index, outcome.edges, [&](int b, const Config& delta) {
+      successors.for_each(node, outcome.edges, [&](int b, const Config& delta) {
         const auto& head = next[static_cast<std::size_t>(b)];
         candidate_ends.emplace_back(built.first[i + 1] + static_cast<std::size_t>(b), built.first[i] + a);
         candidate_costs.push_back({lattice.edge_cost(delta)});

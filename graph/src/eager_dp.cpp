@@ -20,15 +20,16 @@ int deepest_layer(const Lattice& lattice, const ValidNodes& valid, Validity& val
                   std::int64_t& compared) {
   std::vector<char> reached(valid.layers[0].size(), 1);
   int deepest = valid.layers[0].empty() ? -1 : 0;
+  Successors successors(lattice);
   for (int layer = 0; layer + 1 < lattice.layers() && deepest == layer; ++layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
-    const std::vector<int> index = index_by_slot(lattice, next);
+    successors.enter(layer, next);
     std::vector<char> ahead(next.size(), 0);
     for (std::size_t a = 0; a < reached.size(); ++a) {
       if (a % 16 == 0) budget.poll();
       if (reached[a])
-        for_each_successor(lattice, layer, valid.layers[i][a], next, index, compared, [&](int b, const Config&) {
+        successors.for_each(valid.layers[i][a], compared, [&](int b, const Config&) {
           const auto k = static_cast<std::size_t>(b);
           if (!ahead[k] && edge_valid(validity, layer, valid.layers[i][a], next[k])) ahead[k] = 1;
         });
@@ -51,16 +52,17 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
     int b;
   };
   std::vector<Candidate> candidates;
+  Successors successors(lattice);
   for (int layer = lattice.layers() - 2; layer >= 0; --layer) {
     const auto i = static_cast<std::size_t>(layer);
     const auto& next = valid.layers[i + 1];
-    const std::vector<int> index = index_by_slot(lattice, next);
+    successors.enter(layer, next);
     here.assign(valid.layers[i].size(), kUnreachable);
     best[i].assign(valid.layers[i].size(), -1);
     for (std::size_t a = 0; a < valid.layers[i].size(); ++a) {
       if (a % 16 == 0) budget.poll();
       candidates.clear();
-      for_each_successor(lattice, layer, valid.layers[i][a], next, index, outcome.edges, [&](int b, const Config& delta) {
+      successors.for_each(valid.layers[i][a], outcome.edges, [&](int b, const Config& delta) {
         const double rest = value[static_cast<std::size_t>(b)];
         if (rest != kUnreachable) candidates.push_back({lattice.edge_cost(delta) + rest, b});
       });

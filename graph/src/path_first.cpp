@@ -37,7 +37,12 @@ class FailFirst {
 class Search {
  public:
   Search(CostToGo& togo, Validity& validity, const PathFirstOptions& options)
-      : togo_(togo), lattice_(togo.lattice()), validity_(validity), options_(options), fail_first_(lattice_.layers()) {}
+      : togo_(togo),
+        verdicts_(togo.verdicts()),
+        lattice_(togo.lattice()),
+        validity_(validity),
+        options_(options),
+        fail_first_(lattice_.layers()) {}
 
   SearchOutcome run(SearchCounters& counters) {
     for (;;) {
@@ -46,9 +51,9 @@ class Search {
       if (path.empty()) return {};
       ++counters.iterations;
       fail_first_.next_round();
-      const std::int64_t removed = togo_.removed();
+      const std::int64_t removed = verdicts_.removed();
       if (valid(path)) return {path, togo_.best()};
-      if (togo_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
+      if (verdicts_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
       togo_.repair();
     }
   }
@@ -71,7 +76,7 @@ class Search {
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     std::vector<NodeQuestion> nodes;
     for (int i = 0; i < layers; ++i)
-      if (togo_.node_verdict(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
+      if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
     fail_first_.order(nodes);
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
       const std::vector<Failure> failed =
@@ -85,7 +90,7 @@ class Search {
     if (!validity_.asks_edges()) return true;
     std::vector<EdgeQuestion> edges;
     for (int i = 0; i + 1 < layers; ++i)
-      if (togo_.edge_verdict(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
+      if (verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
         edges.push_back({i, path[at(i)], path[at(i + 1)], joints[at(i)], joints[at(i + 1)]});
     fail_first_.order(edges);
     for (std::size_t first = 0; first < edges.size(); first += batch()) {
@@ -105,11 +110,12 @@ class Search {
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> suspects;
     const auto suspect_neighbours = [&](const Failure& x) {
-      const int n = lattice_.angles(), label = lattice_.label_of(x.slot), j = lattice_.angle_of(x.slot);
-      if (x.layer > 0) suspects.push_back({x.layer - 1, x.slot, x.fault});
-      if (x.layer < togo_.goal_layer()) suspects.push_back({x.layer + 1, x.slot, x.fault});
-      suspects.push_back({x.layer, label * n + (j + 1) % n, x.fault});
-      suspects.push_back({x.layer, label * n + (j + n - 1) % n, x.fault});
+      for (const int by : {-1, 1}) {
+        const int slot = x.layer + by <= togo_.goal_layer() ? lattice_.along(x.layer, x.slot, by) : -1;
+        if (slot >= 0) suspects.push_back({x.layer + by, slot, x.fault});
+      }
+      for (const int by : {1, -1})
+        if (const int slot = lattice_.beside(x.layer, x.slot, by); slot >= 0) suspects.push_back({x.layer, slot, x.fault});
     };
     for (const Failure& node : failed) suspect_neighbours(node);
     std::vector<NodeQuestion> questions;
@@ -120,7 +126,7 @@ class Search {
         suspects.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
                                        [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
-        if (!again && togo_.node_verdict(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable)
+        if (!again && verdicts_.node(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable)
           questions.push_back({layer, slot, togo_.config(layer, slot), fault});
       }
       left -= static_cast<int>(questions.size());
@@ -135,15 +141,16 @@ class Search {
       bool operator==(const Suspect&) const = default;
     };
     std::deque<Suspect> suspects;
-    const auto shifted = [&](int slot, int by) {
-      const int n = lattice_.angles();
-      return lattice_.label_of(slot) * n + (lattice_.angle_of(slot) + by + n) % n;
+    const auto suspect = [&](int layer, int a, int b) {
+      if (a >= 0 && b >= 0) suspects.push_back({layer, a, b});
     };
     const auto suspect_neighbours = [&](const EdgeQuestion& x) {
+      const auto shifted = [&](int layer, int slot, int by) { return by == 0 ? slot : lattice_.beside(layer, slot, by); };
       constexpr std::pair<int, int> kShifts[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}};
-      for (const auto& [da, db] : kShifts) suspects.push_back({x.layer, shifted(x.a, da), shifted(x.b, db)});
-      if (x.layer > 0) suspects.push_back({x.layer - 1, x.a, x.b});
-      if (x.layer + 1 < togo_.goal_layer()) suspects.push_back({x.layer + 1, x.a, x.b});
+      for (const auto& [da, db] : kShifts) suspect(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
+      for (const int by : {-1, 1})
+        if (x.layer + by >= 0 && x.layer + by < togo_.goal_layer())
+          suspect(x.layer + by, lattice_.along(x.layer, x.a, by), lattice_.along(x.layer + 1, x.b, by));
     };
     for (const EdgeQuestion& edge : failed) suspect_neighbours(edge);
     std::vector<Suspect> asked;
@@ -155,8 +162,8 @@ class Search {
         const Suspect x = suspects.front();
         suspects.pop_front();
         if (togo_.at(x.layer, x.a) == kUnreachable || togo_.at(x.layer + 1, x.b) == kUnreachable ||
-            togo_.node_verdict(x.layer, x.a) == Verdict::kRemoved || togo_.node_verdict(x.layer + 1, x.b) == Verdict::kRemoved ||
-            togo_.edge_verdict(x.layer, x.a, x.b) != Verdict::kUnknown || !lattice_.in_window(x.layer, x.a, x.b) ||
+            verdicts_.node(x.layer, x.a) == Verdict::kRemoved || verdicts_.node(x.layer + 1, x.b) == Verdict::kRemoved ||
+            verdicts_.edge(x.layer, x.a, x.b) != Verdict::kUnknown || !lattice_.in_window(x.layer, x.a, x.b) ||
             std::find(asked.begin(), asked.end(), x) != asked.end())
           continue;
         const EdgeQuestion edge{x.layer, x.a, x.b, togo_.config(x.layer, x.a), togo_.config(x.layer + 1, x.b)};
@@ -180,9 +187,11 @@ class Search {
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const NodeQuestion& x = questions[k];
       if (answers_[k].valid) {
-        togo_.keep_node(x.layer, x.slot);
+        verdicts_.keep_node(x.layer, x.slot);
       } else {
-        togo_.remove_alike(x.layer, x.slot, answers_[k].depends);
+        lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
+        if (!answers_[k].shared) alike_.assign(1, x.slot);
+        for (const int slot : alike_) verdicts_.remove_node(x.layer, slot);
         failed.push_back({x.layer, x.slot, answers_[k].fault});
       }
     }
@@ -196,7 +205,7 @@ class Search {
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const EdgeQuestion& x = questions[k];
       if (edge_answers_[k]) {
-        togo_.keep_edge(x.layer, x.a, x.b);
+        verdicts_.keep_edge(x.layer, x.a, x.b);
       } else {
         togo_.remove_edge(x.layer, x.a, x.b);
         failed.push_back(x);
@@ -208,12 +217,14 @@ class Search {
   [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
 
   CostToGo& togo_;
+  Verdicts& verdicts_;
   const Lattice& lattice_;
   Validity& validity_;
   PathFirstOptions options_;
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
+  std::vector<int> alike_;
 };
 
 }  // namespace
@@ -226,10 +237,10 @@ int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptio
   for (;;) {
     const int optimistic = togo.deepest_reachable();
     if (optimistic < 0) return -1;
-    const std::int64_t removed = togo.removed();
+    const std::int64_t removed = togo.verdicts().removed();
     togo.sweep(optimistic);
     if (!path_first(togo, validity, options, counters).path.empty()) return optimistic;
-    if (togo.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
+    if (togo.verdicts().removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }
 

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "valid_nodes.hpp"
+
+#include <algorithm>
+
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -8,29 +11,30 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
   const Span span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
-  LayerNodes nodes;
+  std::vector<Lattice::Node> nodes;
   std::vector<NodeQuestion> questions;
   std::vector<NodeAnswer> answers;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
     budget.poll();
-    lattice.solve(layer, nodes);
-    ik_nodes += lattice.width();
+    lattice.layer_nodes(layer, nodes);
+    ik_nodes += lattice.slots(layer);
     questions.clear();
-    for (int slot = 0; slot < lattice.width(); ++slot)
-      if (nodes.valid(lattice.label_of(slot), lattice.angle_of(slot)))
-        questions.push_back({layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot))});
+    for (const Lattice::Node& node : nodes) questions.push_back({layer, node.slot, node.q});
     answers.assign(questions.size(), {});
     validity.nodes(questions, answers);
+    valid.layers[static_cast<std::size_t>(layer)].reserve(
+        static_cast<std::size_t>(std::count_if(answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
     for (std::size_t k = 0; k < questions.size(); ++k)
       if (answers[k].valid) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
   }
   return valid;
 }
 
-std::vector<int> index_by_slot(const Lattice& lattice, const std::vector<ValidNodes::Node>& nodes) {
-  std::vector<int> index(static_cast<std::size_t>(lattice.width()), -1);
-  for (std::size_t k = 0; k < nodes.size(); ++k) index[static_cast<std::size_t>(nodes[k].slot)] = static_cast<int>(k);
-  return index;
+void Successors::enter(int layer, const std::vector<ValidNodes::Node>& next) {
+  layer_ = layer;
+  next_ = &next;
+  index_of_slot_.assign(static_cast<std::size_t>(lattice_.slots(layer + 1)), -1);
+  for (std::size_t k = 0; k < next.size(); ++k) index_of_slot_[static_cast<std::size_t>(next[k].slot)] = static_cast<int>(k);
 }
 
 }  // namespace swivel

@@ -11,7 +11,7 @@
 #include "path_following.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/tool_path.hpp"
 #include "swivel/core/validate.hpp"
 
@@ -473,7 +473,7 @@ class Check {
   ToolPath path_;
   std::vector<Config> allowed_;
   std::vector<ArmPlane> planes_;
-  std::optional<Lattice> lattice_;  // for the estimate of the step error alone
+  std::optional<SrsLattice> lattice_;  // for the estimate of the step error alone
   Contacts contacts_;
   PoseDistance along_, at_waypoints_;
   std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined

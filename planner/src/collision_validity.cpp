@@ -47,26 +47,21 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, World::Query& q
   if (question.suspect != kNoFault) suspect = {question.suspect / bodies, question.suspect % bodies};
   const auto pair = query.next_below(question.q, Keep::kNode, suspect);
   if (!pair) return {.valid = true};
-  return {false, dependence(*lattice_, *world_, query, question.q, *pair), pair->a * bodies + pair->b};
+  const Sharing sharing = sharing_of(*lattice_, *world_, query, question.q, *pair);
+  return {false, sharing.shared, sharing.groups, pair->a * bodies + pair->b};
 }
 
 /// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
 /// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
-/// On arms that are not exact only the last link and the tool stand alike: polished joints place them to 1e-10 m, the others by the
-/// fitted arm's misfit.
-std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query& query, const Config& q, const BodyPair& pair) {
-  std::uint8_t depends = 0;
-  for (const int body : {pair.a, pair.b}) {
-    constexpr std::uint8_t kElbowPart = kOnArmAngle | kOnElbow;
-    constexpr std::array<std::uint8_t, kDof + 1> kOfGroup{
-        0,          kElbowPart | kOnShoulder, kElbowPart | kOnShoulder, kElbowPart,
-        kElbowPart, kElbowPart | kOnWrist,    kElbowPart | kOnWrist,    0};
+Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& query, const Config& q, const BodyPair& pair) {
+  Sharing sharing;
+  for (const int body : {pair.a, pair.b})
     if (body < static_cast<int>(world.bodies().size()))
-      depends |= kOfGroup[static_cast<std::size_t>(world.bodies()[static_cast<std::size_t>(body)].group)];
-  }
-  if (!lattice.arm().exact && depends != 0) return kOnNodeAlone;
-  if (!query.surely_below() && !query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand))) return kOnNodeAlone;
-  return depends;
+      sharing.groups |= 1u << world.bodies()[static_cast<std::size_t>(body)].group;
+  sharing.groups &= ~1u;  // group 0 stands still
+  sharing.shared = lattice.stand_alike(sharing.groups) &&
+                   (query.surely_below() || query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand)));
+  return sharing;
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

@@ -45,8 +45,12 @@ class CollisionValidity final : public Validity {
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 
-/// What the failure of a pair that the query has just named at q depends on (Dependence).
-[[nodiscard]] std::uint8_t dependence(const Lattice& lattice, const World& world, World::Query& query, const Config& q,
-                                      const BodyPair& pair);
+/// Whether the failure of a pair, which the query has just named at q, is one of every node at which its bodies stand alike.
+struct Sharing {
+  bool shared = false;
+  unsigned groups = 0;  ///< of NodeAnswer
+};
+[[nodiscard]] Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& query, const Config& q,
+                                 const BodyPair& pair);
 
 }  // namespace swivel

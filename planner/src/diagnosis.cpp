@@ -29,10 +29,10 @@ struct Cause {
 constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
 
 /// What blocks the nodes of one layer: manipulability, or a pair of bodies. A failure tells of every node whose failing bodies
-/// stand alike (Dependence), so that most nodes need no question, or a short one.
+/// stand alike (Lattice::alike), so that most nodes need no question, or a short one.
 class LayerBlockers {
  public:
-  LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
+  LayerBlockers(const SrsLattice& lattice, const World& world, World::Query& query)
       : lattice_(lattice), world_(world), query_(query), known_(static_cast<std::size_t>(lattice.width())), asked_(known_.size()) {}
 
   void start() {
@@ -41,9 +41,9 @@ class LayerBlockers {
     all_ = false;
   }
   /// The first of World::pairs() that is too near, or kManipulability, or kFree.
-  int first(int slot, const Config& q) {
+  int first(int layer, int slot, const Config& q) {
     const auto k = static_cast<std::size_t>(slot);
-    if (known_[k] == kUnknown) return ask(slot, q);
+    if (known_[k] == kUnknown) return ask(layer, slot, q);
     for (int pair = 0; !asked_[k] && pair < known_[k]; ++pair)
       if (query_.pair_below(q, world_.pairs()[static_cast<std::size_t>(pair)], Keep::kNode)) known_[k] = pair;
     asked_[k] = 1;
@@ -51,15 +51,15 @@ class LayerBlockers {
     return known_[k];
   }
   /// One of those that are too near.
-  int any(int slot, const Config& q) {
+  int any(int layer, int slot, const Config& q) {
     const int known = known_[static_cast<std::size_t>(slot)];
-    return known == kUnknown ? ask(slot, q) : known;
+    return known == kUnknown ? ask(layer, slot, q) : known;
   }
   /// Every node of the layer is blocked by the pair that was named last.
   [[nodiscard]] bool all() const { return all_; }
 
  private:
-  int ask(int slot, const Config& q) {
+  int ask(int layer, int slot, const Config& q) {
     const auto k = static_cast<std::size_t>(slot);
     asked_[k] = 1;
     if (!lattice_.manipulable(q)) return known_[k] = kManipulability;
@@ -67,27 +67,32 @@ class LayerBlockers {
     if (!pair) return known_[k] = kFree;
     const auto& pairs = world_.pairs();
     known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());
-    const std::uint8_t depends = dependence(lattice_, world_, query_, q, *pair);
-    all_ = depends == 0;
-    if (depends != kOnNodeAlone)
-      for_each_alike(lattice_, slot, depends, [&](int other) {
-        int& known = known_[static_cast<std::size_t>(other)];
-        if (!asked_[static_cast<std::size_t>(other)]) known = known < 0 ? known_[k] : std::min(known, known_[k]);
-      });
+    const Sharing sharing = sharing_of(lattice_, world_, query_, q, *pair);
+    if (!sharing.shared) {
+      all_ = false;
+      return known_[k];
+    }
+    lattice_.alike(layer, slot, sharing.groups, alike_);
+    all_ = static_cast<int>(alike_.size()) == lattice_.slots(layer);
+    for (const int other : alike_) {
+      int& known = known_[static_cast<std::size_t>(other)];
+      if (!asked_[static_cast<std::size_t>(other)]) known = known < 0 ? known_[k] : std::min(known, known_[k]);
+    }
     return known_[k];
   }
 
-  const Lattice& lattice_;
+  const SrsLattice& lattice_;
   const World& world_;
   World::Query& query_;
   std::vector<int> known_;   // [slot] kUnknown, or what is known to block it
   std::vector<char> asked_;  // [slot] known_ is the first that does
   bool all_ = false;
+  std::vector<int> alike_;
 };
 
 class Inspector {
  public:
-  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget)
+  Inspector(const SrsLattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget)
       : lattice_(lattice),
         world_(world),
         rule_(rule),
@@ -117,7 +122,7 @@ class Inspector {
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
       budget_.poll();
-      const int blocker = blockers_.first(slot, config(nodes_, slot));
+      const int blocker = blockers_.first(layer, slot, config(nodes_, slot));
       ++counts[blocker];
       if (blocker == kFree) left.push_back(slot);
     }
@@ -142,7 +147,7 @@ class Inspector {
         const int label = (hint_label + l) % lattice_.labels(), slot = label * n + j;
         if (!nodes_.valid(label, 0)) continue;
         budget_.poll();
-        const int blocker = blockers_.any(slot, nodes_.config(label, 0));
+        const int blocker = blockers_.any(layer, slot, nodes_.config(label, 0));
         if (blocker == kFree) {
           hint = slot;
           return std::nullopt;
@@ -167,7 +172,7 @@ class Inspector {
     };
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       if (slot % 64 == 0) budget_.poll();
-      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      const SrsLattice::NodeFault fault = lattice_.fault(layer, slot);
       ++statuses[status_name(fault)];
       if (fault.status != NodeStatus::kLimit) continue;
       ++ik_;
@@ -194,7 +199,7 @@ class Inspector {
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       if (nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
       if (slot % 64 == 0) budget_.poll();
-      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      const SrsLattice::NodeFault fault = lattice_.fault(layer, slot);
       if (fault.status != NodeStatus::kLimit) ++reasons[status_name(fault)];
       for (int k = 0; k < kDof; ++k)
         if ((fault.joints >> k) & 1) ++reasons[joint_name(k)];
@@ -216,8 +221,8 @@ class Inspector {
       if (!before.valid(lattice_.label_of(a), lattice_.angle_of(a))) continue;
       budget_.poll();
       const Config qa = config(before, a);
-      if (blockers_before_.any(a, qa) != kFree) continue;
-      const Lattice::Run run = lattice_.successors(layer, a);
+      if (blockers_before_.any(layer, a, qa) != kFree) continue;
+      const SrsLattice::Run run = lattice_.run_after(layer, a);
       for (int label = 0; label < lattice_.labels(); ++label)
         for (int k = 0; k < run.count; ++k) {
           const int b = label * lattice_.angles() + (run.first + k) % lattice_.angles();
@@ -255,7 +260,7 @@ class Inspector {
   }
 
   /// The joint that is furthest outside, each taken at the winding where it is nearest to its limits.
-  [[nodiscard]] std::optional<Shortfall> limit_shortfall(const Lattice::NodeFault& fault) const {
+  [[nodiscard]] std::optional<Shortfall> limit_shortfall(const SrsLattice::NodeFault& fault) const {
     std::optional<Shortfall> worst;
     for (int k = 0; k < kDof; ++k) {
       if (((fault.joints >> k) & 1) == 0) continue;
@@ -278,7 +283,7 @@ class Inspector {
     return blocker == kManipulability ? "manipulability" : name(world_.pairs()[static_cast<std::size_t>(blocker)]);
   }
   [[nodiscard]] std::string joint_name(int k) const { return "joint " + lattice_.chain().joint_names[static_cast<std::size_t>(k)]; }
-  static const char* status_name(const Lattice::NodeFault& fault) {
+  static const char* status_name(const SrsLattice::NodeFault& fault) {
     switch (fault.status) {
       case NodeStatus::kNoIk:
         return "no IK";
@@ -289,7 +294,7 @@ class Inspector {
     }
   }
 
-  const Lattice& lattice_;
+  const SrsLattice& lattice_;
   const World& world_;
   EdgeRule rule_;
   const Budget& budget_;
@@ -300,14 +305,14 @@ class Inspector {
   std::int64_t ik_ = 0;
 };
 
-EmptyLayer empty_layer(const Lattice& lattice, int layer, const Cause& cause) {
+EmptyLayer empty_layer(const SrsLattice& lattice, int layer, const Cause& cause) {
   const PathLayer& at = lattice.path().layer(layer);
   return {layer, at.waypoint, at.s, cause.reason, cause.shortfall};
 }
 
 }  // namespace
 
-void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
               const Budget& budget, Diagnosis& diagnosis) {
   const Span span("diagnosis");
   diagnosis.complete = false;

@@ -2,8 +2,8 @@
 #pragma once
 #include "swivel/collision/world.hpp"
 #include "swivel/core/budget.hpp"
-#include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
+#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 
@@ -11,7 +11,7 @@ namespace swivel {
 /// nodes and edges just past it and which later layers are empty. A function of the problem and that layer alone: the same for all
 /// planners. Later layers are looked at until they would take more than about a second by a fixed estimate. Throws Stopped;
 /// `diagnosis` then holds what was found, and `complete` is false.
-void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
               const Budget& budget, Diagnosis& diagnosis);
 
 }  // namespace swivel

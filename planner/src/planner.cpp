@@ -12,6 +12,7 @@
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/graph/path_first.hpp"
@@ -63,7 +64,7 @@ int lanes_of(const PlanOptions& options) {
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
-void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
+void refuse_if_too_large(const SrsLattice& lattice, const std::string& source) {
   const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   if (!fits_in_memory(needed))
@@ -93,7 +94,8 @@ void search_lazily(const Lattice& lattice, CollisionValidity& validity, const Pl
                    Found& found, PlanResult& result) {
   Stopwatch watch;
   constexpr int kFewLayers = 64;  // where chords are too long to bound much
-  CostToGo togo(lattice, lattice.layers() < kFewLayers ? CostToGo::Extent::kWhole : CostToGo::Extent::kBounded, budget);
+  const auto cost_to_go = make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget);
+  CostToGo& togo = *cost_to_go;
   SearchCounters searched;
   try {
     say(options, "sweeping the lattice");
@@ -112,7 +114,7 @@ void search_lazily(const Lattice& lattice, CollisionValidity& validity, const Pl
     if (options.record) {
       std::int64_t expansions = 0;  // no part of the search
       options.record->path = found.deepest.value_or(-1) >= 0 ? best_path(togo, expansions) : found.outcome.path;
-      options.record->nodes = togo.node_verdicts();
+      options.record->nodes = togo.verdicts().nodes();
       result.time_ms["record"] = watch.lap();
     }
   } catch (const Stopped&) {
@@ -124,7 +126,7 @@ void search_lazily(const Lattice& lattice, CollisionValidity& validity, const Pl
   counters.iterations = searched.iterations;
 }
 
-Found search(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+Found search(const SrsLattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
              PlanResult& result) {
   Found found;
   if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
@@ -142,15 +144,13 @@ double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config&
 }
 
 void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& result) {
-  LayerNodes nodes;
   for (int i = 0; i < lattice.layers(); ++i) {
     const int slot = path[static_cast<std::size_t>(i)];
-    lattice.solve(i, lattice.angle_of(slot), 1, nodes);
     TrajectoryRow row;
     row.s = lattice.path().layer(i).s;
     row.phi = lattice.phi(i, slot);
-    row.branch = lattice.branch_of(slot);
-    row.q = nodes.config(lattice.label_of(slot), 0);
+    row.branch = lattice.branch(i, slot);
+    row.q = *lattice.node(i, slot);
     if (i > 0) row.q = result.trajectory.back().q + lattice.delta(result.trajectory.back().q, row.q);  // unwraps continuous joints
     result.trajectory.push_back(row);
   }
@@ -207,8 +207,8 @@ void fill_postures(const PreparedRobot& robot, const Lattice& lattice, const Wor
 }
 
 /// What the options ask for, as far as the budget goes.
-void fill_evidence(const PreparedRobot& robot, const Lattice& lattice, const World& world, const EdgeRule& rule, const Found& found,
-                   const PlanOptions& options, const Budget& budget, PlanResult& result) {
+void fill_evidence(const PreparedRobot& robot, const SrsLattice& lattice, const World& world, const EdgeRule& rule,
+                   const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
   const Span span("report");
   try {
     if (result.status == PlanStatus::kSolved) {
@@ -248,7 +248,7 @@ void find(const PreparedRobot& robot, const Problem& problem, const PlanOptions&
   Stopwatch watch, whole;
   say(options, "laying out the lattice");
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
   result.time_ms["lattice"] = watch.lap();
   const World world(robot.world(), problem, budget);
   result.time_ms["world"] = watch.lap();

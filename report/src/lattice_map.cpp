@@ -6,7 +6,7 @@
 #include <map>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {
@@ -40,7 +40,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
   validate(problem);
   robot.require_prepared_for(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
   const World world(robot.world(), problem, budget);
   World::Query query(world, Certificates::kOn);
 
@@ -62,7 +62,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
     for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
       LatticeMap::Node& node = map.nodes[k];
       if (!nodes.valid(lattice.label_of(slot), lattice.angle_of(slot))) {
-        const Lattice::NodeFault fault = lattice.fault(layer, slot);
+        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
         if (fault.status == NodeStatus::kSingular) node.state = NodeState::kSingular;
         if (fault.status == NodeStatus::kLimit)
           node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};

@@ -13,7 +13,7 @@
 #include "page_template.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 
@@ -95,7 +95,7 @@ Json chain_json(const Chain& chain) {
 }
 
 /// The answer layer by layer, or the way to the furthest layer.
-Json rows_json(const World& world, const Lattice& lattice, const std::vector<int>& slots, const Budget& budget) {
+Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<int>& slots, const Budget& budget) {
   World::Query query(world);
   Json rows = Json::array();
   Config previous = Config::Zero();
@@ -138,7 +138,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<int
 
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::string& reason) {
+Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& world, const std::string& reason) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
   const int from = map.path.empty() ? 0 : map.path.back();
@@ -215,7 +215,7 @@ class Clearances {
 };
 
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
-Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const Budget& budget) {
+Json map_json(const LatticeMap& map, const SrsLattice& lattice, const World& world, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> labels = map.inhabited_labels();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
@@ -293,7 +293,7 @@ bool page_available() {
 std::string to_page(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, const LatticeMap& map,
                     const std::string& result_json, const Budget& budget) {
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
   const World world(robot.world(), problem, budget);
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];

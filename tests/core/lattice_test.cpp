@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ struct Small {
   ArmModel arm;
   SrsArm srs;
   std::unique_ptr<ToolPath> path;
-  std::unique_ptr<Lattice> lattice;
+  std::unique_ptr<SrsLattice> lattice;
   Small(const TestRobot& robot, const Config& q0, const Config& q1, Resolution resolution)
       : problem(problem_for(robot)), arm(arm_of(robot)) {
     srs = fit_srs(arm.chain, robot.name);
@@ -37,7 +37,7 @@ struct Small {
   }
   void rebuild() {
     path = std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test");
-    lattice = std::make_unique<Lattice>(arm.chain, srs, *path, problem);
+    lattice = std::make_unique<SrsLattice>(arm.chain, srs, *path, problem);
   }
 };
 
@@ -50,7 +50,7 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
       const Chain chain = arm_of(robot).chain;
       const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
       const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
-      const Lattice& lattice = *small.lattice;
+      const SrsLattice& lattice = *small.lattice;
       LayerNodes nodes;
       for (int layer = 0; layer < lattice.layers(); ++layer) {
         lattice.solve(layer, nodes);
@@ -95,7 +95,7 @@ TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {
   const Chain chain = arm_of(robot).chain;
   const Config q0 = random_config(chain, random);
   const Small small(robot, q0, q0 + 0.05 * Config::Ones(), {.ds = 0.02, .dphi = 0.5, .dalpha = 0.1});
-  const Lattice& lattice = *small.lattice;
+  const SrsLattice& lattice = *small.lattice;
   EXPECT_EQ(lattice.windings(), 2 * 2);  // joints 1 and 7
   int images = 0;
   for (int slot = 0; slot < lattice.width(); ++slot) {
@@ -175,11 +175,11 @@ TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
     small.problem.limits.joint_step = 0.2;
     small.problem.start = q0;
     small.rebuild();
-    const Lattice& lattice = *small.lattice;
+    const SrsLattice& lattice = *small.lattice;
     ++tried;
     ASSERT_EQ(lattice.node(0, lattice.start_slot()), q0);
     bool any = false;
-    const Lattice::Run run = lattice.successors(0, lattice.start_slot());
+    const SrsLattice::Run run = lattice.run_after(0, lattice.start_slot());
     for (int label = 0; label < lattice.labels() && !any; ++label)
       for (int k = 0; k < run.count && !any; ++k) {
         const auto q = lattice.node(1, label * lattice.angles() + (run.first + k) % lattice.angles());
@@ -261,7 +261,7 @@ TEST(Lattice, CarriedReferenceKeepsNeighboursAlignedWhereTheLinePassesAxisOne) {
   q0 << 0.3, -0.35, 0.2, -1.2, 0.1, 0.6, 0.0;
   q1 << 0.3, 0.35, 0.2, -1.2, 0.1, 0.6, 0.0;
   Small small(robot, q0, q1, {.ds = 0.005, .dphi = 0.05, .dalpha = 1});
-  const Lattice& lattice = *small.lattice;
+  const SrsLattice& lattice = *small.lattice;
   int nodes = 0, outside = 0;
   LayerNodes here, next;
   for (int layer = 0; layer + 1 < lattice.layers(); layer += 5) {
@@ -301,7 +301,7 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
     Small small(robot, q0, q0 + 0.1 * Config::Ones(), {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1});
     small.problem.start = q0;
     small.rebuild();
-    const Lattice& lattice = *small.lattice;
+    const SrsLattice& lattice = *small.lattice;
     ASSERT_TRUE(lattice.has_start());
     LayerNodes nodes;
     lattice.solve(0, nodes);
@@ -314,7 +314,7 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
       }
     EXPECT_EQ(valid, 1);
     // Successors: exactly the grid nodes within the window of the start's own arm angle.
-    const Lattice::Run run = lattice.successors(0, lattice.start_slot());
+    const SrsLattice::Run run = lattice.run_after(0, lattice.start_slot());
     for (int j = 0; j < lattice.angles(); ++j) {
       const bool listed = (j - run.first + lattice.angles()) % lattice.angles() < run.count;
       EXPECT_EQ(listed, lattice.in_window(0, lattice.start_slot(), j));
@@ -366,7 +366,7 @@ TEST(Lattice, CostsGrowWithTheWeightsToTheLastBit) {
       small.problem.cost.metric = metric;
       for (double& weight : small.problem.cost.weights) weight = random.coin(0.3) ? 0 : random.uniform(0, 1);
       small.rebuild();
-      const Lattice plain = *small.lattice;
+      const SrsLattice plain = *small.lattice;
       const double factor = std::exp2(random.below(41) - 20);
       for (double& weight : small.problem.cost.weights) weight *= factor;
       small.rebuild();
@@ -390,7 +390,7 @@ TEST(Lattice, StepErrorIsTheNormalPartOfTheSecondDerivative) {
   for (int trial = 0; trial < 400; ++trial) {
     const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.05, random);
     const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.1, .dalpha = 0.1});
-    const Lattice& lattice = *small.lattice;
+    const SrsLattice& lattice = *small.lattice;
     const double phi = random.uniform(-kPi, kPi), dphi = random.uniform(-0.1, 0.1);
     const int branch = random.below(8), end = random.below(2);
     const auto joints = [&](double t, double angle) -> Config {

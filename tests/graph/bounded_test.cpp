@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid_cost_to_go.hpp"
 #include "kernels/relax.hpp"
 #include "robots.hpp"
 #include "swivel/core/isa.hpp"
@@ -34,8 +35,8 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
 }
 
 /// Cost from layer 0 to every node, forward over every edge of the lattice.
-std::vector<std::vector<double>> cost_to_come(CostToGo& whole) {
-  const Lattice& lattice = whole.lattice();
+std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
+  const SrsLattice& lattice = whole.lattice();
   std::vector<std::vector<double>> cost(static_cast<std::size_t>(lattice.layers()),
                                         std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   const ImplicitLattice graph(whole, kUnreachable);
@@ -64,8 +65,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
     for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
       const Problem problem = random_problem(robot, arm.chain, random, 2 + random.below(30));
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-      const Lattice lattice(arm.chain, srs, path, problem);
-      CostToGo whole(lattice), bounded(lattice, CostToGo::Extent::kBounded);
+      const SrsLattice lattice(arm.chain, srs, path, problem);
+      GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded);
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       ++problems;
@@ -106,16 +107,18 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         const int layer = random.below(lattice.layers()), slot = best[static_cast<std::size_t>(layer)];
         const int kind = random.below(4);
         const int reach = random.below(lattice.angles() / 2);
-        for (CostToGo* togo : {&whole, &bounded}) {
+        for (GridCostToGo* togo : {&whole, &bounded}) {
           if (kind == 0 && layer > 0) {
             togo->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
           } else if (kind == 1) {
-            togo->remove_alike(layer, slot, kOnArmAngle | kOnElbow);
+            std::vector<int> alike;
+            lattice.alike(layer, slot, 1u << 4, alike);
+            for (const int like : alike) togo->verdicts().remove_node(layer, like);
           } else {  // a blob of arm angles, over some layers
             for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
               for (int k = -reach; k <= reach; ++k) {
                 const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
-                togo->remove_node(i, lattice.label_of(slot) * n + j);
+                togo->verdicts().remove_node(i, lattice.label_of(slot) * n + j);
               }
           }
           togo->repair();

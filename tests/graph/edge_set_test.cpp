@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "grid_cost_to_go.hpp"
 #include "robots.hpp"
-#include "swivel/graph/cost_to_go.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
 
 namespace swivel {
@@ -21,7 +21,7 @@ struct Edge {
 };
 
 /// Successors of a by brute force over all pairs, by the definition: own window, own joint steps.
-std::vector<Edge> brute_force(const Lattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here,
+std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here,
                               const std::vector<std::optional<Config>>& next) {
   std::vector<Edge> edges;
   const double reach = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
@@ -117,13 +117,13 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
         problem.limits.arm_slope = random.uniform(0.0, 0.1);
         problem.limits.joint_step = random.uniform(0.3, 0.7);
         const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-        const Lattice lattice(arm.chain, srs, path, problem);
+        const SrsLattice lattice(arm.chain, srs, path, problem);
         std::vector<std::optional<Config>> here, next;
         for (int slot = 0; slot < lattice.width(); ++slot) {
           here.push_back(lattice.node(0, slot));
           next.push_back(lattice.node(1, slot));
         }
-        CostToGo togo(lattice);
+        GridCostToGo togo(lattice);
         togo.sweep(1);
         const ImplicitLattice graph(togo, kUnreachable);
         for (int a = 0; a < lattice.width(); ++a) {
@@ -157,14 +157,14 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
 }
 
 /// Cost-to-go of the whole lattice by the definition: every pair, minus removed nodes and edges.
-std::vector<std::vector<double>> plain_cost_to_go(const Lattice& lattice, const CostToGo& togo) {
+std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice, const GridCostToGo& togo) {
   std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()),
                                      std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   std::vector<std::optional<Config>> next;
   for (int layer = togo.goal_layer(); layer >= 0; --layer) {
     std::vector<std::optional<Config>> here;
     for (int slot = 0; slot < lattice.width(); ++slot)
-      here.push_back(togo.node_verdict(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
+      here.push_back(togo.verdicts().node(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
     for (int a = 0; a < lattice.width(); ++a) {
       double& value = g[static_cast<std::size_t>(layer)][static_cast<std::size_t>(a)];
       if (layer == togo.goal_layer()) {
@@ -172,7 +172,7 @@ std::vector<std::vector<double>> plain_cost_to_go(const Lattice& lattice, const 
         continue;
       }
       for (const Edge& edge : brute_force(lattice, layer, a, here, next))
-        if (togo.edge_verdict(layer, a, edge.b) != Verdict::kRemoved)
+        if (togo.verdicts().edge(layer, a, edge.b) != Verdict::kRemoved)
           value = std::min(value, edge.cost + g[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(edge.b)]);
     }
     next.swap(here);
@@ -197,8 +197,8 @@ TEST(CostToGo, StaysExactUnderRemovals) {
       problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
       if (random.coin()) problem.start = q0;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-      const Lattice lattice(arm.chain, srs, path, problem);
-      CostToGo togo(lattice);
+      const SrsLattice lattice(arm.chain, srs, path, problem);
+      GridCostToGo togo(lattice);
       togo.sweep(lattice.layers() - 1);
       for (int round = 0; round < 6; ++round) {
         const auto wanted = plain_cost_to_go(lattice, togo);
@@ -219,7 +219,7 @@ TEST(CostToGo, StaysExactUnderRemovals) {
           if (layer == cut) {
             for (int k = 0; k < 3; ++k) {
               const int j = (lattice.angle_of(slot) + k) % lattice.angles();
-              togo.remove_node(layer, lattice.label_of(slot) * lattice.angles() + j);
+              togo.verdicts().remove_node(layer, lattice.label_of(slot) * lattice.angles() + j);
               ++removed_nodes;
             }
             break;
@@ -266,7 +266,7 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
       problem.limits.joint_step = 0.8;
       if (random.coin()) problem.start = q0;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
-      const Lattice lattice(arm.chain, srs, path, problem);
+      const SrsLattice lattice(arm.chain, srs, path, problem);
       std::vector<std::vector<std::optional<Config>>> nodes(static_cast<std::size_t>(lattice.layers()));
       for (int layer = 0; layer < lattice.layers(); ++layer)
         for (int slot = 0; slot < lattice.width(); ++slot)
@@ -284,7 +284,7 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
         if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
         reached.swap(ahead);
       }
-      CostToGo togo(lattice);
+      GridCostToGo togo(lattice);
       EXPECT_EQ(togo.deepest_reachable(), deepest) << robot.name;
       togo.sweep(lattice.layers() - 1);
       EXPECT_EQ(togo.best() == kUnreachable, deepest + 1 < lattice.layers());

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 
+#include "brute_force.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -15,90 +17,14 @@ namespace {
 
 using namespace test;
 
-struct Answer {
-  bool solved = false;
-  double cost = 0;
-  std::vector<int> slots;
-  int deepest = -1;
-  std::vector<int> empty;  // layers without a valid node
-};
-
-/// The definition: every pair of nodes of neighbouring layers, own window, own steps, plain edge rule; dynamic program; ties by
-/// slot.
-Answer brute_force(const Problem& problem) {
+Answer truth_of(const Problem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const World& world = robot.world();
-  World::Query query(world);
-  const EdgeRule rule = world.edge_rule(robot.radii());
-  const auto layers = static_cast<std::size_t>(lattice.layers()), width = static_cast<std::size_t>(lattice.width());
-  std::vector<std::vector<std::optional<Config>>> nodes(layers, std::vector<std::optional<Config>>(width));
-  for (std::size_t i = 0; i < layers; ++i)
-    for (std::size_t slot = 0; slot < width; ++slot) {
-      const auto q = lattice.node(static_cast<int>(i), static_cast<int>(slot));
-      if (q && robot.arm().chain.manipulability(*q) >= problem.limits.manipulability && !query.first_below(*q, Keep::kNode))
-        nodes[i][slot] = q;
-    }
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
-  const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
-    const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
-    if (std::abs(std::remainder(lattice.phi(layer + 1, sb) - lattice.phi(layer, sa), kTwoPi)) > window) return std::nullopt;
-    const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
-    Config delta = qb - qa;
-    for (int j = 0; j < kDof; ++j) {
-      const JointLimit& limit = robot.arm().chain.limit[static_cast<std::size_t>(j)];
-      if (limit.continuous || limit.wide()) delta[j] = std::remainder(delta[j], kTwoPi);
-      if (std::abs(delta[j]) > problem.limits.joint_step) return std::nullopt;
-    }
-    if (!lattice.follows_path(layer, sa, qa, sb, qb)) return std::nullopt;
-    if (problem.limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, qa, qa + delta)) return std::nullopt;
-    return lattice.edge_cost(delta);
-  };
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  std::vector<std::vector<double>> g(layers, std::vector<double>(width, kNone));
-  std::vector<std::vector<int>> next(layers, std::vector<int>(width, -1));
-  std::vector<std::vector<std::vector<std::size_t>>> into(layers, std::vector<std::vector<std::size_t>>(width));
-  for (std::size_t slot = 0; slot < width; ++slot)
-    if (nodes.back()[slot]) g.back()[slot] = 0;
-  for (std::size_t i = layers - 1; i-- > 0;)
-    for (std::size_t a = 0; a < width; ++a)
-      for (std::size_t b = 0; nodes[i][a] && b < width; ++b) {
-        if (!nodes[i + 1][b]) continue;
-        const auto cost = edge(i, a, b);
-        if (!cost) continue;
-        into[i + 1][b].push_back(a);
-        if (*cost + g[i + 1][b] < g[i][a]) {
-          g[i][a] = *cost + g[i + 1][b];
-          next[i][a] = static_cast<int>(b);
-        }
-      }
-  Answer answer;
-  const auto best = std::min_element(g[0].begin(), g[0].end());
-  answer.cost = *best;
-  answer.solved = *best != kNone;
-  if (answer.solved) {
-    int slot = static_cast<int>(best - g[0].begin());
-    for (std::size_t i = 0; i < layers; ++i) {
-      answer.slots.push_back(slot);
-      slot = next[i][static_cast<std::size_t>(slot)];
-    }
-    return answer;
-  }
-  for (std::size_t i = 0; i < layers; ++i)
-    if (std::none_of(nodes[i].begin(), nodes[i].end(), [](const auto& node) { return node.has_value(); }))
-      answer.empty.push_back(static_cast<int>(i));
-  std::vector<char> reached(width, 0);
-  for (std::size_t slot = 0; slot < width; ++slot) reached[slot] = nodes[0][slot].has_value();
-  for (std::size_t i = 0; i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
-    answer.deepest = static_cast<int>(i);
-    if (i + 1 == layers) break;
-    std::vector<char> ahead(width, 0);
-    for (std::size_t b = 0; b < width; ++b)
-      for (const std::size_t a : into[i + 1][b]) ahead[b] |= reached[a];
-    reached.swap(ahead);
-  }
-  return answer;
+  return brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), [&](int layer, int a, int b) {
+    return std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) <= window;
+  });
 }
 
 constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
@@ -139,7 +65,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
                                            random);
     const std::string what =
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
-    const Answer truth = brute_force(problem);
+    const Answer truth = truth_of(problem);
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
       PlanOptions options;
@@ -177,7 +103,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       ASSERT_EQ(results[0].cost, truth.cost) << what;
       const PreparedRobot robot(problem);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-      const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+      const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
       for (int i = 0; i < lattice.layers(); ++i) {
         const int slot = truth.slots[static_cast<std::size_t>(i)];
         ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot)) << what;
@@ -253,7 +179,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
     set_weights(static_cast<Weights>(kind), random, problem.cost);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
                              problem.source + " kind " + std::to_string(kind);
-    const Answer truth = brute_force(problem);
+    const Answer truth = truth_of(problem);
     (truth.solved ? solved : infeasible)[kind] += 1;
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -274,7 +200,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
     ASSERT_EQ(results[0].cost, truth.cost) << what;
     const PreparedRobot robot(problem);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-    const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+    const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
     for (int i = 0; i < lattice.layers(); ++i)
       ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)]))
           << what;
@@ -320,7 +246,7 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
     problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 1));
     problem.start = q;
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const Answer truth = brute_force(problem);
+    const Answer truth = truth_of(problem);
     (truth.solved ? solved : infeasible) += 1;
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "chord_bound.hpp"
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
@@ -61,7 +62,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
   const PreparedRobot robot(problem);
   const auto waypoints = waypoints_in_base(problem);
   const ToolPath path(waypoints, problem.resolution, problem.source);
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, problem);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
   const World world(robot.world(), problem.scene);
   const EdgeRule rule = world.edge_rule(robot.radii());
   Executor executor(2);
@@ -72,14 +73,15 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
     return ToolPath(waypoints, fine, problem.source, spent);
   };
   Config q = Config::Zero(), away = Config::Constant(0.5);
-  CostToGo togo(lattice, CostToGo::Extent::kBounded, spent);
+  const auto togo_of = make_cost_to_go(lattice, Extent::kBounded, spent);
+  CostToGo& togo = *togo_of;
   SearchCounters counters;
   EagerOutcome eager;
   Diagnosis diagnosis;
   const std::pair<const char*, std::function<void()>> stages[] = {
       {"robot", [&] { PreparedRobot(problem, spent); }},
       {"tool path", [&] { long_path(); }},
-      {"lattice", [&] { Lattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
+      {"lattice", [&] { SrsLattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
       {"scene", [&] { World(robot.world(), problem.scene, spent); }},
       {"chord bound", [&] { ChordBound(lattice, spent); }},
       {"sweep", [&] { togo.sweep(lattice.layers() - 1); }},

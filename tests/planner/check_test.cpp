@@ -12,7 +12,7 @@
 #include "collision_validity.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
@@ -336,7 +336,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"step_error",
        [](Good& good, Random&) -> std::string {
-         const Lattice lattice(good.chain(), good.robot->srs(), *good.path, good.problem);
+         const SrsLattice lattice(good.chain(), good.robot->srs(), *good.path, good.problem);
          double most = 0;
          for (int k = 0; k + 1 < good.path->size(); ++k) {
            const TrajectoryRow &a = good.rows[static_cast<std::size_t>(k)], &b = good.rows[static_cast<std::size_t>(k) + 1];

@@ -20,7 +20,7 @@ struct Laid {
   Problem problem;
   PreparedRobot robot;
   ToolPath path;
-  Lattice lattice;
+  SrsLattice lattice;
   explicit Laid(const Problem& p)
       : problem(p),
         robot(problem),
@@ -179,7 +179,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
           chain.limit[k].lower -= empty.shortfall->kind == Shortfall::Kind::kLowerLimit ? more : 0;
           chain.limit[k].upper += empty.shortfall->kind == Shortfall::Kind::kUpperLimit ? more : 0;
         }
-        const Lattice wider(chain, laid.robot.srs(), laid.path, problem);
+        const SrsLattice wider(chain, laid.robot.srs(), laid.path, problem);
         for (int slot = 0; slot < wider.width(); ++slot)
           if (wider.node(empty.layer, slot)) return true;
         return false;

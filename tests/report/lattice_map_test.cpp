@@ -11,7 +11,7 @@
 
 #include "robots.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel {
@@ -54,7 +54,7 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
 
   const PreparedRobot robot(lazy.problem);
   const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
-  const Lattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
   const World world(robot.world(), lazy.problem.scene);
   World::Query query(world), quick(world, Certificates::kOn);
   int certified = 0;
@@ -72,7 +72,7 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
       const auto q = lattice.node(layer, slot);
       ASSERT_EQ(q.has_value(), known.state >= NodeState::kNotLookedAt);
       if (!q) {
-        const Lattice::NodeFault fault = lattice.fault(layer, slot);
+        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
         ASSERT_EQ(known.state == NodeState::kJointLimit, fault.status == NodeStatus::kLimit);
         if (fault.status == NodeStatus::kLimit) {
           ASSERT_TRUE(fault.joints >> known.cause & 1);

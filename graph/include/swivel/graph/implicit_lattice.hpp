@@ -13,9 +13,10 @@
 
 namespace swivel {
 
-/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * width + slot, one more vertex
-/// (the root) before layer 0. Edges are made when asked for, over what CostToGo has not removed, and only those whose cost plus
-/// cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of optimal paths).
+/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * (most slots of a layer) + slot,
+/// one more vertex (the root) before layer 0. Edges are made when asked for, over what CostToGo has not removed, and only those
+/// whose cost plus cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of optimal
+/// paths).
 class ImplicitLattice {
  public:
   using Vertex = std::int64_t;
@@ -25,12 +26,14 @@ class ImplicitLattice {
     bool operator==(const Edge&) const = default;
   };
 
-  explicit ImplicitLattice(CostToGo& cost_to_go, double slack = 0) : togo_(&cost_to_go), slack_(slack) {}
+  explicit ImplicitLattice(CostToGo& cost_to_go, double slack = 0);
 
-  [[nodiscard]] Vertex root() const { return togo_->lattice().nodes(); }
-  [[nodiscard]] Vertex vertex(int layer, int slot) const { return static_cast<Vertex>(layer) * togo_->lattice().width() + slot; }
-  [[nodiscard]] int layer_of(Vertex v) const { return static_cast<int>(v / togo_->lattice().width()); }
-  [[nodiscard]] int slot_of(Vertex v) const { return static_cast<int>(v % togo_->lattice().width()); }
+  [[nodiscard]] Vertex root() const { return togo_->lattice().layers() * width_; }
+  [[nodiscard]] Vertex vertex(int layer, int slot) const { return layer * width_ + slot; }
+  [[nodiscard]] int layer_of(Vertex v) const { return static_cast<int>(v / width_); }
+  [[nodiscard]] int slot_of(Vertex v) const { return static_cast<int>(v % width_); }
+  /// Most slots of a layer.
+  [[nodiscard]] std::int64_t width() const { return width_; }
   [[nodiscard]] double cost_to_go(Vertex v) const { return v == root() ? togo_->best() : togo_->at(layer_of(v), slot_of(v)); }
   [[nodiscard]] const CostToGo& values() const { return *togo_; }
 
@@ -40,15 +43,10 @@ class ImplicitLattice {
  private:
   CostToGo* togo_;
   double slack_;
+  std::int64_t width_ = 1;
   // Scratch of the one search that walks this graph; the graph itself has no state.
   mutable std::vector<Edge> edges_;
-  mutable LayerNodes next_;
-  struct Solved {
-    int layer = -1, elbow = 0;
-    Lattice::Run run;
-    CostToGo::Nodes nodes;
-  };
-  mutable Solved solved_;  // last, in next_ or kept by the cost-to-go
+  mutable std::vector<CostToGo::Step> steps_;
 };
 
 // Boost.Graph interface, found by argument-dependent look-up.

@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <span>
 
-#include "swivel/core/lattice.hpp"
-#include "swivel/core/srs.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
@@ -27,34 +25,13 @@ struct EdgeQuestion {
   Config qa, qb;
 };
 
-/// What the pose of the bodies that fail depends on besides the layer. The last link and the tool depend on the layer alone; links
-/// 3 and 4 on arm angle and elbow sign; links 1 and 2 on the shoulder's sign too, 5 and 6 on the wrist's. So one failure removes
-/// every node of the layer that shares what it depends on. design.md 2.
-enum Dependence : std::uint8_t {
-  kOnShoulder = kShoulderBit,
-  kOnWrist = kWristBit,
-  kOnElbow = kElbowBit,
-  kOnArmAngle = 8,
-  kOnEverything = 15,  ///< this branch and arm angle, in all windings
-  kOnNodeAlone = 31,
-};
-/// Calls visit(slot) for every node of the layer of `slot` that agrees with it in what `depends` names, itself included.
-template <class Visit>
-void for_each_alike(const Lattice& lattice, int slot, std::uint8_t depends, const Visit& visit) {
-  if (depends == kOnNodeAlone) return visit(slot);
-  const int n = lattice.angles(), branch = lattice.branch_of(slot), angle = lattice.angle_of(slot);
-  for (int label = 0; label < lattice.labels(); ++label) {
-    const int other = label / lattice.windings();
-    if ((other ^ branch) & depends & (kShoulderBit | kWristBit | kElbowBit)) continue;
-    const int first = depends & kOnArmAngle ? angle : 0, last = depends & kOnArmAngle ? angle : n - 1;
-    for (int j = first; j <= last; ++j) visit(label * n + j);
-  }
-}
-
 struct NodeAnswer {
   bool valid = false;
-  std::uint8_t depends = kOnNodeAlone;  ///< of a failure
-  Fault fault = kNoFault;               ///< of a failure
+  /// Of a failure: true where it is one of every node of the layer at which the bodies of `groups` stand as they do here, see
+  /// Lattice::alike. So one failure may remove many nodes.
+  bool shared = false;
+  unsigned groups = 0;     ///< bit g: the bodies that move with joint g of 1..7
+  Fault fault = kNoFault;  ///< of a failure
 };
 
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once. A batch throws

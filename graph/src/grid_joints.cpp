@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <mutex>
 
-#include "layer_parts.hpp"
+#include "grid_parts.hpp"
 
 namespace swivel {
 
 /// Joints that a search had kept, for the next one: pages fresh from the system took a quarter of a plan that meets obstacles.
-class CostToGo::Spare {
+class GridCostToGo::Spare {
  public:
   static Spare& of_process() {
     static Spare spare;
@@ -36,12 +36,12 @@ class CostToGo::Spare {
   std::size_t bytes_ = 0;
 };
 
-CostToGo::~CostToGo() {
+GridCostToGo::~GridCostToGo() {
   for (auto& joints : cache_)
     if (joints) Spare::of_process().give(std::move(joints));
 }
 
-CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
+GridCostToGo::Joints& GridCostToGo::joints(int layer, Block& block) {
   Joints* joints = &block.own;
   if (!cache_.empty()) {
     auto& kept = cache_[static_cast<std::size_t>(layer)];
@@ -59,8 +59,8 @@ CostToGo::Joints& CostToGo::joints(int layer, Block& block) {
   return *joints;
 }
 
-void CostToGo::want(Joints& joints, int elbow, int first, int last) {
-  Marks& solved = joints.solved[static_cast<std::size_t>(elbow)];
+void GridCostToGo::want(Joints& joints, int family, int first, int last) {
+  Marks& solved = joints.solved[static_cast<std::size_t>(family)];
   const int n = lattice_->angles(), window = lattice_->window();
   for (int chunk = first, next = first; chunk < last; chunk = next) {
     next = chunk + 1;
@@ -69,8 +69,8 @@ void CostToGo::want(Joints& joints, int elbow, int first, int last) {
     std::fill(solved.begin() + chunk, solved.begin() + next, std::uint8_t{1});
     const int begin = chunk * kChunk, end = std::min(n, next * kChunk);
     ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->labels() / 2;
-    lattice_->solve_part(elbow, window + begin, window + end, joints.nodes);
-    for (int done = chunk; done < next; ++done) range(joints, elbow, done);
+    lattice_->solve_part(family, window + begin, window + end, joints.nodes);
+    for (int done = chunk; done < next; ++done) range(joints, family, done);
     // The window reaches around the circle.
     if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
     if (end > n - window) {
@@ -80,13 +80,13 @@ void CostToGo::want(Joints& joints, int elbow, int first, int last) {
   }
 }
 
-void CostToGo::range(Joints& joints, int elbow, int chunk) const {
+void GridCostToGo::range(Joints& joints, int family, int chunk) const {
   const int half = lattice_->labels() / 2, begin = lattice_->window() + chunk * kChunk;
   const int count = std::min(kChunk, lattice_->angles() - chunk * kChunk);
   for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
     const double* known = nullptr;  // labels share arrays
     Interval found;
-    for (int label = elbow * half; label < (elbow + 1) * half; ++label) {
+    for (int label = family * half; label < (family + 1) * half; ++label) {
       const double* q = joints.nodes.q(label, Middles::kJoints[m]) + begin;
       if (q != known) found = Interval(q, count);
       known = q;
@@ -96,26 +96,26 @@ void CostToGo::range(Joints& joints, int elbow, int chunk) const {
   }
 }
 
-CostToGo::Nodes CostToGo::nodes(int layer, int elbow, int first, int count, LayerNodes& scratch) {
+GridCostToGo::Nodes GridCostToGo::nodes(int layer, int family, int first, int count, LayerNodes& scratch) {
   const int n = lattice_->angles();
   if (cache_.empty()) {
     if (n >= kChunk) count = (count + kChunk - 1) / kChunk * kChunk;  // whole vectors are quicker
     ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->labels() / 2;
     lattice_->lay_out(layer, first, count, scratch);
-    lattice_->solve_part(elbow, 0, count, scratch);
+    lattice_->solve_part(family, 0, count, scratch);
     return {&scratch, 0};
   }
   Joints& kept = joints(layer, *block_[0]);
   for (int k = 0; k < count; ++k) {
     const int chunk = (first + k) % n / kChunk;
-    want(kept, elbow, chunk, chunk + 1);
+    want(kept, family, chunk, chunk + 1);
   }
   return {&kept.nodes, (first + lattice_->window()) % n};
 }
 
-Config CostToGo::config(int layer, int slot) {
+Config GridCostToGo::config(int layer, int slot) {
   const int label = lattice_->label_of(slot);
-  const Nodes here = nodes(layer, lattice_->elbow_of(label), lattice_->angle_of(slot), 1, scratch_);
+  const Nodes here = nodes(layer, lattice_->family_of(label), lattice_->angle_of(slot), 1, scratch_);
   return here.nodes->config(label, here.shift);
 }
 

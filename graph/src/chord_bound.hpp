@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 
@@ -14,7 +14,7 @@ namespace swivel {
 class ChordBound {
  public:
   /// Throws Stopped.
-  explicit ChordBound(const Lattice& lattice, const Budget& budget = {});
+  explicit ChordBound(const SrsLattice& lattice, const Budget& budget = {});
 
   /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
   [[nodiscard]] double best() const { return best_; }

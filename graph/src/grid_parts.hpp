@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What CostToGo works with while it is at a layer.
+// What GridCostToGo works with while it is at a layer.
 #pragma once
 #include <algorithm>
 #include <tuple>
 
-#include "swivel/graph/cost_to_go.hpp"
+#include "grid_cost_to_go.hpp"
 
 namespace swivel {
 
 /// A range of a joint.
-struct CostToGo::Interval {
+struct GridCostToGo::Interval {
   double low = kUnreachable, high = -kUnreachable;
   Interval() = default;
   Interval(const double* q, int count) {
@@ -35,7 +35,7 @@ struct CostToGo::Interval {
 };
 
 /// A chunk of a label.
-struct CostToGo::Part {
+struct GridCostToGo::Part {
   int label = 0, chunk = 0;
   bool live = false;  // holds values
   [[nodiscard]] int begin() const { return chunk * kChunk; }
@@ -44,23 +44,23 @@ struct CostToGo::Part {
   bool operator<(const Part& o) const { return std::tie(label, chunk) < std::tie(o.label, o.chunk); }
 };
 
-/// A branch flips only through the zero of a middle angle, so these tell branches apart.
-struct CostToGo::Middles {
-  static constexpr std::array<int, 2> kJoints{1, 5};
+/// Ranges of the joints that tell the labels of a family apart.
+struct GridCostToGo::Middles {
+  static constexpr std::array<int, 2> kJoints{SrsLattice::kMiddleJoints[0], SrsLattice::kMiddleJoints[1]};
   std::array<Interval, 2> joint;
 };
 
 /// The joints of one layer, from -window to angles + window around the circle, solved by chunks as they are wanted.
-struct CostToGo::Joints {
+struct GridCostToGo::Joints {
   int layer = -1;
   LayerNodes nodes;
-  std::array<std::vector<std::uint8_t>, 2> solved;  // [elbow][chunk]
-  /// Ranges of the joints that tell branches apart, over what is solved: of each chunk, and of all.
+  std::array<std::vector<std::uint8_t>, 2> solved;  // [family][chunk]
+  /// Ranges of the joints that tell labels apart, over what is solved: of each chunk, and of all.
   std::vector<Middles> of_chunk, of_layer;  // [label][chunk], [label]
 };
 
 /// A layer's values, ready to be relaxed against or being relaxed.
-struct CostToGo::Block {
+struct GridCostToGo::Block {
   int layer = -1;
   Joints own;
   Joints* joints = nullptr;
@@ -74,7 +74,7 @@ struct CostToGo::Block {
     mutable Middles middles;  // filled when asked for
   };
   std::vector<Near> near;        // [label][chunk], of the labels with a finite value
-  std::array<Marks, 2> reached;  // [elbow]: chunks with any near
+  std::array<Marks, 2> reached;  // [family]: chunks with any near
   [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
   [[nodiscard]] bool find(int label, int chunk) const { return std::binary_search(parts.begin(), parts.end(), Part{label, chunk}); }
 };

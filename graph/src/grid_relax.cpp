@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "grid_parts.hpp"
 #include "kernels/relax.hpp"
-#include "layer_parts.hpp"
 
 namespace swivel {
 
-void CostToGo::clear(int layer, Block& block) {
+void GridCostToGo::clear(int layer, Block& block) {
   const int n = lattice_->angles(), length = n + 2 * lattice_->window();
   for (const int label : block.labels) {
     const auto row = block.value.begin() + static_cast<std::ptrdiff_t>(label) * length;
@@ -19,18 +19,12 @@ void CostToGo::clear(int layer, Block& block) {
   for (Marks& reached : block.reached) reached.assign(static_cast<std::size_t>(chunks()), 0);
 }
 
-bool CostToGo::elbows_may_connect(int step_layer, int layer, int elbow, int other_layer, int other) const {
-  if (elbow == other) return true;
-  const auto angle = lattice_->elbow_angle(layer, elbow), other_angle = lattice_->elbow_angle(other_layer, other);
-  return !angle || !other_angle || std::abs(*angle - *other_angle) <= lattice_->step_bound(step_layer)[3];
-}
-
-void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
-  for (int elbow = 0; elbow < 2; ++elbow) {
-    const int first_label = elbow * lattice_->labels() / 2;
-    if (!from.nodes().alive(first_label)) continue;  // all of an elbow's labels, or none
-    const std::array<bool, 2> reaches{elbows_may_connect(step_layer, from.layer, elbow, to.layer, 0),
-                                      elbows_may_connect(step_layer, from.layer, elbow, to.layer, 1)};
+void GridCostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
+  for (int family = 0; family < SrsLattice::kFamilies; ++family) {
+    const int first_label = family * lattice_->labels() / 2;
+    if (!from.nodes().alive(first_label)) continue;  // all of a family's labels, or none
+    const std::array<bool, 2> reaches{lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 0),
+                                      lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 1)};
     columns_.clear();
     for (int chunk = 0; chunk < chunks(); ++chunk) {
       const auto c = static_cast<std::size_t>(chunk);
@@ -38,14 +32,14 @@ void CostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
     }
     for (std::size_t k = 0, next = 0; k < columns_.size(); k = next) {
       for (next = k + 1; next < columns_.size() && columns_[next] == columns_[next - 1] + 1;) ++next;
-      want(*from.joints, elbow, columns_[k], columns_[next - 1] + 1);
+      want(*from.joints, family, columns_[k], columns_[next - 1] + 1);
     }
     for (int label = first_label; label < first_label + lattice_->labels() / 2; ++label)
       for (const int chunk : columns_) from.parts.push_back({label, chunk});
   }
 }
 
-bool CostToGo::may_meet(int step_layer, const Middles& a, const Middles& b) const {
+bool GridCostToGo::may_meet(int step_layer, const Middles& a, const Middles& b) const {
   const Config& bound = lattice_->step_bound(step_layer);
   for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
     const int joint = Middles::kJoints[m];
@@ -54,7 +48,7 @@ bool CostToGo::may_meet(int step_layer, const Middles& a, const Middles& b) cons
   return true;
 }
 
-bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
+bool GridCostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
   const Middles& own_middles = from.joints->of_chunk[mark(label, chunk)];
   if (!may_meet(step_layer, own_middles, to.joints->of_layer[static_cast<std::size_t>(other)])) return false;
   const Block::Near& near = to.near[mark(other, chunk)];
@@ -66,9 +60,9 @@ bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chu
   // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart. Continuous
   // joints have no plain interval.
   const int begin = lattice_->window() + chunk * kChunk, count = std::min(kChunk, lattice_->angles() - chunk * kChunk);
-  const bool one_elbow = lattice_->elbow_of(label) == lattice_->elbow_of(other);
-  for (const int joint : {0, 2, 4, 6, 3}) {
-    const bool shared = one_elbow && from.nodes().q(label, joint) == from.nodes().q(other, joint);  // tells nothing apart
+  const bool one_family = lattice_->family_of(label) == lattice_->family_of(other);
+  for (const int joint : SrsLattice::kOuterJoints) {
+    const bool shared = one_family && from.nodes().q(label, joint) == from.nodes().q(other, joint);  // tells nothing apart
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const Interval own(from.nodes().q(label, joint) + begin, count);
     if (own.gap(theirs(joint)) > lattice_->step_bound(step_layer)[joint]) return false;
@@ -76,8 +70,8 @@ bool CostToGo::may_connect(int step_layer, const Block& from, int label, int chu
   return true;
 }
 
-void CostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other,
-                         double* best) {
+void GridCostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other,
+                             double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
   RelaxTask<double> task;
   task.n = count;
@@ -101,7 +95,7 @@ void CostToGo::relax_run(int step_layer, const Block& from, int label, int first
   relax_kernels().relax(task);
 }
 
-void CostToGo::relax(int step_layer, Block& from, const Block& to) {
+void GridCostToGo::relax(int step_layer, Block& from, const Block& to) {
   const int n = lattice_->angles();
   for (const Part& part : from.parts) {
     double* const row = from.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
@@ -112,10 +106,10 @@ void CostToGo::relax(int step_layer, Block& from, const Block& to) {
     const int label = from.parts[first].label;
     while (last < from.parts.size() && from.parts[last].label == label) ++last;
     for (const int other : to.labels) {
-      if (label != other &&
-          (!elbows_may_connect(step_layer, from.layer, lattice_->elbow_of(label), to.layer, lattice_->elbow_of(other)) ||
-           !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(label)],
-                     to.joints->of_layer[static_cast<std::size_t>(other)])))
+      if (label != other && (!lattice_->families_may_connect(step_layer, from.layer, lattice_->family_of(label), to.layer,
+                                                             lattice_->family_of(other)) ||
+                             !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(label)],
+                                       to.joints->of_layer[static_cast<std::size_t>(other)])))
         continue;
       int begin = 0, end = 0;  // a run of chunks
       const auto relax_chunks = [&] {
@@ -140,7 +134,7 @@ void CostToGo::relax(int step_layer, Block& from, const Block& to) {
   }
 }
 
-void CostToGo::settle(Block& block) {
+void GridCostToGo::settle(Block& block) {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
   std::size_t kept = 0;
   for (const Part& part : block.parts) {
@@ -148,7 +142,7 @@ void CostToGo::settle(Block& block) {
     const double* row = block.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
     double* value = block.value.data() + static_cast<std::ptrdiff_t>(part.label) * length;
     Block::Near* near = block.near.data() + mark(part.label, 0);
-    Marks& reached = block.reached[static_cast<std::size_t>(lattice_->elbow_of(part.label))];
+    Marks& reached = block.reached[static_cast<std::size_t>(lattice_->family_of(part.label))];
     int first = part.begin(), last = part.end(n) - 1;
     while (first <= last && row[first] == kUnreachable) ++first;
     while (first <= last && row[last] == kUnreachable) --last;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "swivel/core/lattice.hpp"
+#include "swivel/core/srs.hpp"
+
+namespace swivel {
+
+/// The joints of all labels of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice node.
+/// Labels share the arrays of what they have in common: four branches have a triple's solution each.
+class LayerNodes {
+ public:
+  /// Joint k (0..6) of label, an array over the run.
+  [[nodiscard]] const double* q(int label, int k) const { return data_.data() + at(label).q[static_cast<std::size_t>(k)]; }
+  /// Two arrays over the run, of zeros and infinities: a node exists (IK, singularity, limits) where both are 0.
+  [[nodiscard]] const double* bar(int label, std::size_t which) const { return data_.data() + at(label).bar[which]; }
+  [[nodiscard]] bool valid(int label, int k) const { return bar(label, 0)[k] + bar(label, 1)[k] == 0; }
+  /// False where no node of the label exists, whatever the arm angle.
+  [[nodiscard]] bool alive(int label) const { return at(label).alive; }
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(data_.size()) * sizeof(double); }
+  /// Copies `count` entries of every array from one place of the run to another.
+  void repeat(int from, int to, int count);
+  [[nodiscard]] Config config(int label, int k) const {
+    Config c;
+    for (int j = 0; j < kDof; ++j) c[j] = q(label, j)[k];
+    return c;
+  }
+
+ private:
+  friend class SrsLattice;
+  struct Offsets {  // into data_
+    std::array<std::size_t, kDof> q{};
+    std::array<std::size_t, 2> bar{};
+    bool alive = false;
+  };
+  [[nodiscard]] const Offsets& at(int label) const { return offsets_[static_cast<std::size_t>(label)]; }
+  struct Layout {  // what the offsets depend on
+    std::uint64_t lattice = 0;
+    int count = 0;
+    bool elbow0 = false, elbow1 = false, start = false;
+    bool operator==(const Layout&) const = default;
+  };
+  Layout layout_;
+  int layer_ = -1, first_ = 0, count_ = 0;
+  Eigen::ArrayXd data_;
+  std::vector<Offsets> offsets_;  // [label]
+};
+
+/// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as the range has turns, begun ones
+/// counted. A begun turn of up to 1e-3 rad, as limits written 3.1416 have it, is cut off at the upper end, or at the lower where a
+/// given start lies in it: no pose is lost by that, but joints do not move through the part that was cut off. A joint with a range
+/// of over 64 turns is treated as a continuous one (JointLimit::wide): its angles begin in the turn about 0, or in the nearest that
+/// leaves 31 turns to both limits.
+///
+/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
+/// nodes at each angle. design.md 1. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
+/// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
+/// asked.
+class SrsLattice final : public Lattice {
+ public:
+  /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
+  /// of the machine. Throws Stopped.
+  SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {});
+
+  [[nodiscard]] int angles() const { return angles_; }
+  [[nodiscard]] int labels() const { return kBranches * windings_; }
+  [[nodiscard]] int windings() const { return windings_; }
+  [[nodiscard]] int window() const { return window_; }
+  /// Slots of every layer.
+  [[nodiscard]] int width() const { return labels() * angles_; }
+  [[nodiscard]] int label_of(int slot) const { return slot / angles_; }
+  [[nodiscard]] int angle_of(int slot) const { return slot % angles_; }
+  [[nodiscard]] int branch_of(int slot) const { return label_of(slot) / windings_; }
+  [[nodiscard]] const SrsArm& arm() const { return *arm_; }
+  [[nodiscard]] const ArmPlane& plane(int layer) const { return planes_[static_cast<std::size_t>(layer)]; }
+  /// True where layer 0 is the given start alone.
+  [[nodiscard]] bool has_start() const { return start_.has_value(); }
+  /// Slot that stands for the given start in layer 0 (its label, the grid angle nearest to its own).
+  [[nodiscard]] int start_slot() const { return start_->slot; }
+
+  [[nodiscard]] int slots(int) const override { return width(); }
+  [[nodiscard]] std::int64_t nodes() const override { return static_cast<std::int64_t>(layers()) * width(); }
+  [[nodiscard]] std::optional<Config> node(int layer, int slot) const override;
+  void layer_nodes(int layer, std::vector<Node>& out) const override;
+  [[nodiscard]] NodeFault fault(int layer, int slot) const override;
+  [[nodiscard]] double phi(int layer, int slot) const override;
+  [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
+  [[nodiscard]] int beside(int layer, int slot, int by) const override;
+  [[nodiscard]] int along(int layer, int slot, int by) const override;
+  /// The last link and the tool stand where the layer puts them; links 3 and 4 where arm angle and sign of the elbow do; links 1
+  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's. On arms that are not exact only the last link and the tool stand
+  /// alike: polished joints place them to 1e-10 m, the others by the fitted arm's misfit.
+  [[nodiscard]] bool stand_alike(unsigned groups) const override { return arm_->exact || (groups & ~(1u << kDof)) == 0; }
+  void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] bool in_window(int layer, int a, int b) const override;
+  void successors(int layer, int a, std::vector<SlotRun>& out) const override;
+
+  // --- nodes of whole runs, in vector code
+  /// Nodes j = first ... first + count - 1 of every label, taken around the circle; first < angles, count <= 2 angles.
+  void solve(int layer, int first, int count, LayerNodes& out) const;
+  void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
+  /// Labels fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
+  static constexpr int kFamilies = 2;
+  [[nodiscard]] int family_of(int label) const { return label / windings_ & kElbowBit ? 1 : 0; }
+  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the labels of one family.
+  void lay_out(int layer, int first, int count, LayerNodes& out) const;
+  void solve_part(int family, int begin, int end, LayerNodes& out) const;
+  /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
+  [[nodiscard]] bool alive(int layer) const { return (layer == 0 && start_) || elbow_alive(layer, 0) || elbow_alive(layer, 1); }
+  /// False where no edge can lead from a family of `layer` to one of a neighbouring layer; the step's number is `step_layer`.
+  [[nodiscard]] bool families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const;
+  /// A branch flips only through the zero of a middle joint: these tell labels apart, the first two those of one family.
+  static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
+  /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings apart.
+  static constexpr std::array<int, 5> kOuterJoints{0, 2, 4, 6, 3};
+
+  /// First angle index and count of the run of angles of a neighbouring layer that lie in the window, around the circle, each once.
+  struct Run {
+    int first = 0, count = 0;
+  };
+  [[nodiscard]] Run run_after(int layer, int a) const;
+  [[nodiscard]] Run run_before(int layer, int b) const;
+
+ private:
+  struct Images {
+    double base = 0, upper = 0;  // image 0 lies in [base, base + 2 pi); valid up to upper
+    int count = 1;
+  };
+  static Images images_between(double lower, double upper, double start);
+  struct Start {
+    int slot = 0;
+    double phi = 0;
+    Config q;
+  };
+  void solve_exact(int elbow, int begin, int end, LayerNodes& out) const;
+  void solve_polished(int elbow, int begin, int end, LayerNodes& out) const;
+  void lay_out_start(LayerNodes& out) const;
+  [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
+  /// Joint 4 of a layer's nodes by the sign of the elbow, where the arm angle does not move it: exact arms, layers without a start.
+  [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
+  [[nodiscard]] bool elbow_alive(int layer, int elbow) const { return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)]; }
+  void place_start(const Config& q, const std::string& source);
+  [[nodiscard]] int winding_images(int winding, int joint) const;
+  [[nodiscard]] Run grid_run(double phi) const;
+
+  std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
+  const SrsArm* arm_;
+  int angles_ = 0, windings_ = 1, window_ = 1;
+  std::array<Images, kDof> images_;
+  std::size_t tracks_ = 0;             // arrays in a LayerNodes
+  std::vector<double> sine_, cosine_;  // of the grid angles, three times around
+  std::vector<ArmPlane> planes_;
+  std::vector<ReachStatus> reach_;
+  std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
+  std::vector<std::uint8_t> elbow_alive_;            // [layer][elbow]: its angle lies within the limits
+  std::optional<Start> start_;
+};
+
+/// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq.
+/// (12) replaced by the part normal to the tangent plane: 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi). end 0: at layer; end 1:
+/// at layer + 1 by the same step's motion. Infinite where a neighbouring solution does not exist.
+[[nodiscard]] double step_error(const SrsLattice& lattice, int layer, int end, int branch, double phi, double dphi);
+
+}  // namespace swivel

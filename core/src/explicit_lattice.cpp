@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/explicit_lattice.hpp"
+
+#include <numeric>
+#include <stdexcept>
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem,
+                                 std::vector<std::vector<Point>> layers)
+    : Lattice(chain, path, problem), points_(std::move(layers)) {
+  if (static_cast<int>(points_.size()) != path.size())
+    throw std::invalid_argument("explicit lattice: " + std::to_string(points_.size()) +
+                                " layers of nodes: allowed are as many as the path has, " + std::to_string(path.size()));
+  if (limits_.step_error)
+    throw InputError(problem.source + ": limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
+  for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer.size());
+}
+
+void ExplicitLattice::layer_nodes(int layer, std::vector<Node>& out) const {
+  out.clear();
+  for (int slot = 0; slot < slots(layer); ++slot) out.push_back({slot, point(layer, slot).q});
+}
+
+void ExplicitLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+  if (!stand_alike(groups)) return out.assign(1, slot);
+  out.resize(static_cast<std::size_t>(slots(layer)));
+  std::iota(out.begin(), out.end(), 0);
+}
+
+}  // namespace swivel

@@ -1,0 +1,496 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/srs_lattice.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "kernels/kernels.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/memory.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
+constexpr double kSingularSine = 1e-6;
+constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole turns without another image
+constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
+constexpr double kMostWindings = 1024;
+constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
+
+int wrapped_index(long long j, int n) {
+  return static_cast<int>(((j % n) + n) % n);
+}
+
+/// Least k with q + 2 pi k >= base; as the kernels compute it.
+double image_from(double q, double base) {
+  return q + kTwoPi * std::ceil((base - q) / kTwoPi);
+}
+
+/// Where the turn of a wide joint begins that its angles are given in: the one about 0, or the nearest that leaves 31 turns to both
+/// limits.
+double turn_within(const JointLimit& limit) {
+  constexpr double kFromLimits = (kMostTurns / 2 - 1) * kTwoPi;
+  return std::clamp(-kPi, limit.lower + kFromLimits, limit.upper - kFromLimits - kTwoPi);
+}
+
+std::uint64_t next_id() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
+}
+
+std::string gigabytes(double bytes) {
+  return std::to_string(static_cast<long long>(bytes / 1e9 + 0.5)) + " GB";
+}
+
+}  // namespace
+
+SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
+    : Lattice(chain, path, problem), id_(next_id()), arm_(&arm) {
+  const Span span("lattice");
+  const Resolution& resolution = problem.resolution;
+  const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
+  double windings = 1;
+  std::string wound;  // the joints that have more than one image
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    Images& images = images_[j];
+    if (continuous_[j]) {
+      images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
+    } else {
+      const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
+      if (lower > upper)
+        throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[j] +
+                         "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
+      images = images_between(lower, upper, problem.start ? (*problem.start)[static_cast<Eigen::Index>(j)] : lower);
+    }
+    if (!(std::abs(images.base) <= kFarthest))
+      throw InputError(problem.source + ": joint '" + chain.joint_names[j] +
+                       "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
+    if (images.count > 1) wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
+    windings *= images.count;
+  }
+  if (windings > kMostWindings) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.4g", windings);
+    throw InputError(problem.source + ": joint limits allow " + number + " windings (" + wound +
+                     "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
+                     "counts as continuous");
+  }
+  windings_ = static_cast<int>(windings);
+
+  tracks_ = 2;
+  if (arm.exact) {
+    for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
+    tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
+  } else {
+    tracks_ += static_cast<std::size_t>(labels()) * (kDof + 1);
+  }
+
+  const double width = wanted * kBranches * windings_;
+  const double needed = width * layers() * 17.0;  // cost-to-go, states, search
+  if (width > 1e8 || !fits_in_memory(needed))
+    throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " +
+                     std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) + ", this machine has " +
+                     gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
+  angles_ = static_cast<int>(wanted);
+  window_ = static_cast<int>(
+      std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));
+  window_ = std::max(window_, angles_ > 1 ? 1 : 0);
+
+  sine_.resize(static_cast<std::size_t>(3 * angles_));
+  cosine_.resize(sine_.size());
+  for (int j = 0; j < angles_; ++j)
+    for (const int k : {j, j + angles_, j + 2 * angles_}) {
+      const double phi_j = -kPi + kTwoPi * j / angles_;
+      sine_[static_cast<std::size_t>(k)] = std::sin(phi_j);
+      cosine_[static_cast<std::size_t>(k)] = std::cos(phi_j);
+    }
+
+  const auto m = static_cast<std::size_t>(layers());
+  planes_.reserve(m);
+  reach_.reserve(m);
+  circles_.reserve(m);  // half a kilobyte each: touched as they come
+  for (int i = 0; i < layers(); ++i) {
+    if (i % 64 == 0) budget.poll();
+    const Pose& tool = path.layer(i).tool;
+    planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
+    reach_.push_back(reach_status(arm, planes_.back().reach));
+    const bool reachable = reach_.back() == ReachStatus::kReachable;
+    auto& circles = circles_.emplace_back();
+    if (reachable) circles = elbow_circles(arm, planes_.back(), tool);
+    const Images& images = images_[kElbowJoint];
+    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it
+      elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
+  }
+
+  if (problem.start) place_start(*problem.start, problem.source);
+}
+
+SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start) {
+  const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
+  Images images;
+  images.upper = upper + kLimitTolerance;
+  images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
+  images.base = lower - kLimitTolerance;
+  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
+  const double length = images.count * kTwoPi;
+  if (start >= images.base + length) images.base = images.upper - length;
+  return images;
+}
+
+void SrsLattice::place_start(const Config& q, const std::string& source) {
+  const Pose reached = chain_->tool(q);
+  const Pose& first = path_->layer(0).tool;
+  const double distance = (reached.translation() - first.translation()).norm();
+  const double angle = Eigen::AngleAxisd(reached.linear().transpose() * first.linear()).angle();
+  for (int k = 0; k < kDof; ++k) {
+    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
+    const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
+    if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
+      throw InputError(source + ": start.joints: joint '" + chain_->joint_names[static_cast<std::size_t>(k)] + "' at " +
+                       std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) + " to " +
+                       std::to_string(upper));
+  }
+  if (!(distance <= 1e-6 && angle <= 1e-6)) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  ": start.joints: the tool is %.3g m and %.3g rad from the path's first pose: allowed are 1e-6 m and 1e-6 rad",
+                  distance, angle);
+    throw InputError(source + text);
+  }
+  Start start;
+  start.q = q;
+  start.phi = planes_[0].angle_of(arm_->elbow_axis(q));
+  int winding = 0;
+  for (int k = 0; k < kDof; ++k) {
+    const Images& images = images_[static_cast<std::size_t>(k)];
+    const int image =
+        images.count == 1 ? 0 : std::clamp(static_cast<int>(std::floor((q[k] - images.base) / kTwoPi)), 0, images.count - 1);
+    winding = winding * images.count + image;
+  }
+  const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
+  start.slot = (arm_->branch(q) * windings_ + winding) * angles_ + nearest;
+  start_ = start;
+}
+
+double SrsLattice::phi(int layer, int slot) const {
+  if (layer == 0 && start_) return start_->phi;
+  return -kPi + kTwoPi * angle_of(slot) / angles_;
+}
+
+int SrsLattice::winding_images(int winding, int joint) const {
+  if (windings_ == 1) return 0;
+  for (int k = kDof - 1; k > joint; --k) winding /= images_[static_cast<std::size_t>(k)].count;
+  return winding % images_[static_cast<std::size_t>(joint)].count;
+}
+
+void SrsLattice::solve(int layer, int first, int count, LayerNodes& out) const {
+  lay_out(layer, first, count, out);
+  for (int elbow = 0; elbow < 2; ++elbow) solve_part(elbow, 0, count, out);
+}
+
+void LayerNodes::repeat(int from, int to, int count) {
+  for (Eigen::Index array = 0; array + count_ <= data_.size(); array += count_)
+    std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
+}
+
+std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
+  const Images& images = images_[kElbowJoint];
+  if (!arm_->exact || images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow))
+    return std::nullopt;
+  return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4, images.base);
+}
+
+void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const {
+  const auto n = static_cast<std::size_t>(count);
+  out.layer_ = layer;
+  out.first_ = first;
+  const bool start = layer == 0 && start_;
+  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start};
+  if (layout == out.layout_ && !start) return;
+  out.layout_ = layout;
+  out.count_ = count;
+  out.offsets_.resize(static_cast<std::size_t>(labels()));
+  const auto needed = static_cast<Eigen::Index>(tracks_ * n);
+  if (out.data_.size() < needed) out.data_.setZero(needed);
+  std::size_t used = 0;
+  const auto allot = [&](int arrays = 1) {
+    const std::size_t offset = used;
+    used += static_cast<std::size_t>(arrays) * n;
+    return offset;
+  };
+  const std::size_t free = allot(), never = allot();
+  std::fill_n(out.data_.data() + free, n, 0.0);
+  std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
+  if (start) {
+    for (LayerNodes::Offsets& label : out.offsets_) label = {.q = {}, .bar = {never, free}, .alive = false};
+    return lay_out_start(out);
+  }
+  for (int elbow = 0; elbow < 2; ++elbow) {
+    const bool alive = elbow_alive(layer, elbow);
+    // Exact arms: one array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
+    std::array<std::array<std::size_t, kDof>, 2> track{};
+    std::array<std::array<std::size_t, 2>, 2> bar{};  // [sign][triple]
+    if (alive && arm_->exact)
+      for (std::size_t sign = 0; sign < 2; ++sign) {
+        for (std::size_t j = 0; j < kDof; ++j)
+          track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
+        for (std::size_t& triple : bar[sign]) triple = windings_ == 1 ? allot() : never;
+      }
+    for (int winding = 0, first_label = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
+      const int label = first_label + winding, branch = label / windings_;
+      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+      offsets.alive = alive;
+      offsets.bar = {never, free};
+      if (!alive) continue;
+      const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
+      if (windings_ == 1 && arm_->exact)
+        offsets.bar = {bar[shoulder][0], bar[wrist][1]};
+      else
+        offsets.bar = {allot(), free};
+      for (int j = 0; j < kDof; ++j)
+        offsets.q[static_cast<std::size_t>(j)] = arm_->exact
+                                                     ? track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
+                                                           static_cast<std::size_t>(winding_images(label % windings_, j)) * n
+                                                     : allot();
+    }
+  }
+}
+
+void SrsLattice::lay_out_start(LayerNodes& out) const {
+  const int label = label_of(start_->slot), n = out.count_;
+  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+  offsets.alive = true;
+  std::size_t used = 2 * static_cast<std::size_t>(n);
+  for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
+    offsets.q[j] = used;
+    std::fill_n(out.data_.data() + used, n, start_->q[static_cast<Eigen::Index>(j)]);
+  }
+  offsets.bar[0] = used;
+  double* const bar = out.data_.data() + used;
+  std::fill_n(bar, n, std::numeric_limits<double>::infinity());
+  if (fault(0, start_->slot).status != NodeStatus::kValid) return;
+  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_) bar[k] = 0;
+}
+
+void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
+  if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
+  if (arm_->exact)
+    solve_exact(elbow, begin, end, out);
+  else
+    solve_polished(elbow, begin, end, out);
+}
+
+void SrsLattice::solve_exact(int elbow, int begin, int end, LayerNodes& out) const {
+  const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
+  const int first_label = elbow ? kElbowBit * windings_ : 0;
+  double* const data = out.data_.data();
+  // Of the first winding: the images 0.
+  const std::array<LayerNodes::Offsets*, 2> sign{&out.offsets_[static_cast<std::size_t>(first_label)],
+                                                 &out.offsets_[static_cast<std::size_t>(first_label + 3 * windings_)]};
+  static_assert((kShoulderBit | kWristBit) == 3);
+  const bool shares_bars = windings_ == 1;
+  std::vector<double> unlimited;  // bars of singularity alone, where the limits are each winding's own
+  if (!shares_bars) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
+  for (int triple = 0; triple < 2; ++triple) {
+    const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
+    TripleTask task;
+    const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
+    for (std::size_t row = 0; row < 5; ++row)
+      for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
+    task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
+    task.least_sine = kSingularSine;
+    task.n = end - begin;
+    task.sin_phi = sine_.data() + out.first_ + begin;
+    task.cos_phi = cosine_.data() + out.first_ + begin;
+    for (std::size_t j = 0; j < 3; ++j) {
+      const Images& images = images_[static_cast<std::size_t>(joint0) + j];
+      task.base[j] = images.base;
+      task.upper[j] = shares_bars ? images.upper : std::numeric_limits<double>::infinity();
+      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s]->q[static_cast<std::size_t>(joint0) + j] + begin;
+    }
+    for (std::size_t s = 0; s < 2; ++s)
+      task.bar[s] = shares_bars ? data + sign[s]->bar[static_cast<std::size_t>(triple)] + begin
+                                : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
+    circle_kernels().solve_triple(task);
+  }
+  std::fill(data + sign[0]->q[kElbowJoint] + begin, data + sign[0]->q[kElbowJoint] + end,
+            image_from(circle.q4, images_[kElbowJoint].base));
+  if (shares_bars) return;
+
+  const std::size_t n = static_cast<std::size_t>(out.count_);
+  for (std::size_t s = 0; s < 2; ++s)
+    for (std::size_t j = 0; j < kDof; ++j)
+      for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image) {
+        const double* from = data + sign[s]->q[j];
+        double* to = data + sign[s]->q[j] + image * n;
+        for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
+      }
+  const auto length = static_cast<std::size_t>(end - begin);
+  for (int label = first_label; label < first_label + 4 * windings_; ++label) {
+    const int branch = label / windings_;
+    const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
+    const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
+    double* bar = data + out.offsets_[static_cast<std::size_t>(label)].bar[0] + begin;
+    for (std::size_t k = 0; k < length; ++k) {
+      double excess = shoulder[k] + wrist[k];
+      for (int j = 0; j < kDof; ++j)
+        excess =
+            std::max(excess, out.q(label, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
+      bar[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
+    }
+  }
+}
+
+void SrsLattice::solve_polished(int elbow, int begin, int end, LayerNodes& out) const {
+  constexpr double kLargestMove = 0.05;  // of polish(): limits further off than this stay violated
+  const auto layer = static_cast<std::size_t>(out.layer_);
+  const int first_branch = elbow ? kElbowBit : 0;
+  for (int label = first_branch * windings_; label < (first_branch + 4) * windings_; ++label) {
+    double* bar = out.data_.data() + out.offsets_[static_cast<std::size_t>(label)].bar[0];
+    std::fill(bar + begin, bar + end, std::numeric_limits<double>::infinity());
+  }
+  for (int k = begin; k < end; ++k) {
+    const double phi_k = -kPi + kTwoPi * ((out.first_ + k) % angles_) / angles_;
+    for (int branch = first_branch; branch < first_branch + 4; ++branch) {
+      const Config seed = srs_ik(*arm_, circles_[layer], phi_k, branch);
+      if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine ||
+          std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine)
+        continue;
+      bool hopeless = false;
+      for (int j = 0; j < kDof && !hopeless; ++j) {
+        const Images& images = images_[static_cast<std::size_t>(j)];
+        hopeless = image_from(seed[j], images.base - kLargestMove) > images.upper + kLargestMove;
+      }
+      if (hopeless) continue;
+      const auto polished = polish(*chain_, *arm_, planes_[layer], path_->layer(out.layer_).tool, phi_k, seed);
+      if (!polished) continue;
+      for (int winding = 0; winding < windings_; ++winding) {
+        const LayerNodes::Offsets& label = out.offsets_[static_cast<std::size_t>(branch * windings_ + winding)];
+        bool inside = true;
+        for (int j = 0; j < kDof; ++j) {
+          const Images& images = images_[static_cast<std::size_t>(j)];
+          const double q = image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j);
+          inside = inside && q <= images.upper;
+          out.data_[static_cast<Eigen::Index>(label.q[static_cast<std::size_t>(j)]) + k] = q;
+        }
+        if (inside) out.data_[static_cast<Eigen::Index>(label.bar[0]) + k] = 0;
+      }
+    }
+  }
+}
+
+std::optional<Config> SrsLattice::node(int layer, int slot) const {
+  LayerNodes nodes;
+  solve(layer, angle_of(slot), 1, nodes);
+  if (!nodes.valid(label_of(slot), 0)) return std::nullopt;
+  return nodes.config(label_of(slot), 0);
+}
+
+Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
+  NodeFault fault;
+  const bool given = layer == 0 && start_;
+  if (given && slot != start_->slot) return {NodeStatus::kNoIk};
+  const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
+  if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
+  if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
+  Config q = given ? start_->q : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
+  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine)
+    return {NodeStatus::kSingular};
+  if (given) return fault;
+  const auto polished =
+      polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
+  if (!polished) return {NodeStatus::kNoIk};
+  fault.q = *polished;
+  const int winding = label_of(slot) % windings_;
+  for (int j = 0; j < kDof; ++j) {
+    const Images& images = images_[static_cast<std::size_t>(j)];
+    if (image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j) > images.upper)
+      fault.joints |= static_cast<std::uint8_t>(1 << j);
+  }
+  if (fault.joints) fault.status = NodeStatus::kLimit;
+  return fault;
+}
+
+void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {
+  LayerNodes nodes;
+  solve(layer, nodes);
+  out.clear();
+  for (int slot = 0; slot < width(); ++slot)
+    if (nodes.valid(label_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(label_of(slot), angle_of(slot))});
+}
+
+int SrsLattice::beside(int, int slot, int by) const {
+  return label_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
+}
+
+int SrsLattice::along(int layer, int slot, int by) const {
+  return layer + by < 0 || layer + by >= layers() ? -1 : slot;
+}
+
+void SrsLattice::alike(int, int slot, unsigned groups, std::vector<int>& out) const {
+  constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000;  // bit g: of group g
+  const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
+  if (!stand_alike(groups)) return out.assign(1, slot);
+  out.clear();
+  const int signs =
+      (groups & kShoulderLinks ? kShoulderBit : 0) | (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
+  for (int label = 0; label < labels(); ++label) {
+    if ((label / windings_ ^ branch_of(slot)) & signs) continue;
+    const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
+    for (int j = first; j <= last; ++j) out.push_back(label * angles_ + j);
+  }
+}
+
+bool SrsLattice::families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const {
+  if (family == other) return true;
+  const auto angle = elbow_angle(layer, family), other_angle = elbow_angle(other_layer, other);
+  return !angle || !other_angle || std::abs(*angle - *other_angle) <= step_bound(step_layer)[kElbowJoint];
+}
+
+bool SrsLattice::step_error_allowed(int layer, int a, int b) const {
+  const double phi_a = phi(layer, a), phi_b = phi(layer + 1, b), dphi = wrap_angle(phi_b - phi_a);
+  return step_error(*this, layer, 0, branch_of(a), phi_a, dphi) <= *limits().step_error &&
+         step_error(*this, layer, 1, branch_of(b), phi_b, dphi) <= *limits().step_error;
+}
+
+bool SrsLattice::in_window(int layer, int a, int b) const {
+  if (layer == 0 && start_) return std::abs(wrap_angle(phi(1, b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
+  const int apart = std::abs(angle_of(a) - angle_of(b));
+  return std::min(apart, angles_ - apart) <= window_;
+}
+
+SrsLattice::Run SrsLattice::grid_run(double phi_from) const {
+  const double step = kTwoPi / angles_;
+  const auto first = static_cast<long long>(std::ceil((phi_from + kPi - 1e-9) / step - window_));
+  const auto last = static_cast<long long>(std::floor((phi_from + kPi + 1e-9) / step + window_));
+  return {wrapped_index(first, angles_), static_cast<int>(std::min<long long>(last - first + 1, angles_))};
+}
+
+void SrsLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
+  const Run run = run_after(layer, a);
+  out.clear();
+  for (int label = 0; label < labels(); ++label) {
+    const int zero = label * angles_, end = run.first + run.count;
+    out.push_back({zero + run.first, zero + std::min(end, angles_)});
+    if (end > angles_) out.push_back({zero, zero + end - angles_});
+  }
+}
+
+SrsLattice::Run SrsLattice::run_after(int layer, int a) const {
+  if (layer == 0 && start_) return grid_run(start_->phi);
+  return {wrapped_index(static_cast<long long>(angle_of(a)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+}
+
+SrsLattice::Run SrsLattice::run_before(int layer, int b) const {
+  if (layer == 0 && start_) return in_window(0, start_->slot, b) ? Run{angle_of(start_->slot), 1} : Run{0, 0};
+  return {wrapped_index(static_cast<long long>(angle_of(b)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+}
+
+}  // namespace swivel

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+double step_error(const SrsLattice& lattice, int layer, int end, int branch, double phi, double dphi) {
+  constexpr double kStep = 1e-3;  // of the step parameter; truncation and rounding both stay below 1e-6 of the value
+  const SrsArm& arm = lattice.arm();
+  const ArmPlane& plane = lattice.plane(layer + end);
+  const auto joints = [&](double t, double angle) -> std::optional<Config> {
+    const Pose tool = lattice.path().at(layer, end + t);
+    const ArmPlane carried = carry_plane(arm, plane, tool);
+    if (reach_status(arm, carried.reach) != ReachStatus::kReachable) return std::nullopt;
+    return srs_ik(arm, elbow_circles(arm, carried, tool), angle, branch);
+  };
+  const auto center = joints(0, phi);
+  const auto ahead = joints(kStep, phi + kStep * dphi), behind = joints(-kStep, phi - kStep * dphi);
+  const auto s_ahead = joints(kStep, phi), s_behind = joints(-kStep, phi), phi_ahead = joints(0, phi + kStep),
+             phi_behind = joints(0, phi - kStep);
+  if (!center || !ahead || !behind || !s_ahead || !s_behind || !phi_ahead || !phi_behind)
+    return std::numeric_limits<double>::infinity();
+  const auto difference = [](const Config& a, const Config& b) {
+    Config d = a - b;
+    for (int k = 0; k < kDof; ++k) d[k] = wrap_angle(d[k]);
+    return d;
+  };
+  Config second = (difference(*ahead, *center) - difference(*center, *behind)) / (kStep * kStep);
+  // Remove the part in the tangent plane spanned by theta_s and theta_phi (Gram-Schmidt).
+  Config t1 = difference(*s_ahead, *s_behind), t2 = difference(*phi_ahead, *phi_behind);
+  if (t1.norm() > 0) {
+    t1.normalize();
+    second -= second.dot(t1) * t1;
+    t2 -= t2.dot(t1) * t1;
+  }
+  if (t2.norm() > 1e-12) {
+    t2.normalize();
+    second -= second.dot(t2) * t2;
+  }
+  return 0.5 * second.norm();
+}
+
+}  // namespace swivel

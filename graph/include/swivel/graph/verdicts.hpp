@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+#include "swivel/core/lattice.hpp"
+#include "swivel/graph/validity.hpp"
+
+namespace swivel {
+
+/// What the validity has said of the nodes and edges of a lattice, and which of them are removed. Memory: a byte a node.
+class Verdicts {
+ public:
+  explicit Verdicts(const Lattice& lattice);
+
+  [[nodiscard]] Verdict node(int layer, int slot) const { return node_[index(layer, slot)]; }
+  /// Of the slots from `slot` on.
+  [[nodiscard]] const Verdict* nodes(int layer, int slot) const { return node_.data() + index(layer, slot); }
+  /// Of every node, layer by layer in slot order.
+  [[nodiscard]] const std::vector<Verdict>& nodes() const { return node_; }
+  void keep_node(int layer, int slot) { node_[index(layer, slot)] = Verdict::kValid; }
+  void remove_node(int layer, int slot);
+
+  /// Slot a of `layer`, slot b of the next.
+  [[nodiscard]] Verdict edge(int layer, int a, int b) const;
+  void keep_edge(int layer, int a, int b);
+  void remove_edge(int layer, int a, int b, double cost);
+
+  /// Nodes and edges removed so far.
+  [[nodiscard]] std::int64_t removed() const { return removed_; }
+
+  struct HalfEdge {
+    int other = 0;  ///< slot
+    double cost = 0;
+  };
+  /// Edges removed between a layer and the next, by the slots of their tails and of their heads.
+  struct RemovedEdges {
+    std::map<int, std::vector<HalfEdge>> tails, heads;
+  };
+  /// Null where none is.
+  [[nodiscard]] const RemovedEdges* removed_edges(int layer) const;
+
+  /// Removed since the cost-to-go was last made exact, by layer.
+  struct Pending {
+    std::vector<int> nodes;  ///< slots
+    std::vector<int> tails;  ///< slots that lost an edge
+  };
+  std::map<int, Pending> pending;
+
+ private:
+  struct EdgeKey {
+    std::size_t node;
+    int b;
+    bool operator==(const EdgeKey&) const = default;
+  };
+  struct EdgeHash {
+    std::size_t operator()(const EdgeKey& key) const {
+      std::uint64_t h = key.node * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(key.b);
+      h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9ull;
+      return h ^ (h >> 29);
+    }
+  };
+  [[nodiscard]] std::size_t index(int layer, int slot) const {
+    return first_[static_cast<std::size_t>(layer)] + static_cast<std::size_t>(slot);
+  }
+
+  std::vector<std::size_t> first_;  // of each layer
+  std::vector<Verdict> node_;
+  std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
+  std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
+  std::int64_t removed_ = 0;
+};
+
+}  // namespace swivel

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "explicit_cost_to_go.hpp"
+
+#include <algorithm>
+
+#include "kernels/relax.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget) : CostToGo(lattice, budget), lattice_(&lattice) {
+  const auto layers = static_cast<std::size_t>(lattice.layers());
+  joints_.resize(layers);
+  value_.resize(layers);
+  std::vector<Lattice::Node> nodes;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    budget_.poll();
+    lattice.layer_nodes(layer, nodes);
+    const auto count = static_cast<std::size_t>(lattice.slots(layer));
+    value_[static_cast<std::size_t>(layer)].assign(count, kUnreachable);
+    for (std::size_t k = 0; k < kDof; ++k) {
+      Values& joint = joints_[static_cast<std::size_t>(layer)][k];
+      joint.resize(count);
+      for (const Lattice::Node& node : nodes) joint[static_cast<std::size_t>(node.slot)] = node.q[static_cast<Eigen::Index>(k)];
+    }
+    ik_nodes_ += static_cast<std::int64_t>(count);
+  }
+}
+
+void ExplicitCostToGo::relax(int step_layer, int layer, int other_layer, const Values& others, Values& out) {
+  const auto& from = joints_[static_cast<std::size_t>(layer)];
+  const auto& to = joints_[static_cast<std::size_t>(other_layer)];
+  const std::size_t count = from[0].size(), partners = others.size();
+  out.assign(count, kUnreachable);
+  if (partners == 0 || count == 0) return;
+  // The kernel joins node k to the partners k, k + 1, ...: with the partners repeated, every node meets each of them once.
+  const auto repeat = [&](const Values& once, Values& around) {
+    around.resize(count + partners - 1);
+    for (std::size_t at = 0; at < around.size(); at += partners)
+      std::copy_n(once.begin(), std::min(partners, around.size() - at), around.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  RelaxTask<double> task;
+  task.n = static_cast<int>(count);
+  task.offsets = static_cast<int>(partners);
+  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+  task.wraps = false;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const bool turns = lattice_->continuous()[k];
+    task.wraps |= turns;
+    task.turn[k] = turns ? kTwoPi : 0;
+    task.scale[k] = lattice_->cost_scale()[k];
+    task.bound[k] = lattice_->step_bound(step_layer)[static_cast<Eigen::Index>(k)];
+    repeat(to[k], around_[k]);
+    task.from[k] = from[k].data();
+    task.to[k] = around_[k].data();
+  }
+  repeat(others, around_value_);
+  task.unit = lattice_->cost_unit();
+  task.value = around_value_.data();
+  task.best = out.data();
+  edges_ += static_cast<std::int64_t>(count * partners);
+  relax_kernels().relax(task);
+}
+
+double ExplicitCostToGo::relax_one(int layer, int slot) {
+  if (removed(layer, slot)) return kUnreachable;
+  const Config q = config(layer, slot);
+  double best = kUnreachable;
+  for (int b = 0; b < lattice_->slots(layer + 1); ++b) {
+    const double rest = at(layer + 1, b);
+    if (rest >= best) continue;
+    const Config delta = lattice_->delta(q, config(layer + 1, b));
+    const double value = lattice_->edge_cost(delta) + rest;
+    if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) best = value;
+  }
+  return best;
+}
+
+double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& before) {
+  const Config q = config(layer, slot);
+  double best = kUnreachable;
+  for (int a = 0; a < lattice_->slots(layer - 1); ++a) {
+    const double done = before[static_cast<std::size_t>(a)];
+    if (done >= best) continue;
+    const Config delta = lattice_->delta(config(layer - 1, a), q);
+    const double value = lattice_->edge_cost(delta) + done;
+    if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+      best = value;
+  }
+  return best;
+}
+
+void ExplicitCostToGo::settle(int layer, Values& out) {
+  const int count = lattice_->slots(layer);
+  if (layer == goal_)
+    out.assign(static_cast<std::size_t>(count), 0.0);
+  else
+    relax(layer, layer, layer + 1, value_[static_cast<std::size_t>(layer) + 1], out);
+  for (int slot = 0; slot < count; ++slot)
+    if (removed(layer, slot)) out[static_cast<std::size_t>(slot)] = kUnreachable;
+  const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer);
+  if (!edges) return;
+  for (const auto& [a, heads] : edges->tails) {
+    double& value = out[static_cast<std::size_t>(a)];
+    const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
+    if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
+  }
+}
+
+void ExplicitCostToGo::sweep(int goal_layer) {
+  const Span span("sweep");
+  goal_ = goal_layer;
+  verdicts_.pending.clear();
+  for (int layer = lattice_->layers() - 1; layer > goal_; --layer) {
+    Values& values = value_[static_cast<std::size_t>(layer)];
+    std::fill(values.begin(), values.end(), kUnreachable);
+  }
+  for (int layer = goal_; layer >= 0; --layer) {
+    budget_.poll();
+    settle(layer, value_[static_cast<std::size_t>(layer)]);
+  }
+}
+
+void ExplicitCostToGo::repair() {
+  const Span span("repair");
+  bool changed = false;  // the layer after
+  Values settled;
+  for (int layer = goal_; layer >= 0 && (changed || !verdicts_.pending.empty()); --layer) {
+    budget_.poll();
+    if (!changed && verdicts_.pending.rbegin()->first < layer) continue;
+    if (!verdicts_.pending.empty() && verdicts_.pending.rbegin()->first >= layer)
+      verdicts_.pending.erase(verdicts_.pending.lower_bound(layer), verdicts_.pending.end());
+    settle(layer, settled);
+    Values& values = value_[static_cast<std::size_t>(layer)];
+    changed = settled != values;
+    values.swap(settled);
+  }
+}
+
+double ExplicitCostToGo::best() const {
+  const Values& first = value_.front();
+  return first.empty() ? kUnreachable : *std::min_element(first.begin(), first.end());
+}
+
+int ExplicitCostToGo::deepest_reachable() {
+  const Span span("reach");
+  Values before(value_.front().size(), 0.0), here;
+  for (int layer = 0;; ++layer) {
+    budget_.poll();
+    if (layer > 0) {
+      relax(layer - 1, layer, layer - 1, before, here);
+      if (const auto* edges = verdicts_.removed_edges(layer - 1))
+        for (const auto& [b, tails] : edges->heads) {
+          double& value = here[static_cast<std::size_t>(b)];
+          const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
+            return edge.cost + before[static_cast<std::size_t>(edge.other)] == value;
+          };
+          if (value != kUnreachable && std::any_of(tails.begin(), tails.end(), gives_value))
+            value = relax_one_forward(layer, b, before);
+        }
+      before.swap(here);
+    }
+    for (int slot = 0; slot < lattice_->slots(layer); ++slot)
+      if (removed(layer, slot)) before[static_cast<std::size_t>(slot)] = kUnreachable;
+    if (std::all_of(before.begin(), before.end(), [](double value) { return value == kUnreachable; })) return layer - 1;
+    if (layer + 1 == lattice_->layers()) return layer;
+  }
+}
+
+Config ExplicitCostToGo::config(int layer, int slot) {
+  Config q;
+  for (std::size_t k = 0; k < kDof; ++k)
+    q[static_cast<Eigen::Index>(k)] = joints_[static_cast<std::size_t>(layer)][k][static_cast<std::size_t>(slot)];
+  return q;
+}
+
+void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
+  const Config q = config(layer, slot);
+  out.clear();
+  for (int b = 0; b < lattice_->slots(layer + 1); ++b) {
+    const double rest = at(layer + 1, b);
+    if (rest == kUnreachable || rest > bound) continue;
+    const Config delta = lattice_->delta(q, config(layer + 1, b));
+    if (!lattice_->step_allowed(layer, delta)) continue;
+    const double cost = lattice_->edge_cost(delta);
+    if (cost + rest <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, cost});
+  }
+}
+
+}  // namespace swivel

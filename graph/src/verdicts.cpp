@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/graph/verdicts.hpp"
+
+namespace swivel {
+
+Verdicts::Verdicts(const Lattice& lattice) {
+  first_.reserve(static_cast<std::size_t>(lattice.layers()));
+  std::size_t nodes = 0;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    first_.push_back(nodes);
+    nodes += static_cast<std::size_t>(lattice.slots(layer));
+  }
+  node_.resize(nodes, Verdict::kUnknown);
+}
+
+void Verdicts::remove_node(int layer, int slot) {
+  Verdict& verdict = node_[index(layer, slot)];
+  if (verdict == Verdict::kRemoved) return;
+  verdict = Verdict::kRemoved;
+  ++removed_;
+  pending[layer].nodes.push_back(slot);
+}
+
+Verdict Verdicts::edge(int layer, int a, int b) const {
+  if (edge_.empty()) return Verdict::kUnknown;
+  const auto found = edge_.find({index(layer, a), b});
+  return found == edge_.end() ? Verdict::kUnknown : found->second;
+}
+
+void Verdicts::keep_edge(int layer, int a, int b) {
+  edge_[{index(layer, a), b}] = Verdict::kValid;
+}
+
+void Verdicts::remove_edge(int layer, int a, int b, double cost) {
+  edge_[{index(layer, a), b}] = Verdict::kRemoved;
+  ++removed_;
+  removed_edges_[layer].tails[a].push_back({b, cost});
+  removed_edges_[layer].heads[b].push_back({a, cost});
+  pending[layer].tails.push_back(a);
+}
+
+const Verdicts::RemovedEdges* Verdicts::removed_edges(int layer) const {
+  const auto found = removed_edges_.find(layer);
+  return found == removed_edges_.end() ? nullptr : &found->second;
+}
+
+}  // namespace swivel

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lattices that list their nodes, of an arm without a spherical wrist: the same searches, the same answers as brute force.
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+
+#include "brute_force.hpp"
+#include "collision_validity.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/explicit_lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/eager.hpp"
+#include "swivel/graph/path_first.hpp"
+
+namespace swivel::test {
+namespace {
+
+/// Seven joints of which no three meet in a point; joint 7 turns without end.
+TestRobot offset_robot() {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  return synthetic_robot("offsets",
+                         {{z * 0.3, z, -2.9, 2.9},
+                          {x * 0.05, y, -2.0, 2.0},
+                          {y * 0.04, z, -2.9, 2.9},
+                          {z * 0.38 + x * 0.06, y, -2.3, 2.3},
+                          {z * 0.33 - y * 0.05, z, -2.9, 2.9},
+                          {x * 0.08, y, -2.0, 2.0},
+                          {z * 0.06, x, 0, 0, true}},
+                         z * 0.12, 0.04);
+}
+
+/// A configuration near `q` that reaches the pose: minimum-norm Newton steps.
+std::optional<Config> projected(const Chain& chain, const Pose& pose, Config q) {
+  for (int step = 0; step < 30; ++step) {
+    const Pose reached = chain.tool(q);
+    const Eigen::AngleAxisd turn(pose.linear() * reached.linear().transpose());
+    Eigen::Matrix<double, 6, 1> error;
+    error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
+    if (error.norm() < 1e-12) return q;
+    q += chain.jacobian(q).completeOrthogonalDecomposition().solve(error);
+    if (!(q.lpNorm<Eigen::Infinity>() < 50)) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// Random nodes of every layer: some found from those of the layer before, so that paths exist, some from anywhere.
+std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chain, const ToolPath& path, const Config& start, Random& random) {
+  std::vector<std::vector<ExplicitLattice::Point>> layers;
+  std::vector<Config> seeds{start};
+  for (int layer = 0; layer < path.size(); ++layer) {
+    std::vector<Config> found;
+    const int wanted = 6 + random.below(14);
+    for (int k = 0; k < wanted; ++k) {
+      Config seed = random.coin(0.8) ? seeds[static_cast<std::size_t>(random.below(static_cast<int>(seeds.size())))] : random_config(chain, random);
+      for (int j = 0; j < kDof; ++j) seed[j] += random.uniform(-0.3, 0.3);
+      auto q = projected(chain, path.layer(layer).tool, seed);
+      if (!q) continue;
+      (*q)[6] = std::remainder((*q)[6], kTwoPi);
+      bool inside = true;
+      for (int j = 0; j < kDof - 1; ++j) {
+        const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+        inside = inside && (*q)[j] >= limit.lower && (*q)[j] <= limit.upper;
+      }
+      if (inside) found.push_back(*q);
+    }
+    if (!found.empty()) seeds = found;
+    auto& points = layers.emplace_back();
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      ExplicitLattice::Point point;
+      point.q = found[k];
+      point.beside = {static_cast<int>(k) - 1, k + 1 < found.size() ? static_cast<int>(k) + 1 : -1};
+      points.push_back(point);
+    }
+  }
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    for (std::size_t k = 0; k < layers[i].size(); ++k) {
+      if (i > 0 && k < layers[i - 1].size()) layers[i][k].along[0] = static_cast<int>(k);
+      if (i + 1 < layers.size() && k < layers[i + 1].size()) layers[i][k].along[1] = static_cast<int>(k);
+    }
+  return layers;
+}
+
+TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
+  const std::uint64_t base = seed("ExplicitLattice.Agreement");
+  const TestRobot robot = offset_robot();
+  const ArmModel arm = arm_of(robot);
+  int solved = 0, infeasible = 0, rounds = 0, shared = 0;
+  const int count = trials(150);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robot, random);
+    problem.limits.step_error.reset();
+    problem.limits.joint_step = random.uniform(0.5, 1.5);
+    if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
+    problem.start.reset();
+    const Config start = random_config(arm.chain, random);
+    problem.waypoints[0] = waypoint_of(arm.chain.tool(start));
+    Config end = start;
+    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
+    problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
+    problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
+    const ExplicitLattice lattice(arm.chain, path, problem, random_layers(arm.chain, path, start, random));
+    const World world(*robot.model, arm, problem);
+    const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
+    const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
+    (truth.solved ? solved : infeasible) += 1;
+
+    Executor executor(1);
+    const Budget never;
+    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest, const char* planner) {
+      ASSERT_EQ(!slots.empty(), truth.solved) << what << ' ' << planner;
+      ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
+      if (truth.solved) ASSERT_EQ(cost, truth.cost) << what << ' ' << planner;
+      if (!truth.solved) ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
+    };
+    for (const EagerSearch search : {EagerSearch::kDijkstra, EagerSearch::kAStar}) {
+      CollisionValidity validity(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      EagerOutcome found;
+      eager_search(lattice, validity, search, never, found);
+      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
+    }
+    {
+      CollisionValidity validity(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      EagerOutcome found;
+      eager_dp(lattice, validity, never, found);
+      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
+    }
+    for (const int batch : {1, 32}) {
+      CollisionValidity validity(lattice, world, rule, Certificates::kCompared, executor, batch == 1 ? 1 : 4, never, {});
+      const auto togo = make_cost_to_go(lattice);
+      togo->sweep(lattice.layers() - 1);
+      SearchCounters counters;
+      const SearchOutcome found = path_first(*togo, validity, {.batch = batch}, counters);
+      rounds += static_cast<int>(counters.iterations);
+      int deepest = -1;
+      if (found.path.empty()) deepest = deepest_valid_layer(*togo, validity, {.batch = batch}, counters);
+      expect_truth(found.path, found.cost, deepest, "lazy");
+      ASSERT_EQ(validity.counters().contradictions, 0) << what;
+      int removed = 0;
+      for (const Verdict verdict : togo->verdicts().nodes()) removed += verdict == Verdict::kRemoved;
+      shared += removed;
+    }
+    if (HasFatalFailure()) return;
+  }
+  std::printf("%d solved, %d infeasible, %d rounds, %d nodes removed\n", solved, infeasible, rounds, shared);
+  EXPECT_GT(solved, count / 10);
+  EXPECT_GT(infeasible, count / 10);
+  EXPECT_GT(rounds, 2 * count);
+}
+
+TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {
+  const std::uint64_t base = seed("ExplicitLattice.Grid");
+  int solved = 0, infeasible = 0, removals = 0;
+  const auto robots = all_robots();
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    problem.limits.arm_slope = 1e6;  // any arm angle may follow any other
+    problem.limits.step_error.reset();
+    problem.start.reset();
+    const ArmModel arm = arm_of(robots[static_cast<std::size_t>(trial) % robots.size()]);
+    const SrsArm srs = fit_srs(arm.chain, what);
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
+    const SrsLattice grid(arm.chain, srs, path, problem);
+    std::vector<std::vector<ExplicitLattice::Point>> layers(static_cast<std::size_t>(grid.layers()));
+    std::vector<std::vector<int>> slots(layers.size());  // of the grid
+    std::vector<Lattice::Node> nodes;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      grid.layer_nodes(static_cast<int>(i), nodes);
+      for (const Lattice::Node& node : nodes) {
+        layers[i].push_back({.q = node.q});
+        slots[i].push_back(node.slot);
+      }
+    }
+    const ExplicitLattice listed(arm.chain, path, problem, std::move(layers));
+    const auto of_grid = make_cost_to_go(grid), of_list = make_cost_to_go(listed);
+    of_grid->sweep(grid.layers() - 1);
+    of_list->sweep(listed.layers() - 1);
+    for (int round = 0; round < 5; ++round) {
+      ASSERT_EQ(of_grid->best(), of_list->best()) << what;
+      std::int64_t expansions = 0;
+      const SlotPath wanted = best_path(*of_grid, expansions), found = best_path(*of_list, expansions);
+      ASSERT_EQ(wanted.size(), found.size()) << what;
+      for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(wanted[i], slots[i][static_cast<std::size_t>(found[i])]) << what;
+      if (found.empty()) {
+        ASSERT_EQ(of_grid->deepest_reachable(), of_list->deepest_reachable()) << what;
+        ++infeasible;
+        break;
+      }
+      ++solved;
+      const int layer = random.below(grid.layers());
+      const auto i = static_cast<std::size_t>(layer);
+      if (round == 3) {  // a wall across all of a layer
+        for (std::size_t k = 0; k < slots[i].size(); ++k) {
+          of_grid->verdicts().remove_node(layer, slots[i][k]);
+          of_list->verdicts().remove_node(layer, static_cast<int>(k));
+        }
+      } else if (random.coin() && layer + 1 < grid.layers()) {
+        of_grid->remove_edge(layer, wanted[i], wanted[i + 1]);
+        of_list->remove_edge(layer, found[i], found[i + 1]);
+      } else {
+        of_grid->verdicts().remove_node(layer, wanted[i]);
+        of_list->verdicts().remove_node(layer, found[i]);
+      }
+      ++removals;
+      of_grid->repair();
+      of_list->repair();
+    }
+  }
+  std::printf("%d paths compared, %d problems without one, %d removals\n", solved, infeasible, removals);
+  EXPECT_GT(solved, 2 * count);
+  EXPECT_GT(infeasible, count / 2);
+}
+
+}  // namespace
+}  // namespace swivel::test

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/lattice.hpp"
+
+namespace swivel::test {
+
+struct Answer {
+  bool solved = false;
+  double cost = 0;
+  std::vector<int> slots;
+  int deepest = -1;
+  std::vector<int> empty;  // layers without a valid node
+};
+
+/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; ties by slot.
+/// `in_window`: whether slots a and b of neighbouring layers may be joined.
+inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
+                          const std::function<bool(int layer, int a, int b)>& in_window) {
+  World::Query query(world);
+  const Chain& chain = lattice.chain();
+  const Limits& limits = lattice.limits();
+  const auto layers = static_cast<std::size_t>(lattice.layers());
+  std::vector<std::vector<std::optional<Config>>> nodes(layers);
+  for (std::size_t i = 0; i < layers; ++i)
+    for (int slot = 0; slot < lattice.slots(static_cast<int>(i)); ++slot) {
+      nodes[i].push_back(lattice.node(static_cast<int>(i), slot));
+      std::optional<Config>& q = nodes[i].back();
+      if (q && (chain.manipulability(*q) < limits.manipulability || query.first_below(*q, Keep::kNode))) q.reset();
+    }
+  const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
+    const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
+    if (!in_window(layer, sa, sb)) return std::nullopt;
+    const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
+    Config delta = qb - qa;
+    for (int j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+      if (limit.continuous || limit.wide()) delta[j] = std::remainder(delta[j], kTwoPi);
+      if (std::abs(delta[j]) > limits.joint_step) return std::nullopt;
+    }
+    if (!lattice.follows_path(layer, sa, qa, sb, qb)) return std::nullopt;
+    if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, qa, qa + delta)) return std::nullopt;
+    return lattice.edge_cost(delta);
+  };
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  std::vector<std::vector<double>> g(layers);
+  std::vector<std::vector<int>> next(layers);
+  std::vector<std::vector<std::vector<std::size_t>>> into(layers);
+  for (std::size_t i = 0; i < layers; ++i) {
+    g[i].assign(nodes[i].size(), kNone);
+    next[i].assign(nodes[i].size(), -1);
+    into[i].resize(nodes[i].size());
+  }
+  for (std::size_t slot = 0; slot < nodes.back().size(); ++slot)
+    if (nodes.back()[slot]) g.back()[slot] = 0;
+  for (std::size_t i = layers - 1; i-- > 0;)
+    for (std::size_t a = 0; a < nodes[i].size(); ++a)
+      for (std::size_t b = 0; nodes[i][a] && b < nodes[i + 1].size(); ++b) {
+        if (!nodes[i + 1][b]) continue;
+        const auto cost = edge(i, a, b);
+        if (!cost) continue;
+        into[i + 1][b].push_back(a);
+        if (*cost + g[i + 1][b] < g[i][a]) {
+          g[i][a] = *cost + g[i + 1][b];
+          next[i][a] = static_cast<int>(b);
+        }
+      }
+  Answer answer;
+  const auto best = std::min_element(g[0].begin(), g[0].end());
+  answer.cost = best == g[0].end() ? kNone : *best;
+  answer.solved = answer.cost != kNone;
+  if (answer.solved) {
+    int slot = static_cast<int>(best - g[0].begin());
+    for (std::size_t i = 0; i < layers; ++i) {
+      answer.slots.push_back(slot);
+      slot = next[i][static_cast<std::size_t>(slot)];
+    }
+    return answer;
+  }
+  for (std::size_t i = 0; i < layers; ++i)
+    if (std::none_of(nodes[i].begin(), nodes[i].end(), [](const auto& node) { return node.has_value(); }))
+      answer.empty.push_back(static_cast<int>(i));
+  std::vector<char> reached(nodes[0].size(), 0);
+  for (std::size_t slot = 0; slot < reached.size(); ++slot) reached[slot] = nodes[0][slot].has_value();
+  for (std::size_t i = 0; i < layers && std::find(reached.begin(), reached.end(), 1) != reached.end(); ++i) {
+    answer.deepest = static_cast<int>(i);
+    if (i + 1 == layers) break;
+    std::vector<char> ahead(nodes[i + 1].size(), 0);
+    for (std::size_t b = 0; b < ahead.size(); ++b)
+      for (const std::size_t a : into[i + 1][b]) ahead[b] |= reached[a];
+    reached.swap(ahead);
+  }
+  return answer;
+}
+
+}  // namespace swivel::test
