@@ -12,7 +12,7 @@
 
 namespace swivel::cli {
 
-/// Exit codes, design.md 4.
+/// Exit codes, as the README lists them.
 enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 5 };
 
 /// Each adds a subcommand; its callback sets `exit_code`.

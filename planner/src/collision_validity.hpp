@@ -12,7 +12,7 @@
 
 namespace swivel {
 
-/// The costly predicates of design.md 1, asked of the collision world on the executor's threads.
+/// The costly predicates of docs/model.md, asked of the collision world on the executor's threads.
 /// Nodes are asked in lanes: a batch is cut into that many runs of consecutive questions, and what a lane keeps from one posture to
 /// the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of threads.
 class CollisionValidity final : public Validity {

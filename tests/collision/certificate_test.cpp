@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates against FCL: a verdict that a certificate gives must be FCL's. design.md 1.
+// Certificates against FCL: a verdict that a certificate gives must be FCL's. docs/model.md "Clearance".
 #include "certificate.hpp"
 
 #include <gtest/gtest.h>

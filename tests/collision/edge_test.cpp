@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bisection against every midpoint in turn. design.md 1 "Edge collision".
+// Bisection against every midpoint in turn. docs/model.md "Motions".
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which pairs count. design.md 1.
+// Which pairs count. docs/model.md "Clearance".
 #include <gtest/gtest.h>
 
 #include <algorithm>

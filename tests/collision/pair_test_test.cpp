@@ -18,7 +18,7 @@ namespace {
 
 using namespace swivel::testing;
 
-constexpr double kTau = 5e-5;  // design.md 1: the band in which FCL alone decides
+constexpr double kTau = 5e-5;  // docs/model.md: the band in which FCL alone decides
 
 /// A point that the shape holds: its centre or, of a mesh, which may be hollow, the middle of a triangle or of an edge.
 Vector3d held_point(const Shape& shape, bool of_triangle) {

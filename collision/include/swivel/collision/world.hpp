@@ -57,11 +57,11 @@ struct Level {
   double more = 0;  ///< m; no pair is below a level less than zero
 };
 
-/// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. design.md 1.
+/// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. docs/model.md.
 inline constexpr double kVerdictBand = 0.05e-3;
 
 /// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
-/// continuous joints): every pair keeps its PairKeeps::motion. design.md 1 "Edge collision". Made by World::edge_rule.
+/// continuous joints): every pair keeps its PairKeeps::motion. docs/model.md "Motions". Made by World::edge_rule.
 struct EdgeRule {
   std::array<double, kDof> radii{};  ///< core motion_radii, m
   double h = 0.0005;                 ///< m; > 0
@@ -108,7 +108,7 @@ enum class Certificates {
 
 /// The robot's bodies among the scene's, with FCL as the authority on every pair. Immutable after construction; const calls are
 /// safe from many threads, each with its own Query.
-/// Verdicts are those of design.md 1: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or
+/// Verdicts are those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or
 /// capsule the equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:

@@ -20,7 +20,7 @@ struct Shard {
   [[nodiscard]] std::uint64_t episode(std::uint64_t k) const { return index + k * count; }
 };
 
-/// One line of RESULTS.csv, design.md 4. All but plan_ms is independent of threads and shards.
+/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards.
 struct EpisodeRow {
   std::uint64_t episode = 0;
   PlanStatus status = PlanStatus::kInfeasible;

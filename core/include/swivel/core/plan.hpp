@@ -15,7 +15,7 @@ namespace swivel {
 enum class PlanStatus { kSolved, kInfeasible, kTimeout, kCancelled, kError };
 [[nodiscard]] const char* to_string(PlanStatus status);
 
-/// One layer of a solution. design.md 4, TRAJ.csv.
+/// One layer of a solution: a row of docs/formats.md "Trajectory".
 struct TrajectoryRow {
   double s = 0;    ///< m along the path
   double phi = 0;  ///< carried arm angle, rad
@@ -57,7 +57,7 @@ struct Shortfall {
   [[nodiscard]] double by() const { return value > limit ? value - limit : limit - value; }
 };
 
-/// Why a layer has no node left, or why the search stopped. design.md 1 "Answer".
+/// Why a layer has no node left, or why the search stopped. docs/model.md.
 struct EmptyLayer {
   int layer = 0;
   int waypoint = -1;  ///< 0-based row of the path file when the layer is a waypoint, else -1

@@ -38,7 +38,7 @@ struct AttachedBody {
 enum class EdgeMode { kContinuous, kNodes };
 enum class CostMetric { kL2, kMax, kTime };
 
-/// design.md 1 and 4. Unset optionals mean "no such limit".
+/// docs/model.md. Unset optionals mean "no such limit".
 struct Limits {
   double clearance = 0.005;                       ///< d_safe, m
   std::optional<double> self_clearance;           ///< the same between the robot's own bodies, m; default clearance
@@ -70,7 +70,7 @@ struct Cost {
   std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};  ///< 0, or 1e-6 to 1e6
 };
 
-/// Uniform offsets of one scene object for campaign episodes, half-widths. design.md 4.
+/// Uniform offsets of one scene object for campaign episodes, half-widths. docs/formats.md.
 struct Vary {
   std::string object;
   Vector3d xyz = Vector3d::Zero();

@@ -59,7 +59,7 @@ class LayerNodes {
 /// leaves 31 turns to both limits.
 ///
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
-/// nodes at each angle. design.md 1. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
+/// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
 /// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
 /// asked.
 class SrsLattice final : public Lattice {

@@ -20,7 +20,7 @@ struct PathLayer {
 };
 
 /// Waypoints cut into layers: position linear, orientation slerp on the short arc; every waypoint is a layer, so corners are never
-/// cut. design.md 1 "Tool path"; paper Eq. (1)-(4).
+/// cut. docs/model.md "Tool path"; paper Eq. (1)-(4).
 class ToolPath {
  public:
   /// Throws InputError: fewer than two distinct waypoints, a turn of 180 deg between neighbours, more layers than fit in memory.

@@ -41,7 +41,7 @@ using MeshCache = std::map<std::string, MeshPtr>;
 /// Tool path: header x,y,z,qw,qx,qy,qz; at least two rows. Quaternions as written, of length 1 within 1e-3.
 [[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
 
-/// PROBLEM.yaml, design.md 4. Unknown keys are errors with the nearest known key named.
+/// PROBLEM.yaml, docs/formats.md. Unknown keys are errors with the nearest known key named.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
 /// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits.
@@ -52,7 +52,7 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 [[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv,
                                                          const std::array<std::string, kDof>& joint_names);
 
-/// RESULT.json as text, design.md 4. Cost, tool-path error and manipulability are null unless solved.
+/// RESULT.json as text, docs/formats.md. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
 /// RESULT.json after an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
@@ -147,7 +147,7 @@ struct CampaignSettings {
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
 };
 
-/// The rows of a campaign's RESULTS.csv, design.md 4, while it runs: they are appended to RESULTS.csv.part as they come, so that a
+/// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs: they are appended to RESULTS.csv.part as they come, so that a
 /// killed campaign goes on from there. The first line of that file holds the settings.
 class CampaignFile {
  public:
