@@ -22,8 +22,8 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
     for (const Lattice::Node& node : nodes) questions.push_back({layer, node.slot, node.q});
     answers.assign(questions.size(), {});
     validity.nodes(questions, answers);
-    valid.layers[static_cast<std::size_t>(layer)].reserve(
-        static_cast<std::size_t>(std::count_if(answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
+    valid.layers[static_cast<std::size_t>(layer)].reserve(static_cast<std::size_t>(
+        std::count_if(answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
     for (std::size_t k = 0; k < questions.size(); ++k)
       if (answers[k].valid) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
   }

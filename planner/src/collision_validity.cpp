@@ -59,8 +59,8 @@ Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& que
     if (body < static_cast<int>(world.bodies().size()))
       sharing.groups |= 1u << world.bodies()[static_cast<std::size_t>(body)].group;
   sharing.groups &= ~1u;  // group 0 stands still
-  sharing.shared = lattice.stand_alike(sharing.groups) &&
-                   (query.surely_below() || query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand)));
+  sharing.shared =
+      lattice.stand_alike(sharing.groups) && (query.surely_below() || query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand)));
   return sharing;
 }
 

@@ -125,13 +125,27 @@ std::vector<Reader> readers(const TempFolder& folder) {
                  {TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,"},
                  at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory(file, joints); })});
-  all.push_back(
-      {"campaign",
-       {"episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n"
-        "0,solved,1.5,0.123,10,2,0.01,0.02,,\n1,infeasible,,3.000,5,1,,,0.25,\"a \"\"b\"\", c\"\n2,infeasible,,3.000,5,1,,,,joint "
-        "step\n"},
-       {",", "\"", "\n", "0,solved,"},
-       at("results.csv.part", [&folder](const fs::path&) { (void)io::CampaignFile(folder.path() / "results.csv", {}, 100); })});
+  const io::CampaignSettings settings{{{"seed", "1"}, {"planner", "lazy"}}, {{"arm.urdf", 0x0123456789abcdef}}};
+  {
+    io::CampaignFile part(folder.path() / "good_results.csv", settings, {}, 100);
+    EpisodeRow row;
+    row.status = PlanStatus::kSolved;
+    row.cost = 1.5;
+    part.append(row);
+    row = {};
+    for (const char* reason : {"a \"b\", c", "joint step"}) {
+      ++row.episode;
+      row.failed_s = 0.25;
+      row.reason = reason;
+      part.append(row);
+    }
+  }
+  all.push_back({"campaign",
+                 {TempFolder::read(folder.path() / "good_results.csv.part")},
+                 {",", "\"", "\n", "0,solved,", "{", "}", "# swivel campaign "},
+                 at("results.csv.part", [&folder, settings](const fs::path&) {
+                   (void)io::CampaignFile(folder.path() / "results.csv", settings, {}, 100);
+                 })});
   all.push_back({"stl",
                  {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
                  {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"},

@@ -45,14 +45,16 @@ std::optional<Config> projected(const Chain& chain, const Pose& pose, Config q) 
 }
 
 /// Random nodes of every layer: some found from those of the layer before, so that paths exist, some from anywhere.
-std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chain, const ToolPath& path, const Config& start, Random& random) {
+std::vector<std::vector<ExplicitLattice::Point>> random_layers(const Chain& chain, const ToolPath& path, const Config& start,
+                                                               Random& random) {
   std::vector<std::vector<ExplicitLattice::Point>> layers;
   std::vector<Config> seeds{start};
   for (int layer = 0; layer < path.size(); ++layer) {
     std::vector<Config> found;
     const int wanted = 6 + random.below(14);
     for (int k = 0; k < wanted; ++k) {
-      Config seed = random.coin(0.8) ? seeds[static_cast<std::size_t>(random.below(static_cast<int>(seeds.size())))] : random_config(chain, random);
+      Config seed = random.coin(0.8) ? seeds[static_cast<std::size_t>(random.below(static_cast<int>(seeds.size())))]
+                                     : random_config(chain, random);
       for (int j = 0; j < kDof; ++j) seed[j] += random.uniform(-0.3, 0.3);
       auto q = projected(chain, path.layer(layer).tool, seed);
       if (!q) continue;

@@ -86,7 +86,8 @@ struct RobotBody {
                                                   const std::vector<AttachedBody>& attached);
 
 /// R_j: a bound on the distance from axis j of any point that joint j moves, over all configurations, metres. By spheres about the
-/// points where neighbouring axes come closest, so it is tight when the shoulder and the wrist are spherical. docs/model.md "Motions".
+/// points where neighbouring axes come closest, so it is tight when the shoulder and the wrist are spherical. docs/model.md
+/// "Motions".
 [[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<RobotBody>& bodies);
 
 }  // namespace swivel

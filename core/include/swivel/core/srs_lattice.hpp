@@ -94,8 +94,8 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int beside(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// The last link and the tool stand where the layer puts them; links 3 and 4 where arm angle and sign of the elbow do; links 1
-  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's. On arms that are not exact only the last link and the tool stand
-  /// alike: polished joints place them to 1e-10 m, the others by the fitted arm's misfit.
+  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's. On arms that are not exact only the last link and the tool
+  /// stand alike: polished joints place them to 1e-10 m, the others by the fitted arm's misfit.
   [[nodiscard]] bool stand_alike(unsigned groups) const override { return arm_->exact || (groups & ~(1u << kDof)) == 0; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;

@@ -147,8 +147,8 @@ struct CampaignSettings {
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
 };
 
-/// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs: they are appended to RESULTS.csv.part as they come, so that a
-/// killed campaign goes on from there. The first line of that file holds the settings.
+/// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs: they are appended to RESULTS.csv.part as they come, so
+/// that a killed campaign goes on from there. The first line of that file holds the settings.
 class CampaignFile {
  public:
   /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
