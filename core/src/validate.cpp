@@ -62,7 +62,7 @@ void pose(const Field& field, const Pose& pose) {
   const Matrix3d R = pose.linear();
   if (!pose.matrix().allFinite()) fail(field, "has numbers that are not finite", "a rotation and a finite translation");
   // Twice as far as files say, since objects of a campaign are moved.
-  if (!(pose.translation().cwiseAbs().maxCoeff() <= 2 * kMostMetres)) fail(field, "is too far away", "a translation within 2000 m");
+  if (!(pose.translation().array().abs() <= 2 * kMostMetres).all()) fail(field, "is too far away", "a translation within 2000 m");
   if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance && R.determinant() > 0 &&
         pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
     fail(field, "is no rigid transform", "a rotation within 1e-6 and a finite translation");
@@ -71,7 +71,7 @@ void pose(const Field& field, const Pose& pose) {
 void mesh(const Field& field, const MeshPtr& mesh) {
   if (!mesh) fail(field, "is a null mesh", "a mesh");
   for (const Vector3d& vertex : mesh->vertices)
-    if (!(vertex.cwiseAbs().maxCoeff() <= kMostMetres))
+    if (!(vertex.array().abs() <= kMostMetres).all())  // NaN is not
       fail(field, "has a vertex that is not finite or too far away", "vertices within 1000 m");
   const auto count = static_cast<int>(mesh->vertices.size());
   for (const auto& triangle : mesh->triangles)

@@ -28,9 +28,10 @@ void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh&
       if (known < 0) {
         known = static_cast<int>(mesh.vertices.size());
         mesh.vertices.push_back(placed * surface.points()[static_cast<std::size_t>(corner)]);
-        const double far = mesh.vertices.back().cwiseAbs().maxCoeff();
-        if (!(far <= kMostMetres))
-          file.fail(0, "a vertex lies " + format_double(far) + " m from the origin, scale applied", "vertices within 1000 m");
+        const Vector3d& vertex = mesh.vertices.back();
+        if (!(vertex.array().abs() <= kMostMetres).all())
+          file.fail(0, "a vertex lies " + format_double(vertex.norm()) + " m from the origin, scale applied",
+                    "vertices within 1000 m");
       }
       corner = known;
     }

@@ -17,7 +17,7 @@ std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
     const std::span<const double> v = table.row(k);
     Waypoint waypoint;
     waypoint.position = {v[0], v[1], v[2]};
-    if (!(waypoint.position.cwiseAbs().maxCoeff() <= kMostMetres))
+    if (!(waypoint.position.array().abs() <= kMostMetres).all())
       bad_input(table.where(k) + ": x,y,z", "a coordinate is too large", "numbers from -1000 to 1000");
     waypoint.orientation = Quaterniond(v[3], v[4], v[5], v[6]);
     const double norm = waypoint.orientation.norm();

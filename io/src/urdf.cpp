@@ -100,7 +100,7 @@ Pose origin(const urdf::Pose& pose, const std::string& at) {
   result.translation() = to_eigen(pose.position);
   const urdf::Rotation& r = pose.rotation;
   result.linear() = Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
-  if (!(result.translation().cwiseAbs().maxCoeff() <= kMostMetres) || !result.linear().allFinite())
+  if (!(result.translation().array().abs() <= kMostMetres).all() || !result.linear().allFinite())
     bad_input(at, "origin is not finite or too far away", "numbers, those of xyz from -1000 to 1000");
   return result;
 }
