@@ -17,6 +17,7 @@
 #endif
 #include "context.hpp"
 #include "settings.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/io/io.hpp"
 
