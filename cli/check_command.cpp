@@ -31,7 +31,7 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
                 chain.joint_names[static_cast<std::size_t>(result.nearest_limit->joint)].c_str(),
                 result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
   if (result.min_clearance)
-    std::printf(", clearance at least %.3f mm (asked %.3f)", 1e3 * *result.min_clearance, 1e3 * problem.limits.clearance);
+    std::printf(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);
   std::printf(", cost %.9g\n", result.cost);
 }
 

@@ -315,6 +315,8 @@ class Check {
     const auto clearance = contacts_.clearance(row.q);
     if (!clearance) return;
     result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
+    const double margin = clearance->margin() - kVerdictBand;  // the world forgives the band
+    result_.min_margin = std::min(result_.min_margin.value_or(margin), margin);
     if (!(clearance->distance > 0))
       fail("row %zu: %s touch", k, contacts_.names(clearance->pair).c_str());
     else if (!(clearance->margin() >= 0))

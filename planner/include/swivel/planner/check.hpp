@@ -22,7 +22,8 @@ struct CheckResult {
   double worst_path_angle = 0;        ///< rad, the same at the nearest points of the path
   double largest_step = 0;            ///< a joint's move between two rows over what joint_step and speeds allow it
   double cost = 0;                    ///< of the rows as given, by the problem's metric
-  std::optional<double> min_clearance;
+  std::optional<double> min_clearance;  ///< m, of any pair at the rows
+  std::optional<double> min_margin;     ///< m, least clearance of a pair less what it must keep
   struct LimitDistance {
     int joint = 0;  ///< 0..6
     double by = 0;  ///< rad, inside the limits less joint_margin
