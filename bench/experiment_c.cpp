@@ -17,8 +17,8 @@
 #endif
 #include "context.hpp"
 #include "settings.hpp"
-#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/campaign.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 
 namespace {

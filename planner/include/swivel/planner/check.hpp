@@ -14,14 +14,14 @@ namespace swivel {
 /// What an independent look at a trajectory found. Knows the problem, the exact chain and FCL; nothing of planners or their search.
 struct CheckResult {
   bool passed = false;
-  std::vector<std::string> failures;  ///< one line each, with the row; the first 20
-  std::int64_t failure_count = 0;     ///< of all
-  double worst_position = 0;          ///< m, tool against path at the rows
-  double worst_angle = 0;             ///< rad
-  double worst_path_error = 0;        ///< m, between rows
-  double worst_path_angle = 0;        ///< rad, the same at the nearest points of the path
-  double largest_step = 0;            ///< a joint's move between two rows over what joint_step and speeds allow it
-  double cost = 0;                    ///< of the rows as given, by the problem's metric
+  std::vector<std::string> failures;    ///< one line each, with the row; the first 20
+  std::int64_t failure_count = 0;       ///< of all
+  double worst_position = 0;            ///< m, tool against path at the rows
+  double worst_angle = 0;               ///< rad
+  double worst_path_error = 0;          ///< m, between rows
+  double worst_path_angle = 0;          ///< rad, the same at the nearest points of the path
+  double largest_step = 0;              ///< a joint's move between two rows over what joint_step and speeds allow it
+  double cost = 0;                      ///< of the rows as given, by the problem's metric
   std::optional<double> min_clearance;  ///< m, of any pair at the rows
   std::optional<double> min_margin;     ///< m, least clearance of a pair less what it must keep
   struct LimitDistance {
