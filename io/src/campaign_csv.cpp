@@ -140,7 +140,8 @@ std::string difference(std::string_view found, std::string_view wanted) {
   found.remove_prefix(kSettingsMark.size());
   wanted.remove_prefix(kSettingsMark.size());
   const Json was = Json::parse(found, nullptr, false), is = Json::parse(wanted);
-  if (!was.is_object() || !was["settings"].is_object() || !was["files"].is_object()) return "its settings cannot be read";
+  const auto has = [&](const char* key) { return was.is_object() && was.contains(key) && was[key].is_object(); };
+  if (!has("settings") || !has("files")) return "its settings cannot be read";
   const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); };
   for (const auto& [name, value] : is["settings"].items()) {
     const auto old = was["settings"].find(name);

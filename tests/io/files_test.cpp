@@ -155,6 +155,10 @@ TEST(Files, CampaignsKnowTheirSettings) {
   expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"another campaign"});
   file.finish();
   EXPECT_EQ(count_files(folder.path()), 0u);
+  for (const char* line : {"{}", "{\"settings\": {}}", "[]", "{\"settings\": 1, \"files\": 2}", "no JSON"}) {
+    std::ofstream(csv.string() + ".part") << "# swivel campaign " << line << '\n';
+    expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"r.csv.part:1", "its settings cannot be read"});
+  }
 }
 
 }  // namespace
