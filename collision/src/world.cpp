@@ -120,7 +120,7 @@ struct World::Impl {
       const std::string text = names[static_cast<std::size_t>(p.pair.a)] + " - " + names[static_cast<std::size_t>(p.pair.b)];
       if (p.dropped)
         dropped.push_back(text);
-      else
+      else if (p.keeps.node < limits.d_self())
         reduced.push_back(text + " " + millimetres(p.keeps.node));
     }
     if (!dropped.empty()) warnings.push_back("robot pairs that touch in every posture are not kept apart: " + list_of(dropped));
