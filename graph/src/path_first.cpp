@@ -189,8 +189,10 @@ class Search {
       if (answers_[k].valid) {
         verdicts_.keep_node(x.layer, x.slot);
       } else {
-        lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
-        if (!answers_[k].shared) alike_.assign(1, x.slot);
+        if (answers_[k].shared)
+          lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
+        else
+          alike_.assign(1, x.slot);
         for (const int slot : alike_) verdicts_.remove_node(x.layer, slot);
         failed.push_back({x.layer, x.slot, answers_[k].fault});
       }

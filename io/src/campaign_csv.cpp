@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "bad_input.hpp"
+#include "csv.hpp"
 #include "files.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
@@ -51,10 +52,7 @@ std::string milliseconds(double value) {
 std::string quoted(std::string text) {
   for (char& c : text)
     if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string field = "\"";
-  for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
-  return field + '"';
+  return csv_field(text);
 }
 
 std::string line_of(const EpisodeRow& row) {

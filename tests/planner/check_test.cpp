@@ -54,6 +54,17 @@ struct Good {
   }
 };
 
+/// Of path_deviation or angle_deviation, over all moves of the rows.
+template <class Deviation>
+double largest(const Good& good, const Deviation& deviation) {
+  double most = 0;
+  for (std::size_t k = 1; k < good.rows.size(); ++k)
+    for (const double error :
+         deviation(good.chain(), *good.path, static_cast<int>(k) - 1, good.rows[k - 1].q, good.rows[k].q - good.rows[k - 1].q))
+      most = std::max(most, error);
+  return most;
+}
+
 std::optional<Good> solved(const std::string& what, const Problem& problem) {
   Good good{what, problem, std::make_shared<PreparedRobot>(problem), nullptr, {}, {}};
   good.path = std::make_shared<ToolPath>(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -314,22 +325,14 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"tool_path_error",
        [](Good& good, Random&) -> std::string {
-         double most = 0;
-         for (std::size_t k = 1; k < good.rows.size(); ++k)
-           for (const double error : path_deviation(good.chain(), *good.path, static_cast<int>(k) - 1, good.rows[k - 1].q,
-                                                    good.rows[k].q - good.rows[k - 1].q))
-             most = std::max(most, error);
+         const double most = largest(good, path_deviation);
          if (most < 1e-5) return "";
          good.problem.limits.tool_path_error = 0.8 * most;
          return amount("%.3g m, a quarter more than allowed", most);
        }},
       {"tool_angle_error",
        [](Good& good, Random&) -> std::string {
-         double most = 0;
-         for (std::size_t k = 1; k < good.rows.size(); ++k)
-           for (const double error : angle_deviation(good.chain(), *good.path, static_cast<int>(k) - 1, good.rows[k - 1].q,
-                                                     good.rows[k].q - good.rows[k - 1].q))
-             most = std::max(most, error);
+         const double most = largest(good, angle_deviation);
          if (most < 1e-5) return "";
          good.problem.limits.tool_angle_error = 0.8 * most;
          return amount("%.3g rad, a quarter more than allowed", most);
