@@ -22,7 +22,7 @@ void print_pairs(const std::string& file) {
   const auto dropped = std::count_if(pairs.begin(), pairs.end(), [](const RobotPair& p) { return p.dropped; });
   const auto reduced = std::count_if(pairs.begin(), pairs.end(), [](const RobotPair& p) { return p.reduced; });
   std::printf("%s, %zu robot pairs: %zu count, %zu of these reduced, %zu dropped\n",
-              problem.robot->has_srdf ? "with an SRDF" : "without an SRDF", pairs.size(),
+              problem.model->has_srdf ? "with an SRDF" : "without an SRDF", pairs.size(),
               pairs.size() - static_cast<std::size_t>(dropped), static_cast<std::size_t>(reduced),
               static_cast<std::size_t>(dropped));
   std::size_t width = 9;

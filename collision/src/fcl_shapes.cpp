@@ -52,7 +52,6 @@ const fcl::BVHModel<fcl::RSSd>& MeshModel::distance_tree() const {
 }
 
 std::shared_ptr<const MeshModel> MeshStore::model(const MeshPtr& mesh) {
-  const std::lock_guard lock(mutex_);
   auto& model = models_[mesh.get()];
   if (!model) model = std::make_shared<const MeshModel>(mesh);
   return model;

@@ -46,13 +46,12 @@ class MeshModel {
   mutable fcl::BVHModel<fcl::RSSd> distance_tree_;
 };
 
-/// Models by mesh, so that one file serves many links, and one world's trees the next world. Safe from many threads.
+/// Models by mesh, so that one file serves many links, and one world's trees the next world.
 class MeshStore {
  public:
   std::shared_ptr<const MeshModel> model(const MeshPtr& mesh);
 
  private:
-  std::mutex mutex_;
   std::map<const TriangleMesh*, std::shared_ptr<const MeshModel>> models_;  // a model keeps its mesh alive
 };
 

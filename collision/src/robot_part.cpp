@@ -102,6 +102,7 @@ RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem
     candidates_.push_back({pair, !robot.has_srdf || attached(pair.a) || attached(pair.b)});
   medians_.assign(candidates_.size(), kFar);
   drop_always_touching(budget);
+  find_medians(far_enough(problem.limits), budget);
 }
 
 void RobotPart::drop_always_touching(const Budget& budget) {
@@ -144,26 +145,33 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   return *middle;
 }
 
-std::vector<RobotPair> RobotPart::pairs(const Limits& limits, const Budget& budget) const {
-  return pairs(limits, far_enough(limits), budget);
-}
-std::vector<RobotPair> RobotPart::pairs_with_medians(const Limits& limits) const {
-  return pairs(limits, kFar, {});
+std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<const RobotPart>& part, const Limits& limits,
+                                                       const Budget& budget) {
+  if (far_enough(limits) <= part->medians_up_to_) return part;
+  auto more = std::make_shared<RobotPart>(*part);
+  more->find_medians(far_enough(limits), budget);
+  return more;
 }
 
-std::vector<RobotPair> RobotPart::pairs(const Limits& limits, double far, const Budget& budget) const {
-  const std::lock_guard lock(mutex_);
-  if (far > medians_up_to_) {
-    const Span span("medians of robot pairs");
-    std::vector<std::array<Pose, kDof + 1>> samples;
-    Samples random(chain);
-    for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (!candidates_[k].sampled || candidates_[k].dropped || medians_[k] < medians_up_to_) continue;
-      while (samples.size() < kMedianSamples) samples.push_back(random.next());
-      medians_[k] = median(candidates_[k].pair, far, samples, budget);
-    }
-    medians_up_to_ = far;
+void RobotPart::find_medians(double far, const Budget& budget) {
+  const Span span("medians of robot pairs");
+  std::vector<std::array<Pose, kDof + 1>> samples;
+  Samples random(chain);
+  for (std::size_t k = 0; k < candidates_.size(); ++k) {
+    if (!candidates_[k].sampled || candidates_[k].dropped || medians_[k] < medians_up_to_) continue;
+    while (samples.size() < kMedianSamples) samples.push_back(random.next());
+    medians_[k] = median(candidates_[k].pair, far, samples, budget);
   }
+  medians_up_to_ = far;
+}
+
+std::vector<RobotPair> RobotPart::pairs_with_medians(const Limits& limits) const {
+  RobotPart all = *this;
+  all.find_medians(kFar, {});
+  return all.pairs(limits);
+}
+
+std::vector<RobotPair> RobotPart::pairs(const Limits& limits) const {
   std::vector<RobotPair> pairs;
   pairs.reserve(candidates_.size());
   for (std::size_t k = 0; k < candidates_.size(); ++k) {

@@ -46,7 +46,7 @@ struct World::Impl {
     Pose pose;  ///< at q = 0, base frame
   };
   std::shared_ptr<const RobotPart> robot;  // shared: the worlds of one robot
-  std::shared_ptr<MeshStore> meshes;       // shared: the same
+  MeshStore meshes;
   Limits limits;
   std::vector<RobotPair> robot_pairs;
   std::vector<Body> bodies;
@@ -56,12 +56,12 @@ struct World::Impl {
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
 
-  Impl(std::shared_ptr<const RobotPart> robot_part, std::shared_ptr<MeshStore> store, const std::vector<SceneObject>& scene,
-       const Limits& of_problem, const Budget& budget, double forgiven, const Impl* like = nullptr)
+  Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store, const std::vector<SceneObject>& scene, const Limits& of_problem,
+       const Budget& budget, double forgiven, const Impl* like = nullptr)
       : robot(std::move(robot_part)),
         meshes(std::move(store)),
         limits(of_problem),
-        robot_pairs(robot->pairs(limits, budget)),
+        robot_pairs(robot->pairs(limits)),
         warnings(robot->warnings()) {
     const Span span("world");
     for (const RobotPair& p : robot_pairs)
@@ -71,7 +71,7 @@ struct World::Impl {
     for (const SceneObject& object : scene) {
       budget.poll();
       const Body* known = like ? like->scene_body(object.shape) : nullptr;
-      add(object.name, {known ? known->shape : make_fcl_shape(object.shape, *meshes), 0, object.pose});
+      add(object.name, {known ? known->shape : make_fcl_shape(object.shape, meshes), 0, object.pose});
       const int index = static_cast<int>(bodies.size()) - 1;
       for (std::size_t i = 0; i < robot->bodies.size(); ++i) {
         const RobotBody& body = robot->bodies[i];
@@ -91,7 +91,7 @@ struct World::Impl {
       own[kMotionIndex] = own[kMidpointIndex] = -std::numeric_limits<double>::infinity();
     }
     warn_of_pairs();
-    warm_up();
+    [[maybe_unused]] static const bool warm = warm_up();
   }
 
   /// What is asked of one of `pairs`, m. The environment comes first, and all of it keeps the same.
@@ -111,6 +111,20 @@ struct World::Impl {
   [[nodiscard]] const RobotPair* robot_pair(const BodyPair& p) const {
     if (p.b >= static_cast<int>(robot->bodies.size())) return nullptr;
     return &*std::find_if(robot_pairs.begin(), robot_pairs.end(), [&](const RobotPair& x) { return x.pair == p; });
+  }
+
+  void keep_pairs_of(const std::vector<int>& objects) {
+    const int robot_bodies = static_cast<int>(robot->bodies.size());
+    const auto all = std::move(pairs);
+    const auto all_keeps = std::move(keeps);
+    pairs.clear();
+    keeps.clear();
+    near.clear();
+    for (std::size_t k = 0; k < all.size(); ++k)
+      if (std::find(objects.begin(), objects.end(), all[k].b - robot_bodies) != objects.end()) {
+        pairs.push_back(all[k]);
+        keeps.push_back(all_keeps[k]);
+      }
   }
 
   void warn_of_pairs() {
@@ -156,27 +170,31 @@ struct World::Impl {
   }
 
   /// FCL builds its dispatch tables at the first call, without promising that two threads may do so at once.
-  static void warm_up() {
+  static bool warm_up() {
     MeshStore none;
     const FclShape ball = make_fcl_shape(Sphere{1}, none);
     const Pose origin = Pose::Identity();
     PairTest test;
     static_cast<void>(test.below({&ball, &origin}, {&ball, &origin}, 0));
     static_cast<void>(test.clearance({&ball, &origin}, {&ball, &origin}));
+    return true;
   }
 };
 
 World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
-  auto meshes = std::make_shared<MeshStore>();
-  auto part = std::make_shared<const RobotPart>(robot, arm, problem, *meshes, budget);
+  MeshStore meshes;
+  auto part = std::make_shared<const RobotPart>(robot, arm, problem, meshes, budget);
   impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits, budget, 0);
 }
 World::World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget)
     : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, scene, like.impl_->limits, budget, 0, like.impl_.get())) {
 }
 World::World(const World& like, const Problem& problem, const Budget& budget, double forgiven)
-    : impl_(std::make_unique<Impl>(like.impl_->robot, like.impl_->meshes, problem.scene, problem.limits, budget, forgiven,
-                                   like.impl_.get())) {}
+    : impl_(std::make_unique<Impl>(RobotPart::for_limits(like.impl_->robot, problem.limits, budget), like.impl_->meshes,
+                                   problem.scene, problem.limits, budget, forgiven, like.impl_.get())) {}
+World::World(const World& whole, const std::vector<int>& objects) : impl_(std::make_unique<Impl>(*whole.impl_)) {
+  impl_->keep_pairs_of(objects);
+}
 World::~World() = default;
 World::World(World&&) noexcept = default;
 World& World::operator=(World&&) noexcept = default;

@@ -116,15 +116,15 @@ bool named(const std::vector<AttachedBody>& attached, const std::string& name) {
 }
 
 void validate_robot(const Field& root, const Problem& problem) {
-  if (!problem.robot) fail(root("robot"), "is null", "a robot model, as io::load_robot gives it");
+  if (!problem.model) fail(root("model"), "is null", "a robot model, as io::load_robot gives it");
   pose(root("tool"), problem.tool);
   for (const auto& [joint, position] : problem.hold) number(root("hold")(joint.c_str()), position, Range::kFinite);
   names(root, "attached", problem.attached);
   for (std::size_t k = 0; k < problem.attached.size(); ++k) {
     const AttachedBody& body = problem.attached[k];
     const Field field = root("attached", k);
-    if (problem.robot->find_link(body.name) >= 0) fail(field("name"), "'" + body.name + "' is a link", "a name of its own");
-    if (problem.robot->find_link(body.link) < 0) fail(field("link"), "unknown link '" + body.link + "'", "a link of the robot");
+    if (problem.model->find_link(body.name) >= 0) fail(field("name"), "'" + body.name + "' is a link", "a name of its own");
+    if (problem.model->find_link(body.link) < 0) fail(field("link"), "unknown link '" + body.link + "'", "a link of the robot");
     shape(field("shape"), body.shape);
     pose(field("pose"), body.pose);
   }
@@ -140,7 +140,7 @@ void validate_scene(const Field& root, const Problem& problem) {
     shape(field("shape"), object.shape);
     pose(field("pose"), object.pose);
     for (std::size_t i = 0; i < object.allow.size(); ++i)
-      if (problem.robot->find_link(object.allow[i]) < 0 && !named(problem.attached, object.allow[i]))
+      if (problem.model->find_link(object.allow[i]) < 0 && !named(problem.attached, object.allow[i]))
         fail(field("allow", i), "unknown body '" + object.allow[i] + "'", "a link of the robot or the name of an attached body");
   }
   for (std::size_t k = 0; k < problem.vary.size(); ++k) {

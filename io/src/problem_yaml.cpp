@@ -115,11 +115,11 @@ class ProblemReader {
 
   std::string link_name(const YamlValue& value) const {
     const std::string name = value.text();
-    if (problem_.robot->find_link(name) >= 0) return name;
+    if (problem_.model->find_link(name) >= 0) return name;
     std::vector<std::string> known;
-    for (const Link& link : problem_.robot->links) known.push_back(link.name);
+    for (const Link& link : problem_.model->links) known.push_back(link.name);
     value.fail("unknown link '" + name + "', nearest is '" + nearest_name(name, known) + "'",
-               "a link of " + problem_.robot->source);
+               "a link of " + problem_.model->source);
   }
 
   [[nodiscard]] bool is_attached(const std::string& name) const {
@@ -138,7 +138,7 @@ class ProblemReader {
     const auto packages = read_packages(section);
     const std::shared_ptr<RobotModel> robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages); });
     if (srdf) with_key(*srdf, [&] { load_srdf(resolve(*srdf), *robot); });
-    problem_.robot = robot;
+    problem_.model = robot;
     problem_.base_link = link_name(base);
     problem_.tip_link = link_name(tip);
     if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section(kPoseKeys));
@@ -164,15 +164,15 @@ class ProblemReader {
 
   [[nodiscard]] std::vector<std::string> joint_names() const {
     std::vector<std::string> names;
-    for (const Joint& joint : problem_.robot->joints) names.push_back(joint.name);
+    for (const Joint& joint : problem_.model->joints) names.push_back(joint.name);
     return names;
   }
 
   void read_hold(const YamlValue& value) {
     for (const auto& [joint, position] : value.entries()) {
-      if (problem_.robot->find_joint(joint) < 0)
+      if (problem_.model->find_joint(joint) < 0)
         position.fail("unknown joint '" + joint + "', nearest is '" + nearest_name(joint, joint_names()) + "'",
-                      "a joint of " + problem_.robot->source);
+                      "a joint of " + problem_.model->source);
       problem_.hold[joint] = position.number(Range::kCoordinate);
     }
   }
@@ -182,7 +182,7 @@ class ProblemReader {
     AttachedBody body;
     const YamlValue name = section.require("name", "a name");
     body.name = name.name();
-    if (problem_.robot->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
+    if (problem_.model->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
     if (is_attached(body.name)) name.fail("'" + body.name + "' is attached twice", "a name of its own");
     body.shape = shape(section);
     body.pose = pose(section);
@@ -243,7 +243,7 @@ class ProblemReader {
   }
 
   std::string body_name(const YamlValue& value) const {
-    if (problem_.robot->find_link(value.text()) < 0 && !is_attached(value.text()))
+    if (problem_.model->find_link(value.text()) < 0 && !is_attached(value.text()))
       value.fail("unknown body '" + value.text() + "'", "a link of the robot or the name of an attached body");
     return value.text();
   }

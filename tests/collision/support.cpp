@@ -208,7 +208,7 @@ RobotModel near_wrist_arm(double gap) {
 Problem problem_for(const RobotModel& robot) {
   Problem problem;
   problem.source = "test";
-  problem.robot = std::shared_ptr<const RobotModel>(std::shared_ptr<void>(), &robot);
+  problem.model = std::shared_ptr<const RobotModel>(std::shared_ptr<void>(), &robot);
   problem.base_link = "l0";
   problem.tip_link = "l7";
   return problem;

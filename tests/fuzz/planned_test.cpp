@@ -29,7 +29,7 @@ TEST(Fuzz, WhatIsReadCanBePlanned) {
   };
   const auto plan_robot = [&](const std::string& text) {
     Problem problem = io::load_problem(folder.path() / "problems" / "good.yaml");
-    problem.robot = io::load_robot(folder.write("robot.urdf", text));
+    problem.model = io::load_robot(folder.write("robot.urdf", text));
     plan_coarsely(problem);
   };
   fuzz("Fuzz planned",

@@ -10,7 +10,7 @@ TEST(ProblemFile, Defaults) {
   const Problem problem = load_problem(file);
   const Problem fresh;
   EXPECT_EQ(problem.source, file.string());
-  EXPECT_EQ(problem.robot->links.size(), 9u);
+  EXPECT_EQ(problem.model->links.size(), 9u);
   EXPECT_EQ(problem.base_link, "base_link");
   EXPECT_EQ(problem.tip_link, "link_7");
   EXPECT_TRUE(problem.tool.isApprox(Pose::Identity()));
@@ -58,7 +58,7 @@ TEST(ProblemFile, EveryKey) {
       {"cost", "{metric: time, weights: [1, 2, 3, 4, 5, 6, 0]}"},
       {"vary", "[{object: door, xyz: [0.1, 0.2, 0.3]}, {object: ball, rpy: [0, 0, 1]}]"},
   });
-  EXPECT_TRUE(problem.robot->has_srdf);
+  EXPECT_TRUE(problem.model->has_srdf);
   EXPECT_EQ(problem.tool.translation(), Vector3d(0, 0, 0.1));
   const Matrix3d tool = (Eigen::AngleAxisd(0.3, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.2, Vector3d::UnitY()) *
                          Eigen::AngleAxisd(0.1, Vector3d::UnitX()))

@@ -357,7 +357,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"clearance",
        [](Good& good, Random&) -> std::string {
-         if (!good.problem.robot->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
          const World world(good.robot->world(), good.problem.scene);
          World::Query query(world);
          double least = 1e9;
@@ -369,7 +369,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"edge_clearance",  // a move begins nearer than that, so its first midpoint is too near by what it has moved there, at most h
        [](Good& good, Random&) -> std::string {
-         if (!good.problem.robot->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
          const World world(good.robot->world(), good.problem.scene);
          World::Query query(world);
          double least = 1e9;
@@ -380,7 +380,7 @@ const std::vector<std::pair<std::string, Mutation>>& mutations() {
        }},
       {"contact",
        [=](Good& good, Random& random) -> std::string {
-         if (!good.problem.robot->has_srdf) return "";  // else the pairs that count depend on clearances
+         if (!good.problem.model->has_srdf) return "";  // else the pairs that count depend on clearances
          const auto G = good.chain().displacements(good.rows[some_row(good, random)].q);
          const auto& bodies = good.robot->world().bodies();
          const RobotBody& body = bodies[static_cast<std::size_t>(random.below(static_cast<int>(bodies.size())))];

@@ -197,11 +197,11 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
 TEST(Diagnosis, EndsAtAFixedCountAndSaysSo) {
   Problem problem = leaving(0.8);
   problem.resolution = {.ds = 2e-5, .dphi = 1.0};
-  auto model = std::make_shared<RobotModel>(*problem.robot);  // with a mesh, whose questions count for more
+  auto model = std::make_shared<RobotModel>(*problem.model);  // with a mesh, whose questions count for more
   const auto shaped =
       std::find_if(model->links.begin(), model->links.end(), [](const Link& link) { return !link.collision.empty(); });
   shaped->collision[0].shape = box_mesh(Vector3d::Constant(0.05));
-  problem.robot = model;
+  problem.model = model;
   const Laid laid(problem);
   const Diagnosis first = laid.diagnose_from(0), again = laid.diagnose_from(0);
   EXPECT_FALSE(first.complete);

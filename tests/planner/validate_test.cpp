@@ -163,7 +163,7 @@ std::vector<Case> all_cases() {
         cases, "scene[4].shape", [=](Problem& p) -> double& { return mesh(p)->vertices[5][k]; }, none);
   for (const int corner : {-1, 8, std::numeric_limits<int>::max()})
     cases.push_back({"scene[4].shape", [=](Problem& p) { mesh(p)->triangles[3][1] = corner; }});
-  cases.insert(cases.end(), {{"robot", [](Problem& p) { p.robot = nullptr; }},
+  cases.insert(cases.end(), {{"model", [](Problem& p) { p.model = nullptr; }},
                              {"scene[4].shape", [](Problem& p) { p.scene[4].shape = MeshPtr(); }},
                              {"scene[1].name", [](Problem& p) { p.scene[1].name = ""; }},
                              {"scene[1].name", [](Problem& p) { p.scene[1].name = "box"; }},
@@ -285,7 +285,7 @@ TEST(Validate, RobotModelsThatAreNone) {
     auto bad = std::make_shared<RobotModel>(good);
     breaks(*bad);
     Problem problem = full_problem();
-    problem.robot = bad;
+    problem.model = bad;
     expect_message(message_of([&] { PreparedRobot robot(problem); }), field);
   }
 }
@@ -295,7 +295,7 @@ TEST(PreparedRobot, IsTiedToWhatItWasMadeOf) {
   const Problem good = full_problem();
   const PreparedRobot robot(good);
   const std::pair<const char*, std::function<void(Problem&)>> others[] = {
-      {"robot (the model)", [](Problem& p) { p.robot = std::make_shared<RobotModel>(*p.robot); }},
+      {"model", [](Problem& p) { p.model = std::make_shared<RobotModel>(*p.model); }},
       {"base_link", [](Problem& p) { p.base_link = p.path_frame = "link_1"; }},
       {"tip_link", [](Problem& p) { p.tip_link = "link_7"; }},
       {"tool", [](Problem& p) { p.tool.translation().z() += 1e-9; }},

@@ -162,7 +162,7 @@ inline Config random_config(const Chain& chain, Random& random) {
 inline Problem problem_for(const TestRobot& robot) {
   Problem problem;
   problem.source = robot.name;
-  problem.robot = robot.model;
+  problem.model = robot.model;
   problem.base_link = problem.path_frame = robot.base_link;
   problem.tip_link = robot.tip_link;
   return problem;

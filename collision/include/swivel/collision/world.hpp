@@ -115,12 +115,14 @@ class World {
   /// Which pairs count: of the robot those of RobotPair that are not dropped; of robot and scene those that move and are not
   /// allowed to touch. Throws InputError for a mesh without triangles, and Stopped.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
-  /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that a
-  /// world of this family has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on
-  /// one `like`.
+  /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that it
+  /// has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
   World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
   /// The same with the problem's scene and limits. Pairs may be nearer by `forgiven` than they should, m, but not touch.
   World(const World& like, const Problem& problem, const Budget& budget = {}, double forgiven = 0);
+  /// The same bodies, but of its pairs only those with one of these scene objects, by their number in the scene: what a change of
+  /// these objects may change.
+  World(const World& whole, const std::vector<int>& objects);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;

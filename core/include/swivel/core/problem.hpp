@@ -77,21 +77,29 @@ struct Vary {
   Vector3d rpy = Vector3d::Zero();
 };
 
-/// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.
-struct Problem {
-  std::string source;                       ///< problem file, for messages
-  std::shared_ptr<const RobotModel> robot;  // shared: every episode and planner reads the same model
+/// The arm that plans: a chain of a model, and what it carries.
+struct Robot {
+  std::shared_ptr<const RobotModel> model;  // shared: every episode and planner reads the same one
   std::string base_link, tip_link;
   Pose tool = Pose::Identity();        ///< tool frame in tip_link
-  std::map<std::string, double> hold;  ///< joint name -> position
+  std::map<std::string, double> hold;  ///< joint name -> position of joints of the model that the chain leaves out
   std::vector<AttachedBody> attached;
-  std::string path_frame;           ///< base_link or the name of a scene object
+};
+
+/// What the tool is to do, and within which limits.
+struct Task {
+  std::string path_frame;           ///< base_link (also empty) or the name of a scene object
   std::vector<Waypoint> waypoints;  ///< in path_frame
-  std::vector<SceneObject> scene;
   Resolution resolution;
   Limits limits;
-  std::optional<Config> start;
+  std::optional<Config> start;  ///< joints to begin with, rad
   Cost cost;
+};
+
+/// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.
+struct Problem : Robot, Task {
+  std::string source;  ///< problem file, for messages
+  std::vector<SceneObject> scene;
   std::vector<Vary> vary;
 };
 

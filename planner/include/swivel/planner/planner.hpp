@@ -71,16 +71,7 @@ class PreparedRobot {
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
-  /// What of a problem goes into the members below.
-  struct Basis {
-    explicit Basis(const Problem& problem);
-    std::shared_ptr<const RobotModel> model;  // shared: as Problem holds it; kept, so that no other takes its address
-    std::string base_link, tip_link;
-    Pose tool;
-    std::map<std::string, double> hold;
-    std::vector<AttachedBody> attached;
-  };
-  Basis basis_;
+  Robot basis_;  // holds the model, so that no other takes its address
   ArmModel arm_;
   SrsArm srs_;
   World world_;
