@@ -107,7 +107,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
 
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
-  options.progress = [&](const std::string& phrase) { progress.show(phrase); };
+  options.progress = [&](const Progress& now) { progress.show(now); };
   const bool draws = arguments.map || !arguments.map_svg.empty() || !arguments.report.empty();
   if (!arguments.report.empty()) require_pages();
   if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
@@ -119,20 +119,18 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   outputs->add("--map-svg", arguments.map_svg);
   outputs->add("--trace", arguments.trace);
   outputs->add("--json", arguments.json);
-  SearchRecord record;
-  if (draws) options.record = &record;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
-  const Budget budget(options.timeout_s, options.cancel);  // of what is drawn; plan() begins with it
-  PlanResult result = plan(problem, options);
+  const Budget budget = options.budget();  // of what is drawn; plan() begins with it
+  Planner planner(problem);
+  PlanResult result = planner.plan(options);
   result.time_ms["load"] = load;
   std::optional<LatticeMap> map;
   std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
     try {
-      progress.show("drawing");
-      const PreparedRobot robot(problem, budget);
-      map = make_map(robot, problem, record, arguments.full_map, budget);
-      if (!arguments.report.empty()) page = to_page(robot, problem, record, *map, io::to_json(result), budget);
+      const PlanView view = planner.view();
+      map = make_map(view, arguments.full_map, budget);
+      if (!arguments.report.empty()) page = to_page(view, *map, io::to_json(result), budget);
     } catch (const Stopped&) {
       map.reset();
       result.warnings.push_back("stopped before the map was drawn: there is none, and no report");

@@ -7,6 +7,8 @@
 #include <string>
 #include <thread>
 
+#include "swivel/core/budget.hpp"
+
 namespace swivel::cli {
 
 /// One line on a terminal for work that takes more than half a second, redrawn five times a second from a thread of its own, so
@@ -20,6 +22,11 @@ class ProgressLine {
     const std::lock_guard lock(mutex_);
     phrase_ = phrase;
   }
+  void show(const Progress& progress) {
+    const std::lock_guard lock(mutex_);
+    progress_ = progress;
+    phrase_.clear();
+  }
   /// Ends the line; nothing is shown afterwards.
   void clear() { painter_ = {}; }
 
@@ -31,13 +38,23 @@ class ProgressLine {
     for (auto wait = std::chrono::milliseconds(500); !wake_.wait_for(lock, stop, wait, [&] { return stop.stop_requested(); });
          wait = std::chrono::milliseconds(200)) {
       std::fprintf(stderr, "\r\033[K%.1f s: %s", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                   phrase_.c_str());
+                   phrase().c_str());
       shown = true;
     }
     if (shown) std::fprintf(stderr, "\r\033[K");
   }
 
+  [[nodiscard]] std::string phrase() const {
+    if (!phrase_.empty()) return phrase_;
+    std::string text = to_string(progress_.stage);
+    if (progress_.of > 0)
+      text += ", " + std::to_string(progress_.done) + " of " + std::to_string(progress_.of) +
+              (progress_.stage == Stage::kMeasuring ? " rows" : " layers");
+    return text;
+  }
+
   std::mutex mutex_;
+  Progress progress_;
   std::condition_variable_any wake_;
   std::string phrase_ = "planning";
   std::jthread painter_;

@@ -56,8 +56,8 @@ struct World::Impl {
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
 
-  Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store, const std::vector<SceneObject>& scene, const Limits& of_problem,
-       const Budget& budget, double forgiven, const Impl* like = nullptr)
+  Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store, const std::vector<SceneObject>& scene,
+       const Limits& of_problem, const Budget& budget, double forgiven, const Impl* like = nullptr)
       : robot(std::move(robot_part)),
         meshes(std::move(store)),
         limits(of_problem),
@@ -181,8 +181,11 @@ struct World::Impl {
   }
 };
 
-World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
-  MeshStore meshes;
+World::World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget)
+    : World(MeshStore(), robot, arm, problem, budget) {}
+World::World(const World& like, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget)
+    : World(like.impl_->meshes, robot, arm, problem, budget) {}
+World::World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget) {
   auto part = std::make_shared<const RobotPart>(robot, arm, problem, meshes, budget);
   impl_ = std::make_unique<Impl>(std::move(part), std::move(meshes), problem.scene, problem.limits, budget, 0);
 }

@@ -117,7 +117,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   reach_.reserve(m);
   circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {
-    if (i % 64 == 0) budget.poll();
+    if (i % 64 == 0) budget.poll(Stage::kLattice, i, layers());
     const Pose& tool = path.layer(i).tool;
     planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
     reach_.push_back(reach_status(arm, planes_.back().reach));

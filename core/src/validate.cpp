@@ -230,6 +230,11 @@ void validate(const Problem& problem) {
   validate_numbers(root, problem);
 }
 
+void validate(const Pose& object_pose, const std::string& object) {
+  const Field root{nullptr, object.c_str()};
+  pose(root("pose"), object_pose);
+}
+
 void validate(const RobotModel& robot) {
   const Field root{nullptr, robot.source.empty() ? "robot" : robot.source.c_str()};
   names(root, "links", robot.links);

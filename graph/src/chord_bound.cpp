@@ -100,6 +100,7 @@ class Chords {
 
   /// The bounds of a layer's nodes from those of the layer given before; zeros in the first. False where none is reached.
   bool advance(int layer, float* row) {
+    budget_.tell(Stage::kBounds, layer, lattice_.layers());
     std::swap(circles_[0], circles_[1]);
     load(layer);
     const bool first = layer == 0;

@@ -6,12 +6,41 @@
 
 namespace swivel {
 
+bool CostToGo::restart(const Budget& budget) {
+  budget_ = budget;
+  verdicts_.clear();
+  ik_nodes_ = edges_ = 0;
+  if (unremoved_ == Unremoved::kSaved) restore();
+  return unremoved_ != Unremoved::kUnknown;
+}
+
+void CostToGo::save_unremoved() {
+  if (unremoved_ != Unremoved::kPresent) return;
+  save();
+  unremoved_ = Unremoved::kSaved;
+}
+
+void CostToGo::sweep(int goal_layer) {
+  save_unremoved();
+  goal_ = goal_layer;
+  compute(goal_layer);
+  if (unremoved_ == Unremoved::kUnknown && goal_ == lattice().layers() - 1 && verdicts_.removed() == 0)
+    unremoved_ = Unremoved::kPresent;
+}
+
+void CostToGo::repair() {
+  save_unremoved();
+  compute_removals();
+}
+
 void CostToGo::remove_edge(int layer, int a, int b) {
   verdicts_.remove_edge(layer, a, b, lattice().edge_cost(lattice().delta(config(layer, a), config(layer + 1, b))));
 }
 
-std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent, const Budget& budget) {
-  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice)) return std::make_unique<GridCostToGo>(*grid, extent, budget);
+std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent, const Budget& budget,
+                                          std::unique_ptr<CostToGo> retired) {
+  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
+    return std::make_unique<GridCostToGo>(*grid, extent, budget, dynamic_cast<GridCostToGo*>(retired.get()));
   return std::make_unique<ExplicitCostToGo>(lattice, budget);
 }
 

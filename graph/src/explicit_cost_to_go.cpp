@@ -107,21 +107,20 @@ void ExplicitCostToGo::settle(int layer, Values& out) {
   }
 }
 
-void ExplicitCostToGo::sweep(int goal_layer) {
+void ExplicitCostToGo::compute(int goal_layer) {
   const Span span("sweep");
-  goal_ = goal_layer;
   verdicts_.pending.clear();
-  for (int layer = lattice_->layers() - 1; layer > goal_; --layer) {
+  for (int layer = lattice_->layers() - 1; layer > goal_layer; --layer) {
     Values& values = value_[static_cast<std::size_t>(layer)];
     std::fill(values.begin(), values.end(), kUnreachable);
   }
-  for (int layer = goal_; layer >= 0; --layer) {
-    budget_.poll();
+  for (int layer = goal_layer; layer >= 0; --layer) {
+    budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
     settle(layer, value_[static_cast<std::size_t>(layer)]);
   }
 }
 
-void ExplicitCostToGo::repair() {
+void ExplicitCostToGo::compute_removals() {
   const Span span("repair");
   bool changed = false;  // the layer after
   Values settled;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "swivel/graph/cost_to_go.hpp"
@@ -14,17 +15,20 @@ class ExplicitCostToGo final : public CostToGo {
   explicit ExplicitCostToGo(const Lattice& lattice, const Budget& budget = {});
 
   [[nodiscard]] const Lattice& lattice() const override { return *lattice_; }
-  void sweep(int goal_layer) override;
   [[nodiscard]] double at(int layer, int slot) const override {
     return value_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
   }
   [[nodiscard]] double best() const override;
-  void repair() override;
   [[nodiscard]] int deepest_reachable() override;
   [[nodiscard]] Config config(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:
+  void compute(int goal_layer) override;
+  void compute_removals() override;
+  void save() override { saved_ = {goal_, value_}; }
+  void restore() override { std::tie(goal_, value_) = saved_; }
+
   using Values = std::vector<double>;  // [slot]
   /// Least edge cost plus value over `others`, for every node of a layer; `step_layer` numbers the step between the two.
   void relax(int step_layer, int layer, int other_layer, const Values& others, Values& out);
@@ -38,7 +42,8 @@ class ExplicitCostToGo final : public CostToGo {
   const Lattice* lattice_;
   std::vector<std::array<Values, kDof>> joints_;  // [layer][joint][slot]
   std::vector<Values> value_;                     // [layer]
-  std::array<Values, kDof> around_;               // scratch of relax: partners, once around and on
+  std::tuple<int, std::vector<Values>> saved_;
+  std::array<Values, kDof> around_;  // scratch of relax: partners, once around and on
   Values around_value_;
 };
 

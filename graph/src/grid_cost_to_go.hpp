@@ -19,21 +19,20 @@ namespace swivel {
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they
 /// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
-/// nodes: there they are kept, 40 bytes a node of the layers that were visited; up to 64 MB of that stays with the process for the
-/// next search.
+/// nodes: there they are kept, 40 bytes a node of the layers that were visited.
 class GridCostToGo final : public CostToGo {
  public:
-  explicit GridCostToGo(const SrsLattice& lattice, Extent extent = Extent::kWhole, const Budget& budget = {});
+  /// Takes over what `retired` had allocated; null is allowed.
+  explicit GridCostToGo(const SrsLattice& lattice, Extent extent = Extent::kWhole, const Budget& budget = {},
+                        GridCostToGo* retired = nullptr);
   ~GridCostToGo() override;
 
   [[nodiscard]] const SrsLattice& lattice() const override { return *lattice_; }
-  void sweep(int goal_layer) override;
   [[nodiscard]] double at(int layer, int slot) const override {
     const int j = lattice_->angle_of(slot);
     return cells_[cell_[cell_index(layer, lattice_->label_of(slot), j / kChunk)]][static_cast<std::size_t>(j % kChunk)];
   }
   [[nodiscard]] double best() const override;
-  void repair() override;
   [[nodiscard]] int deepest_reachable() override;
   [[nodiscard]] Config config(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
@@ -41,8 +40,12 @@ class GridCostToGo final : public CostToGo {
  private:
   static constexpr int kChunk = 8;  // angles: a cache line of costs, one vector of the widest unit
 
+  void compute(int goal_layer) override;
+  void compute_removals() override;
+  void save() override;
+  void restore() override;
+
   struct Joints;
-  class Spare;
   struct Interval;
   struct Part;
   struct Middles;
@@ -100,7 +103,14 @@ class GridCostToGo final : public CostToGo {
   double limit_ = kUnreachable;
   std::vector<std::uint32_t> cell_;  // [layer][label][chunk] -> cells_; 0: unreachable
   std::vector<Cell> cells_;
-  std::vector<std::unique_ptr<Joints>> cache_;  // by layer; empty where joints are not kept
+  struct {
+    int goal = 0;
+    double limit = kUnreachable;
+    std::vector<std::uint32_t> cell;
+    std::vector<Cell> cells;
+  } saved_;
+  std::vector<std::unique_ptr<Joints>> cache_;   // by layer; empty where joints are not kept
+  std::vector<std::unique_ptr<Joints>> spares_;  // of a search before, for the cache
   std::array<std::unique_ptr<Block>, 2> block_;
   std::vector<int> columns_;  // scratch of mark_reach
   LayerNodes scratch_;

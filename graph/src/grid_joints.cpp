@@ -1,51 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <mutex>
 
 #include "grid_parts.hpp"
 
 namespace swivel {
 
-/// Joints that a search had kept, for the next one: pages fresh from the system took a quarter of a plan that meets obstacles.
-class GridCostToGo::Spare {
- public:
-  static Spare& of_process() {
-    static Spare spare;
-    return spare;
-  }
-  std::unique_ptr<Joints> take() {
-    const std::lock_guard lock(mutex_);
-    if (joints_.empty()) return std::make_unique<Joints>();
-    std::unique_ptr<Joints> joints = std::move(joints_.back());
-    joints_.pop_back();
-    bytes_ -= joints->nodes.bytes();
-    return joints;
-  }
-  void give(std::unique_ptr<Joints> joints) {
-    constexpr std::size_t kMost = 64 << 20;
-    const std::lock_guard lock(mutex_);
-    if (bytes_ + joints->nodes.bytes() > kMost) return;
-    bytes_ += joints->nodes.bytes();
-    joints->layer = -1;
-    joints_.push_back(std::move(joints));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Joints>> joints_;
-  std::size_t bytes_ = 0;
-};
-
-GridCostToGo::~GridCostToGo() {
-  for (auto& joints : cache_)
-    if (joints) Spare::of_process().give(std::move(joints));
-}
-
 GridCostToGo::Joints& GridCostToGo::joints(int layer, Block& block) {
   Joints* joints = &block.own;
   if (!cache_.empty()) {
     auto& kept = cache_[static_cast<std::size_t>(layer)];
-    if (!kept) kept = Spare::of_process().take();
+    if (!kept && !spares_.empty()) {
+      kept = std::move(spares_.back());
+      kept->layer = -1;
+      spares_.pop_back();
+    }
+    if (!kept) kept = std::make_unique<Joints>();
     joints = kept.get();
   }
   if (joints->layer != layer) {

@@ -83,7 +83,7 @@ void GridCostToGo::relax_removed(Block& block) {
 
 // --- removals
 
-void GridCostToGo::repair() {
+void GridCostToGo::compute_removals() {
   // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 40 bytes a node.
   constexpr std::int64_t kMostKept = 1'000'000;
   if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));

@@ -22,11 +22,17 @@ void each(int count, const F& f) {
 
 }  // namespace
 
-GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget)
-    : CostToGo(lattice, budget),
-      lattice_(&lattice),
-      bounded_(extent == Extent::kBounded),
-      cell_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0) {
+GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
+    : CostToGo(lattice, budget), lattice_(&lattice), bounded_(extent == Extent::kBounded) {
+  if (retired) {
+    cell_ = std::move(retired->cell_);
+    cells_ = std::move(retired->cells_);
+    cells_.clear();
+    spares_ = std::move(retired->spares_);
+    for (auto& joints : retired->cache_)
+      if (joints) spares_.push_back(std::move(joints));
+  }
+  cell_.assign(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0);
   cells_.emplace_back().fill(kUnreachable);
   if (!lattice.arm().exact) cache_.resize(static_cast<std::size_t>(lattice.layers()));
   const std::size_t marks = mark(lattice.labels(), 0);
@@ -95,8 +101,20 @@ void GridCostToGo::load(int layer, const Marks& columns, Block& block) {
   settle(block);
 }
 
-void GridCostToGo::sweep(int goal_layer) {
-  goal_ = goal_layer;
+GridCostToGo::~GridCostToGo() = default;
+
+void GridCostToGo::save() {
+  saved_ = {goal_, limit_, cell_, cells_};
+}
+
+void GridCostToGo::restore() {
+  goal_ = saved_.goal;
+  limit_ = saved_.limit;
+  cell_ = saved_.cell;
+  cells_ = saved_.cells;
+}
+
+void GridCostToGo::compute(int goal_layer) {
   limit_ = kUnreachable;
   bool hopeless = false;
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
@@ -164,6 +182,7 @@ void GridCostToGo::sweep_once() {
       if (value <= limit_) cell_value(0, lattice_->start_slot()) = value;
       break;
     }
+    budget_.tell(Stage::kSweep, goal_ - layer, goal_);
     clear(layer, *here);
     mark_reach(layer, *next, *here);
     relax(layer, *here, *next);

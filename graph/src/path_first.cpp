@@ -44,11 +44,15 @@ class Search {
         options_(options),
         fail_first_(lattice_.layers()) {}
 
-  SearchOutcome run(SearchCounters& counters) {
+  SearchOutcome run(SearchCounters& counters, const Suspects& suspects) {
+    ask(std::span<const NodeQuestion>(suspects.nodes));
+    ask(std::span<const EdgeQuestion>(suspects.edges));
+    if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) togo_.repair();
     for (;;) {
       togo_.budget().poll();
       const SlotPath path = best_path(togo_, counters.expansions);
       if (path.empty()) return {};
+      counters.candidate = path;
       ++counters.iterations;
       fail_first_.next_round();
       const std::int64_t removed = verdicts_.removed();
@@ -78,7 +82,9 @@ class Search {
     for (int i = 0; i < layers; ++i)
       if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
     fail_first_.order(nodes);
+    const auto known = layers - static_cast<int>(nodes.size());
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
+      togo_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(first), layers);
       const std::vector<Failure> failed =
           ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
       for (const Failure& node : failed) fail_first_.failed(node.layer);
@@ -231,8 +237,9 @@ class Search {
 
 }  // namespace
 
-SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
-  return Search(cost_to_go, validity, options).run(counters);
+SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
+                         const Suspects& suspects) {
+  return Search(cost_to_go, validity, options).run(counters, suspects);
 }
 
 int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {

@@ -15,7 +15,7 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
   std::vector<NodeQuestion> questions;
   std::vector<NodeAnswer> answers;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
-    budget.poll();
+    budget.poll(Stage::kSearch, layer, lattice.layers());
     lattice.layer_nodes(layer, nodes);
     ik_nodes += lattice.slots(layer);
     questions.clear();

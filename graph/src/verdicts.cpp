@@ -13,10 +13,26 @@ Verdicts::Verdicts(const Lattice& lattice) {
   node_.resize(nodes, Verdict::kUnknown);
 }
 
+void Verdicts::clear() {
+  for (const std::size_t node : known_) node_[node] = Verdict::kUnknown;
+  known_.clear();
+  edge_.clear();
+  removed_edges_.clear();
+  pending.clear();
+  removed_ = 0;
+}
+
+void Verdicts::keep_node(int layer, int slot) {
+  const std::size_t node = index(layer, slot);
+  node_[node] = Verdict::kValid;
+  known_.push_back(node);
+}
+
 void Verdicts::remove_node(int layer, int slot) {
-  Verdict& verdict = node_[index(layer, slot)];
-  if (verdict == Verdict::kRemoved) return;
-  verdict = Verdict::kRemoved;
+  const std::size_t node = index(layer, slot);
+  if (node_[node] == Verdict::kRemoved) return;
+  node_[node] = Verdict::kRemoved;
+  known_.push_back(node);
   ++removed_;
   pending[layer].nodes.push_back(slot);
 }

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -43,8 +42,9 @@ class InOrder {
 
 void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
-  validate(problem);
-  robot.require_prepared_for(problem);
+  // Not owned: it outlives this call.
+  const std::shared_ptr<const PreparedRobot> prepared(std::shared_ptr<void>(), &robot);
+  const Planner checked(prepared, problem);
   if (problem.vary.empty() && options.episodes > 1)
     throw InputError(problem.source +
                      ": vary: missing, so that all episodes would be the same: allowed are a key vary, or one episode");
@@ -57,22 +57,25 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   single.threads = 1;
   single.evidence = {.tool_path_error = true};  // a column
   single.progress = nullptr;
-  single.record = nullptr;
 
   Executor executor(options.plan.threads, options.plan.backend);
+  std::vector<Planner> planners;  // by worker
+  for (int worker = 0; worker < executor.threads(); ++worker) planners.emplace_back(prepared, problem);
   InOrder in_order(options.skip, row_done);
   // Taken from a counter and not from the executor's index, which starts threads far apart: rows would wait for long, and be lost
   // when killed.
   std::atomic<std::uint64_t> next{options.skip};
   std::atomic<bool> stopped{false};
-  executor.for_each(static_cast<int>(size - options.skip), [&](int, int) {
-    if (stopped || (single.cancel != nullptr && *single.cancel)) return;
+  executor.for_each(static_cast<int>(size - options.skip), [&](int, int worker) {
+    if (stopped || single.budget().cancelled()) return;
     const std::uint64_t k = next++;
     const std::uint64_t episode = options.shard.episode(k);
     try {
       PlanResult result;
       try {
-        result = plan(robot, episode_problem(problem, options.seed, episode), single);
+        Planner& planner = planners[static_cast<std::size_t>(worker)];
+        planner.set_problem(episode_problem(problem, options.seed, episode));
+        result = planner.plan(single);
       } catch (const InputError&) {
         throw;
       } catch (const std::bad_alloc&) {

@@ -1,54 +1,97 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "collision_validity.hpp"
 
+#include <algorithm>
+
 #include "swivel/core/timeline.hpp"
+
 namespace swivel {
 
-CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
-                                     Executor& executor, int lanes, const Budget& budget, const Progress& progress)
-    : lattice_(&lattice), world_(&world), rule_(rule), executor_(&executor), budget_(budget), progress_(progress) {
-  for (int lane = 0; lane < lanes; ++lane) lanes_.emplace_back(world, certificates);
-  queries_.reserve(static_cast<std::size_t>(executor.threads()));
-  for (int worker = 0; worker < executor.threads(); ++worker) queries_.emplace_back(world, certificates);
+namespace {
+
+constexpr Fault kFaultBodies = Fault{1} << 31;
+Fault fault_of(const BodyPair& pair) {
+  return pair.a * kFaultBodies + pair.b;
+}
+BodyPair pair_of(Fault fault) {
+  return {static_cast<int>(fault / kFaultBodies), static_cast<int>(fault % kFaultBodies)};
 }
 
-void CollisionValidity::report() const {
-  if (progress_) progress_(std::to_string(nodes_checked_) + " nodes and " + std::to_string(edges_checked_) + " edges checked");
+}  // namespace
+
+CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
+                                     Certificates certificates, Executor& executor, int lanes, const Budget& budget,
+                                     ClearanceMemory* memory, const World* changed)
+    : lattice_(&lattice),
+      world_(&world),
+      rule_(rule),
+      changed_rule_{rule.radii, rule.h, {}},
+      edge_mode_(edge_mode),
+      certificates_(certificates),
+      executor_(&executor),
+      budget_(budget),
+      memory_(memory),
+      changed_(changed) {
+  lanes_.reserve(static_cast<std::size_t>(lanes));
+  for (int lane = 0; lane < lanes; ++lane) lanes_.push_back(make_queries());
+  workers_.reserve(static_cast<std::size_t>(executor.threads()));
+  for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
+}
+
+CollisionValidity::Queries CollisionValidity::make_queries() const {
+  Queries queries{World::Query(*world_, certificates_), std::nullopt};
+  if (changed_) queries.changed.emplace(*changed_, certificates_);
+  return queries;
 }
 
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
   Span batch("nodes asked");
-  batch.count("nodes", static_cast<std::int64_t>(questions.size()));
-  nodes_checked_ += static_cast<std::int64_t>(questions.size());
-  report();
-  const int count = static_cast<int>(questions.size()), lanes = static_cast<int>(lanes_.size());
-  if (lanes == 0) {
-    executor_->for_each(count, [&](int index, int worker) {
-      const auto k = static_cast<std::size_t>(index);
-      answers[k] = node(questions[k], queries_[static_cast<std::size_t>(worker)]);
-    });
-    return;
-  }
-  executor_->for_each(std::min(count, lanes), [&](int lane, int) {
-    const int runs = std::min(count, lanes);
-    for (int index = count * lane / runs; index < count * (lane + 1) / runs; ++index) {
-      const auto k = static_cast<std::size_t>(index);
-      answers[k] = node(questions[k], lanes_[static_cast<std::size_t>(lane)]);
+  open_.clear();
+  for (std::size_t k = 0; k < questions.size(); ++k) {
+    const NodeQuestion& x = questions[k];
+    Open open{k};
+    if (x.suspect != kNoFault) open.pair = pair_of(x.suspect);
+    if (const auto* known = memory_ ? memory_->node(x.layer, x.slot) : nullptr) {
+      const auto holds = memory_->holds(*known);
+      if (holds == ClearanceMemory::Holds::kAll) {
+        answers[k] = known->answer;
+        continue;
+      }
+      open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;
+      if (!known->valid) open.pair = known->pair;
     }
-  });
+    open_.push_back(open);
+  }
+  batch.count("nodes", static_cast<std::int64_t>(open_.size()));
+  nodes_checked_ += static_cast<std::int64_t>(open_.size());
+  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(lanes_.size()));
+  const auto ask = [&](int index, Queries& queries) {
+    Open& open = open_[static_cast<std::size_t>(index)];
+    answers[open.index] = node(questions[open.index], open, queries);
+  };
+  if (lanes_.empty())
+    executor_->for_each(count, [&](int index, int worker) { ask(index, workers_[static_cast<std::size_t>(worker)]); });
+  else
+    executor_->for_each(runs, [&](int lane, int) {
+      for (int index = count * lane / runs; index < count * (lane + 1) / runs; ++index)
+        ask(index, lanes_[static_cast<std::size_t>(lane)]);
+    });
+  if (memory_)
+    for (const Open& open : open_) memory_->note_node(questions[open.index], answers[open.index], open.pair);
 }
 
-NodeAnswer CollisionValidity::node(const NodeQuestion& question, World::Query& query) const {
+NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, Queries& queries) const {
   const Span span("node");
   budget_.poll();
-  if (!lattice_->manipulable(question.q)) return {};
-  const int bodies = static_cast<int>(world_->body_names().size());
-  std::optional<BodyPair> suspect;
-  if (question.suspect != kNoFault) suspect = {question.suspect / bodies, question.suspect % bodies};
-  const auto pair = query.next_below(question.q, Keep::kNode, suspect);
+  const auto suspect = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
+  open.pair = ClearanceMemory::kNoPair;
+  if (!open.only_changed && !lattice_->manipulable(question.q)) return {};
+  World::Query& query = open.only_changed ? *queries.changed : queries.whole;
+  const auto pair = query.next_below(question.q, Keep::kNode, open.only_changed ? std::nullopt : suspect);
   if (!pair) return {.valid = true};
+  open.pair = *pair;
   const Sharing sharing = sharing_of(*lattice_, *world_, query, question.q, *pair);
-  return {false, sharing.shared, sharing.groups, pair->a * bodies + pair->b};
+  return {false, sharing.shared, sharing.groups, fault_of(*pair)};
 }
 
 /// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
@@ -66,29 +109,53 @@ Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& que
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
   Span batch("edges asked");
-  batch.count("edges", static_cast<std::int64_t>(questions.size()));
-  edges_checked_ += static_cast<std::int64_t>(questions.size());
-  report();
-  executor_->for_each(static_cast<int>(questions.size()), [&](int index, int worker) {
-    const Span span("edge");
-    budget_.poll();
-    const EdgeQuestion& x = questions[static_cast<std::size_t>(index)];
-    const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
-    answers[static_cast<std::size_t>(index)] =
-        lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb) &&
-        (lattice_->limits().edges == EdgeMode::kNodes ||
-         !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, x.qa, unwrapped, budget_));
+  open_.clear();
+  for (std::size_t k = 0; k < questions.size(); ++k) {
+    const EdgeQuestion& x = questions[k];
+    Open open{k};
+    if (const auto* known = memory_ ? memory_->edge(x.layer, x.a, x.b) : nullptr) {
+      const auto holds = memory_->holds(*known);
+      if (holds == ClearanceMemory::Holds::kAll) {
+        answers[k] = known->valid;
+        continue;
+      }
+      open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;
+    }
+    open_.push_back(open);
+  }
+  batch.count("edges", static_cast<std::int64_t>(open_.size()));
+  edges_checked_ += static_cast<std::int64_t>(open_.size());
+  executor_->for_each(static_cast<int>(open_.size()), [&](int index, int worker) {
+    Open& open = open_[static_cast<std::size_t>(index)];
+    answers[open.index] = edge(questions[open.index], open, workers_[static_cast<std::size_t>(worker)]);
   });
+  if (memory_)
+    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair);
+}
+
+bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, Queries& queries) const {
+  const Span span("edge");
+  budget_.poll();
+  if (!open.only_changed && !lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb)) return false;
+  if (edge_mode_ == EdgeMode::kNodes) return true;
+  const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
+  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, x.qa, unwrapped, budget_)
+                                         : edge_blocked(queries.whole, rule_, x.qa, unwrapped, budget_);
+  if (blocked) open.pair = *blocked;
+  return !blocked;
 }
 
 bool CollisionValidity::asks_edges() const {
-  return lattice_->asks_path_error() || (lattice_->limits().edges == EdgeMode::kContinuous && !world_->pairs().empty());
+  return lattice_->asks_path_error() || (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 
 CollisionCounters CollisionValidity::counters() const {
   CollisionCounters sum;
-  for (const auto* queries : {&queries_, &lanes_})
-    for (const World::Query& query : *queries) sum += query.counters();
+  for (const auto* all : {&workers_, &lanes_})
+    for (const Queries& queries : *all) {
+      sum += queries.whole.counters();
+      if (queries.changed) sum += queries.changed->counters();
+    }
   return sum;
 }
 

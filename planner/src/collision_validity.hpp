@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <functional>
-#include <string>
+#include <optional>
 #include <vector>
 
+#include "clearance_memory.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/budget.hpp"
 #include "swivel/core/lattice.hpp"
@@ -17,31 +17,50 @@ namespace swivel {
 /// the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of threads.
 class CollisionValidity final : public Validity {
  public:
-  using Progress = std::function<void(const std::string&)>;
-  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates, Executor& executor,
-                    int lanes, const Budget& budget, const Progress& progress);
+  /// `lanes` 0: each node is shared out for itself. `memory`: what is known of the same lattice, robot and limits, and of
+  /// `changed`, the pairs with objects that moved since (null: none did); null for none.
+  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode, Certificates certificates,
+                    Executor& executor, int lanes, const Budget& budget, ClearanceMemory* memory = nullptr,
+                    const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
 
+  /// Of those that were not known.
   [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
   [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
   /// Of all workers.
   [[nodiscard]] CollisionCounters counters() const;
 
  private:
-  void report() const;
-  [[nodiscard]] NodeAnswer node(const NodeQuestion& question, World::Query& query) const;
+  struct Queries {
+    World::Query whole;
+    std::optional<World::Query> changed;
+  };
+  /// A question that the memory does not answer in full.
+  struct Open {
+    std::size_t index = 0;
+    bool only_changed = false;
+    BodyPair pair = ClearanceMemory::kNoPair;  ///< of the failure; before: the suspect
+  };
+  [[nodiscard]] Queries make_queries() const;
+  [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, Queries& queries) const;
+  [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, Queries& queries) const;
 
   const Lattice* lattice_;
   const World* world_;
   EdgeRule rule_;
+  EdgeRule changed_rule_;  // of the changed objects' pairs, of which none is the robot's own
+  EdgeMode edge_mode_;
+  Certificates certificates_;
   Executor* executor_;
   Budget budget_;
-  Progress progress_;
-  std::vector<World::Query> queries_;  // one per worker
-  std::vector<World::Query> lanes_;    // for nodes; empty: each node is shared out for itself
+  ClearanceMemory* memory_;
+  const World* changed_;
+  std::vector<Queries> workers_;  // one each
+  std::vector<Queries> lanes_;    // for nodes
+  std::vector<Open> open_;
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 

@@ -2,59 +2,40 @@
 #include "swivel/planner/planner.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <limits>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
-#include "swivel/core/angle.hpp"
+#include "measure.hpp"
+#include "search.hpp"
+#include "stopwatch.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/cost_to_go.hpp"
 
 namespace swivel {
 
 namespace {
-
-class Stopwatch {
- public:
-  /// Milliseconds since construction or the last lap.
-  double lap() {
-    const auto now = Clock::now();
-    const double ms = std::chrono::duration<double, std::milli>(now - last_).count();
-    last_ = now;
-    return ms;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 constexpr std::pair<PlannerKind, const char*> kNames[] = {{PlannerKind::kEager, "eager"},
                                                           {PlannerKind::kEagerDp, "eager_dp"},
                                                           {PlannerKind::kLazy, "lazy"},
                                                           {PlannerKind::kParallel, "parallel"}};
 
-struct Found {
-  bool decided = false;  // whether there is a path
-  SearchOutcome outcome;
-  std::optional<int> deepest;  // where there is no path: of the layers reached; none where that was not found in time
-};
+bool is_eager(const PlanOptions& options) {
+  return options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp;
+}
 
 /// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
 Certificates certificates_of(const PlanOptions& options) {
-  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp) return Certificates::kOff;
+  if (is_eager(options)) return Certificates::kOff;
   return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
-}
-
-void say(const PlanOptions& options, const char* phrase) {
-  if (options.progress) options.progress(phrase);
 }
 
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
@@ -73,105 +54,20 @@ void refuse_if_too_large(const SrsLattice& lattice, const std::string& source) {
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
-void search_eagerly(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
-                    Found& found, Counters& counters) {
-  EagerOutcome eager;
-  try {
-    if (options.planner == PlannerKind::kEager)
-      eager_search(lattice, validity, options.eager_search, budget, eager);
-    else
-      eager_dp(lattice, validity, budget, eager);
-    found = {true, eager, eager.deepest};
-  } catch (const Stopped&) {
-  }
-  if (options.record) options.record->path = eager.path;
-  counters.ik_nodes = eager.ik_nodes;
-  counters.edges = eager.edges;
-  counters.expansions = eager.expansions;
-}
-
-void search_lazily(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
-                   Found& found, PlanResult& result) {
-  Stopwatch watch;
-  constexpr int kFewLayers = 64;  // where chords are too long to bound much
-  const auto cost_to_go = make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget);
-  CostToGo& togo = *cost_to_go;
-  SearchCounters searched;
-  try {
-    say(options, "sweeping the lattice");
-    togo.sweep(lattice.layers() - 1);
-    result.time_ms["sweep"] = watch.lap();
-    // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
-    const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
-    found.outcome = path_first(togo, validity, path_first_options, searched);
-    found.decided = true;
-    result.time_ms["search"] = watch.lap();
-    if (found.outcome.path.empty()) {
-      say(options, "no path; seeking the furthest layer");
-      found.deepest = deepest_valid_layer(togo, validity, path_first_options, searched);
-      result.time_ms["reach"] = watch.lap();
-    }
-    if (options.record) {
-      std::int64_t expansions = 0;  // no part of the search
-      options.record->path = found.deepest.value_or(-1) >= 0 ? best_path(togo, expansions) : found.outcome.path;
-      options.record->nodes = togo.verdicts().nodes();
-      result.time_ms["record"] = watch.lap();
-    }
-  } catch (const Stopped&) {
-  }
-  Counters& counters = result.counters;
-  counters.ik_nodes = togo.ik_nodes();
-  counters.edges = togo.edges();
-  counters.expansions = searched.expansions;
-  counters.iterations = searched.iterations;
-}
-
-Found search(const SrsLattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
-             PlanResult& result) {
-  Found found;
-  if (options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp)
-    search_eagerly(lattice, validity, options, budget, found, result.counters);
-  else
-    search_lazily(lattice, validity, options, budget, found, result);
-  return found;
-}
-
-/// Measured between the base's vertical and the elbow, in the plane normal to S->W: the convention of vendors and of Shimizu 2008.
-double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config& q) {
-  const double axis_angle = first_plane(arm, tool).angle_of(arm.elbow_axis(q));
-  return wrap_angle(axis_angle +
-                    (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
-}
-
-void fill_trajectory(const Lattice& lattice, const SlotPath& path, PlanResult& result) {
-  for (int i = 0; i < lattice.layers(); ++i) {
-    const int slot = path[static_cast<std::size_t>(i)];
+std::vector<TrajectoryRow> rows_of(const Lattice& lattice, const SlotPath& path) {
+  std::vector<TrajectoryRow> rows;
+  rows.reserve(path.size());
+  for (const int slot : path) {
+    const int i = static_cast<int>(rows.size());
     TrajectoryRow row;
     row.s = lattice.path().layer(i).s;
     row.phi = lattice.phi(i, slot);
     row.branch = lattice.branch(i, slot);
     row.q = *lattice.node(i, slot);
-    if (i > 0) row.q = result.trajectory.back().q + lattice.delta(result.trajectory.back().q, row.q);  // unwraps continuous joints
-    result.trajectory.push_back(row);
+    if (i > 0) row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints
+    rows.push_back(row);
   }
-}
-
-void fill_tool_path_error(const PreparedRobot& robot, const Lattice& lattice, const Budget& budget, PlanResult& result) {
-  double sum = 0;
-  std::int64_t samples = 0;
-  for (std::size_t i = 0; i + 1 < result.trajectory.size(); ++i) {
-    if (i % 64 == 0) budget.poll();
-    const Config& q = result.trajectory[i].q;
-    const auto deviation =
-        path_deviation(robot.arm().chain, lattice.path(), static_cast<int>(i), q, result.trajectory[i + 1].q - q);
-    for (const double error : deviation) {
-      sum += error;
-      ++samples;
-      result.tool_path_error_mm.max = std::max(result.tool_path_error_mm.max, 1e3 * error);
-    }
-  }
-  result.tool_path_error_mm.mean = 1e3 * sum / static_cast<double>(samples);
-  result.evidence.tool_path_error = true;
+  return rows;
 }
 
 void list_special_pairs(const World& world, PlanResult& result) {
@@ -181,124 +77,15 @@ void list_special_pairs(const World& world, PlanResult& result) {
           .push_back({world.names(p.pair), p.median, p.keeps.node, p.keeps.motion});
 }
 
-void fill_postures(const PreparedRobot& robot, const Lattice& lattice, const World& world, const Budget& budget,
-                   PlanResult& result) {
-  World::Query query(world);
-  std::optional<double> least;
-  std::optional<LeastMargin> margin;
-  double manipulability = std::numeric_limits<double>::infinity();
-  std::vector<double> arm_angle;
-  for (std::size_t i = 0; i < result.trajectory.size(); ++i) {
-    budget.poll();
-    const Config& q = result.trajectory[i].q;
-    manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
-    arm_angle.push_back(conventional_arm_angle(robot.srs(), lattice.path().layer(static_cast<int>(i)).tool, q));
-    const auto clearance = query.clearance(q);
-    if (!clearance) continue;
-    least = std::min(least.value_or(clearance->least), clearance->least);
-    if (!margin || clearance->margin() < margin->margin)
-      margin = {clearance->margin(), clearance->distance, clearance->required, world.names(clearance->pair), static_cast<int>(i)};
-  }
-  result.min_clearance = least;
-  result.min_margin = std::move(margin);
-  result.min_manipulability = manipulability;
-  result.arm_angle = std::move(arm_angle);
-  result.evidence.postures = true;
-}
-
-/// What the options ask for, as far as the budget goes.
-void fill_evidence(const PreparedRobot& robot, const SrsLattice& lattice, const World& world, const EdgeRule& rule,
-                   const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
-  const Span span("report");
-  try {
-    if (result.status == PlanStatus::kSolved) {
-      say(options, "measuring the trajectory");
-      if (options.evidence.tool_path_error) fill_tool_path_error(robot, lattice, budget, result);
-      if (options.evidence.postures) fill_postures(robot, lattice, world, budget, result);
-    } else if (!found.deepest) {
-      result.diagnosis.complete = false;
-    } else {
-      say(options, "no path; finding out why");
-      diagnose(lattice, world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis);
-      result.evidence.layers = options.evidence.layers;
-    }
-  } catch (const Stopped&) {
-  }
-}
-
 PlanStatus stopped_status(const Budget& budget) {
   return budget.cancelled() ? PlanStatus::kCancelled : PlanStatus::kTimeout;
 }
 
-Executor make_executor(const PlanOptions& options) {
-  return Executor(options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend);
+bool same_pose(const Pose& a, const Pose& b) {
+  return a.matrix() == b.matrix();
 }
-
-/// What is known before anything is done.
-PlanResult blank_result(const PlanOptions& options, const Executor& executor) {
-  PlanResult result;
-  result.planner = to_string(options.planner);
-  result.threads = executor.threads();
-  result.time_ms["prepare"] = 0;
-  return result;
-}
-
-void find(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options, Executor& executor, const Budget& budget,
-          PlanResult& result) {
-  Stopwatch watch, whole;
-  say(options, "laying out the lattice");
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  result.time_ms["lattice"] = watch.lap();
-  const World world(robot.world(), problem, budget);
-  result.time_ms["world"] = watch.lap();
-  result.warnings = limit_warnings(robot.arm().chain);
-  result.warnings.insert(result.warnings.end(), world.warnings().begin(), world.warnings().end());
-  list_special_pairs(world, result);
-  result.lattice = {lattice.layers(), lattice.angles(),       kBranches, lattice.windings(), lattice.window(),
-                    lattice.nodes(),  path.merged_waypoints()};
-
-  const EdgeRule rule = world.edge_rule(robot.radii());
-  if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-  CollisionValidity validity(lattice, world, rule, certificates_of(options), executor, lanes_of(options), budget, options.progress);
-  const Found found = search(lattice, validity, options, budget, result);
-  const double record = result.time_ms.contains("record") ? result.time_ms["record"] : 0;
-  result.time_ms["find"] = watch.lap() - record;
-  result.counters.nodes_checked = validity.nodes_checked();
-  result.counters.edges_checked = validity.edges_checked();
-  const CollisionCounters collision = validity.counters();
-  result.counters.fcl_calls = collision.fcl_calls;
-  result.counters.certified_free = collision.certified_free;
-  result.counters.certified_colliding = collision.certified_colliding;
-  if (collision.contradictions > 0)
-    throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
-  if (!found.decided) throw Stopped();
-  result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
-  if (result.status == PlanStatus::kSolved) {
-    result.cost = found.outcome.cost;
-    fill_trajectory(lattice, found.outcome.path, result);
-  }
-  result.time_ms["plan"] = whole.lap() - record;
-  watch.lap();
-  fill_evidence(robot, lattice, world, rule, found, options, budget, result);
-  result.time_ms["report"] = watch.lap();
-}
-
-PlanResult plan_within(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options, const Budget& budget) {
-  const Span span("plan");
-  validate(problem);
-  robot.require_prepared_for(problem);
-  Stopwatch watch;
-  Executor executor = make_executor(options);
-  PlanResult result = blank_result(options, executor);
-  result.joint_names = robot.arm().chain.joint_names;
-  try {
-    find(robot, problem, options, executor, budget, result);
-  } catch (const Stopped&) {
-    result.status = stopped_status(budget);
-    result.time_ms["plan"] = watch.lap();
-  }
-  return result;
+bool same_body(const SceneObject& a, const SceneObject& b) {
+  return a.name == b.name && a.shape == b.shape && a.allow == b.allow;
 }
 
 }  // namespace
@@ -315,29 +102,341 @@ PlannerKind planner_from_string(const std::string& name) {
   throw InputError("unknown planner '" + name + "': allowed are eager, eager_dp, lazy, parallel");
 }
 
-PlanResult plan(const Problem& problem, const PlanOptions& options) {
-  const Budget budget(options.timeout_s, options.cancel);
-  Stopwatch watch;
-  std::optional<PreparedRobot> robot;
-  PlanResult result;
-  double prepare = 0;
-  try {
-    const Span span("prepare");
-    say(options, "preparing the robot");
-    robot.emplace(problem, budget);
-    prepare = watch.lap();
-    result = plan_within(*robot, problem, options, budget);
-  } catch (const Stopped&) {
-    prepare = watch.lap();
-    result = blank_result(options, make_executor(options));
-    result.status = stopped_status(budget);
+/// What is kept between plans, by what it depends on; a change clears what depends on it.
+struct Planner::Impl {
+  Problem problem;
+
+  std::shared_ptr<const PreparedRobot> robot;       // shared: clones; depends on the robot
+  std::shared_ptr<const PreparedRobot> last_robot;  // with other attached bodies
+  std::optional<World> world;                       // depends on robot, scene and limits
+  bool world_is_old = true;                         // it serves as a model for the next
+  /// Of the task and the pose of the path's frame.
+  struct Layout {
+    Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
+        : path(waypoints_in_base(problem), problem.resolution, problem.source, budget),
+          lattice(robot.arm().chain, robot.srs(), path, problem, budget) {}
+    ToolPath path;
+    SrsLattice lattice;
+    std::unique_ptr<CostToGo> cost_to_go;
+  };
+  std::unique_ptr<Layout> layout;
+  std::unique_ptr<CostToGo> retired;  // of another lattice
+  ClearanceMemory memory;             // of this lattice, the robot and the limits
+  std::uint64_t plans = 0;            // that the memory knows of
+  std::vector<std::uint64_t> met;     // by object: the first of them that meets it as it is
+  std::optional<Executor> executor;
+  std::pair<int, Executor::Backend> executor_is{0, Executor::Backend::kTbb};
+
+  SlotPath path;  // of the last plan
+  bool viewable = false, was_eager = false;
+
+  explicit Impl(Problem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
+
+  // --- changes
+  void path_changed() {
+    if (layout && layout->cost_to_go) retired = std::move(layout->cost_to_go);
+    layout.reset();
+    memory = {};
+    viewable = false;
   }
-  result.time_ms["prepare"] += prepare;
-  return result;
+  void scene_changed() {
+    world_is_old = true;
+    viewable = false;
+  }
+  void robot_changed() {
+    path_changed();
+    scene_changed();
+  }
+  void attached_changed() {
+    if (robot) last_robot = std::exchange(robot, nullptr);
+    world.reset();
+    robot_changed();
+  }
+  void moved(std::size_t object) {
+    scene_changed();
+    met[object] = plans + 1;
+    if (problem.scene[object].name == problem.path_frame) path_changed();
+  }
+  /// Puts `next` in the problem's place where it is a valid one.
+  void replace(Problem next) {
+    validate(next);
+    problem = std::move(next);
+  }
+  [[nodiscard]] std::size_t object(const std::string& name) const {
+    const auto found = std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == name; });
+    if (found == problem.scene.end()) throw InvalidArgument("'" + name + "': no such object: allowed are names of the scene");
+    return static_cast<std::size_t>(found - problem.scene.begin());
+  }
+  void set_scene(std::vector<SceneObject> scene) {
+    if (!std::equal(scene.begin(), scene.end(), problem.scene.begin(), problem.scene.end(), same_body)) {
+      problem.scene = std::move(scene);
+      met.assign(problem.scene.size(), 1);
+      robot_changed();
+      return;
+    }
+    for (std::size_t k = 0; k < scene.size(); ++k) {
+      if (same_pose(problem.scene[k].pose, scene[k].pose)) continue;
+      problem.scene[k].pose = scene[k].pose;
+      moved(k);
+    }
+  }
+  void set_task(const Task& task) {
+    if (task == problem) return;
+    static_cast<Task&>(problem) = task;
+    robot_changed();
+  }
+
+  // --- plans
+  const PreparedRobot& prepare(const Budget& budget) {
+    if (!robot) {
+      const Span span("prepare");
+      budget.tell(Stage::kPreparing);
+      robot = last_robot ? std::make_shared<const PreparedRobot>(*last_robot, problem, budget)
+                         : std::make_shared<const PreparedRobot>(problem, budget);
+      last_robot.reset();
+    }
+    return *robot;
+  }
+  Executor& threads_of(const PlanOptions& options) {
+    const std::pair wanted{options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend};
+    if (!executor || executor_is != wanted) executor.emplace(wanted.first, wanted.second);
+    executor_is = wanted;
+    return *executor;
+  }
+  void lay_out(const Budget& budget, PlanResult& result) {
+    Stopwatch watch;
+    budget.tell(Stage::kLattice);
+    if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
+    const SrsLattice& lattice = layout->lattice;
+    result.time_ms["lattice"] = watch.lap();
+    if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
+    world_is_old = false;
+    result.time_ms["world"] = watch.lap();
+    result.warnings = limit_warnings(robot->arm().chain);
+    result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
+    list_special_pairs(*world, result);
+    result.lattice = {lattice.layers(),
+                      lattice.angles(),
+                      kBranches,
+                      lattice.windings(),
+                      lattice.window(),
+                      lattice.nodes(),
+                      layout->path.merged_waypoints()};
+  }
+  Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
+    const Lattice& lattice = layout->lattice;
+    Executor& threads = threads_of(options);
+    was_eager = is_eager(options);
+    Found found;
+    const auto count = [&](const CollisionValidity& validity) {
+      result.counters.nodes_checked = validity.nodes_checked();
+      result.counters.edges_checked = validity.edges_checked();
+      const CollisionCounters collision = validity.counters();
+      result.counters.fcl_calls = collision.fcl_calls;
+      result.counters.certified_free = collision.certified_free;
+      result.counters.certified_colliding = collision.certified_colliding;
+      if (collision.contradictions > 0)
+        throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
+    };
+    if (was_eager) {
+      if (options.planner == PlannerKind::kEager) refuse_if_too_large(layout->lattice, problem.source);
+      CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, 0, budget);
+      found = search_eagerly(lattice, validity, options, budget, result.counters);
+      count(validity);
+      return found;
+    }
+    constexpr int kFewLayers = 64;  // where chords are too long to bound much
+    std::unique_ptr<CostToGo>& togo = layout->cost_to_go;
+    if (!togo)
+      togo =
+          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
+    const bool swept = togo->restart(budget);
+    memory.begin(++plans, met, static_cast<int>(world->bodies().size()));
+    std::optional<World> changed;
+    if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
+    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
+                               budget, &memory, changed ? &*changed : nullptr);
+    found = search_lazily(*togo, swept, validity, memory.failures(), options, result.counters, result.time_ms);
+    count(validity);
+    return found;
+  }
+  void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
+    Stopwatch watch, whole;
+    lay_out(budget, result);
+    const EdgeRule rule = world->edge_rule(robot->radii());
+    watch.lap();
+    const Found found = search(rule, options, budget, result);
+    result.time_ms["find"] = watch.lap();
+    path = found.valid_path;
+    viewable = true;
+    if (!found.decided) {
+      result.partial = rows_of(layout->lattice, path);
+      throw Stopped();
+    }
+    result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
+    if (result.status == PlanStatus::kSolved) {
+      result.cost = found.outcome.cost;
+      result.trajectory = rows_of(layout->lattice, path);
+    }
+    result.time_ms["plan"] = whole.lap();
+    watch.lap();
+    explain(rule, found, options, budget, result);
+    result.time_ms["report"] = watch.lap();
+  }
+  /// What the options ask for, as far as the budget goes.
+  void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
+    const Span span("report");
+    try {
+      if (result.status == PlanStatus::kSolved) {
+        measure(*robot, layout->path, *world, options.evidence, budget, result);
+        return;
+      }
+      result.partial = rows_of(layout->lattice, path);
+      if (!found.deepest) {
+        result.diagnosis.complete = false;
+        return;
+      }
+      budget.tell(Stage::kDiagnosis);
+      diagnose(layout->lattice, *world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis);
+      result.evidence.layers = options.evidence.layers;
+    } catch (const Stopped&) {
+    }
+  }
+  PlanResult plan(const PlanOptions& options) {
+    const Span span("plan");
+    const Budget budget = options.budget();
+    Stopwatch watch;
+    PlanResult result;
+    result.planner = to_string(options.planner);
+    result.threads = threads_of(options).threads();
+    viewable = false;
+    try {
+      prepare(budget);
+      result.time_ms["prepare"] = watch.lap();
+      result.joint_names = robot->arm().chain.joint_names;
+      find(options, budget, result);
+    } catch (const Stopped&) {
+      result.status = stopped_status(budget);
+      result.time_ms[result.time_ms.contains("prepare") ? "plan" : "prepare"] = watch.lap();
+    }
+    return result;
+  }
+};
+
+Planner::Planner(const Robot& robot)
+    : Planner([&] {
+        Problem problem;
+        static_cast<Robot&>(problem) = robot;
+        return problem;
+      }()) {}
+Planner::Planner(Problem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
+  const Problem& p = impl_->problem;
+  validate(p);
+  validate(*p.model);
+  (void)fit_srs(build_arm(*p.model, p.base_link, p.tip_link, p.hold, p.tool).chain, p.model->source);  // whether it is one
+}
+Planner::Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
+  validate(impl_->problem);
+  robot->require_prepared_for(impl_->problem);
+  impl_->robot = std::move(robot);
+}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
+
+Planner Planner::clone() const {
+  return impl_->robot ? Planner(impl_->robot, impl_->problem) : Planner(impl_->problem);
+}
+
+const Problem& Planner::problem() const {
+  return impl_->problem;
+}
+const PreparedRobot& Planner::prepare(const Budget& budget) {
+  return impl_->prepare(budget);
+}
+
+void Planner::set_task(const Task& task) {
+  Problem next = impl_->problem;
+  static_cast<Task&>(next) = task;
+  validate(next);
+  impl_->set_task(task);
+}
+
+void Planner::set_scene(std::vector<SceneObject> scene) {
+  Problem next = impl_->problem;
+  next.scene = std::move(scene);
+  validate(next);
+  impl_->set_scene(std::move(next.scene));
+}
+
+void Planner::set_problem(Problem problem) {
+  validate(problem);
+  if (impl_->robot) impl_->robot->require_prepared_for(problem);
+  impl_->problem.source = problem.source;
+  impl_->problem.vary = problem.vary;
+  impl_->set_scene(std::move(problem.scene));
+  impl_->set_task(problem);
+}
+
+void Planner::add(SceneObject object) {
+  Problem next = impl_->problem;
+  next.scene.push_back(std::move(object));
+  impl_->replace(std::move(next));
+  impl_->met.push_back(impl_->plans + 1);
+  impl_->scene_changed();
+}
+
+void Planner::move(const std::string& object, const Pose& pose) {
+  const std::size_t k = impl_->object(object);
+  validate(pose, object);
+  impl_->problem.scene[k].pose = pose;
+  impl_->moved(k);
+}
+
+void Planner::remove(const std::string& object) {
+  const std::size_t k = impl_->object(object);
+  Problem next = impl_->problem;
+  next.scene.erase(next.scene.begin() + static_cast<std::ptrdiff_t>(k));
+  std::erase_if(next.vary, [&](const Vary& vary) { return vary.object == object; });
+  impl_->replace(std::move(next));
+  impl_->met.erase(impl_->met.begin() + static_cast<std::ptrdiff_t>(k));
+  impl_->memory.object_removed(static_cast<int>(k));
+  impl_->scene_changed();
+}
+
+void Planner::attach(AttachedBody body) {
+  Problem next = impl_->problem;
+  next.attached.push_back(std::move(body));
+  impl_->replace(std::move(next));
+  impl_->attached_changed();
+}
+
+void Planner::detach(const std::string& body) {
+  Problem next = impl_->problem;
+  if (std::erase_if(next.attached, [&](const AttachedBody& b) { return b.name == body; }) == 0)
+    throw InvalidArgument("'" + body + "': no such body: allowed are names of attached bodies");
+  for (SceneObject& object : next.scene) std::erase(object.allow, body);
+  impl_->replace(std::move(next));
+  impl_->attached_changed();
+}
+
+PlanResult Planner::plan(const PlanOptions& options) {
+  return impl_->plan(options);
+}
+
+PlanView Planner::view() const {
+  if (!impl_->viewable) throw InvalidArgument("there is nothing to see: allowed after a plan() that came as far as its search");
+  const Impl& x = *impl_;
+  return {*x.robot, x.problem, x.layout->lattice, *x.world, x.was_eager ? nullptr : &x.layout->cost_to_go->verdicts(), x.path};
+}
+
+PlanResult plan(const Problem& problem, const PlanOptions& options) {
+  return Planner(problem).plan(options);
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
-  return plan_within(robot, problem, options, Budget(options.timeout_s, options.cancel));
+  // Not owned: it outlives this call.
+  return Planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem).plan(options);
 }
 
 }  // namespace swivel

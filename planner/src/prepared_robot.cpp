@@ -3,7 +3,7 @@
 
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {
 
@@ -27,6 +27,13 @@ PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
       arm_(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold, problem.tool)),
       srs_(fit_srs(arm_.chain, problem.model->source)),
       world_(*problem.model, arm_, problem, budget),
+      radii_(motion_radii(arm_.chain, world_.bodies())) {}
+
+PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem, const Budget& budget)
+    : basis_(checked(problem)),
+      arm_(like.arm_),
+      srs_(like.srs_),
+      world_(like.world_, *problem.model, arm_, problem, budget),
       radii_(motion_radii(arm_.chain, world_.bodies())) {}
 
 void PreparedRobot::require_prepared_for(const Problem& problem) const {

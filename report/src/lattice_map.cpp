@@ -7,7 +7,6 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/srs_lattice.hpp"
-#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -35,29 +34,24 @@ std::string LatticeMap::label_name(int label) const {
   return name;
 }
 
-LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full,
-                    const Budget& budget) {
-  validate(problem);
-  robot.require_prepared_for(problem);
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  const World world(robot.world(), problem, budget);
-  World::Query query(world, Certificates::kOn);
+LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
+  const auto& lattice = dynamic_cast<const SrsLattice&>(view.lattice);
+  World::Query query(view.world, Certificates::kOn);
 
   LatticeMap map;
   map.layers = lattice.layers();
   map.angles = lattice.angles();
   map.windings = lattice.windings();
-  map.joint_names = robot.arm().chain.joint_names;
-  map.path = record.path;
-  map.complete = full || record.nodes.empty();
+  map.joint_names = lattice.chain().joint_names;
+  map.path = view.path;
+  map.complete = full || view.verdicts == nullptr;
   map.nodes.resize(static_cast<std::size_t>(lattice.nodes()));
   std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // node, by what
   LayerNodes nodes;
   std::size_t k = 0;
   for (int layer = 0; layer < map.layers; ++layer) {
-    map.s.push_back(path.layer(layer).s);
-    budget.poll();
+    map.s.push_back(lattice.path().layer(layer).s);
+    budget.poll(Stage::kDrawing, layer, map.layers);
     lattice.solve(layer, nodes);
     for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
       LatticeMap::Node& node = map.nodes[k];
@@ -68,7 +62,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
           node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
         continue;
       }
-      const Verdict verdict = record.nodes.empty() ? Verdict::kUnknown : record.nodes[k];
+      const Verdict verdict = view.verdicts ? view.verdicts->node(layer, slot) : Verdict::kUnknown;
       node.state = NodeState::kNotLookedAt;
       if (verdict == Verdict::kUnknown && !map.complete) continue;
       budget.poll();
@@ -82,9 +76,7 @@ LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const Se
       const auto pair = query.first_below(q, Keep::kNode);
       node.certified = decided(query.counters()) > before;
       node.state = pair ? NodeState::kBlocked : NodeState::kFree;
-      if (pair)
-        blocked.emplace_back(k, std::pair(world.body_names()[static_cast<std::size_t>(pair->a)],
-                                          world.body_names()[static_cast<std::size_t>(pair->b)]));
+      if (pair) blocked.emplace_back(k, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
     }
   }
   std::map<std::pair<std::string, std::string>, std::uint8_t> index;

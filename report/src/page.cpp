@@ -290,16 +290,16 @@ bool page_available() {
   return !page_template().empty();
 }
 
-std::string to_page(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, const LatticeMap& map,
-                    const std::string& result_json, const Budget& budget) {
-  const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  const World world(robot.world(), problem, budget);
+std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json, const Budget& budget) {
+  const Problem& problem = view.problem;
+  const World& world = view.world;
+  const auto& lattice = dynamic_cast<const SrsLattice&>(view.lattice);
+  const ToolPath& path = lattice.path();
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   const std::string reason = diagnosis.is_object() ? diagnosis.value("reason", "") : "";
   Bodies bodies;
-  for (const RobotBody& body : robot.world().bodies())
+  for (const RobotBody& body : world.bodies())
     bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
   for (const SceneObject& object : problem.scene) bodies.add(object.name, "scene", 0, object.shape, object.pose);
   Json tool_path = Json::array();
@@ -317,7 +317,7 @@ std::string to_page(const PreparedRobot& robot, const Problem& problem, const Se
                      {"bodies", std::move(bodies.bodies)},
                      {"meshes", std::move(bodies.meshes)},
                      {"tool_path", std::move(tool_path)},
-                     {"rows", rows_json(world, lattice, record.path, budget)},
+                     {"rows", rows_json(world, lattice, view.path, budget)},
                      {"cut", cut_json(map, lattice, world, reason)},
                      {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));

@@ -139,7 +139,7 @@ class Files(WithFolder):
         self.assertIn("* the path", done.stdout)
         self.assertIn("not looked at", done.stdout)
         self.assertNotIn("\x1b", done.stdout)  # no terminal, no colours
-        self.assertIn("record", result["time_ms"]["stages"])
+        self.assertIn("search", result["time_ms"]["stages"])
         self.assertIn("<svg", drawing.read_text())
         full = run("plan", PROBLEMS / "experiment_b.yaml", "--map", "--full-map").stdout
         self.assertNotIn("not looked at", full)

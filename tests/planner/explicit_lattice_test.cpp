@@ -119,19 +119,20 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
       if (!truth.solved) ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
     };
     for (const EagerSearch search : {EagerSearch::kDijkstra, EagerSearch::kAStar}) {
-      CollisionValidity validity(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
       EagerOutcome found;
       eager_search(lattice, validity, search, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     {
-      CollisionValidity validity(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
       EagerOutcome found;
       eager_dp(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity validity(lattice, world, rule, Certificates::kCompared, executor, batch == 1 ? 1 : 4, never, {});
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kCompared, executor, batch == 1 ? 1 : 4,
+                                 never);
       const auto togo = make_cost_to_go(lattice);
       togo->sweep(lattice.layers() - 1);
       SearchCounters counters;

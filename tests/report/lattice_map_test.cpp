@@ -22,7 +22,6 @@ using namespace test;
 struct Drawn {
   Problem problem;
   PlanResult result;
-  SearchRecord record;
   LatticeMap map;
 };
 
@@ -34,10 +33,9 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
   drawn.problem.limits.edges = EdgeMode::kNodes;
   PlanOptions options;
   options.planner = planner;
-  options.record = &drawn.record;
-  const PreparedRobot robot(drawn.problem);
-  drawn.result = plan(robot, drawn.problem, options);
-  drawn.map = make_map(robot, drawn.problem, drawn.record, full);
+  Planner arm(drawn.problem);
+  drawn.result = arm.plan(options);
+  drawn.map = make_map(arm.view(), full);
   return drawn;
 }
 

@@ -39,13 +39,11 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
         std::find_if(problem.scene.begin(), problem.scene.end(), [](const auto& object) { return object.name == "post"; });
     ASSERT_NE(post, problem.scene.end());
     post->name = name;
-    SearchRecord record;
     PlanOptions options;
-    options.record = &record;
     options.planner = PlannerKind::kEagerDp;
-    const PreparedRobot robot(problem);
-    const PlanResult result = plan(robot, problem, options);
-    const LatticeMap map = make_map(robot, problem, record, true);
+    Planner planner(problem);
+    const PlanResult result = planner.plan(options);
+    const LatticeMap map = make_map(planner.view(), true);
     bool found = false;
     for (const auto& [a, b] : map.blockers) found = found || a == name || b == name;
     EXPECT_TRUE(found);
@@ -66,7 +64,7 @@ TEST(Names, OfBodiesStayWordsInEveryDrawing) {
 
     EXPECT_EQ(nlohmann::json::parse(io::to_json(result))["status"], to_string(result.status));
     if (!page_available()) continue;
-    const std::string data = data_of(to_page(robot, problem, record, map, io::to_json(result)));
+    const std::string data = data_of(to_page(planner.view(), map, io::to_json(result)));
     EXPECT_EQ(data.find('<'), std::string::npos);
     const nlohmann::json json = nlohmann::json::parse(data);
     EXPECT_EQ(json["problem"], std::filesystem::path(name).filename().string());

@@ -14,6 +14,8 @@
 
 namespace swivel {
 
+class MeshStore;
+
 /// Two bodies that must keep clear of each other.
 struct BodyPair {
   int a = 0, b = 0;  ///< indices into World::body_names(), a < b
@@ -115,6 +117,8 @@ class World {
   /// Which pairs count: of the robot those of RobotPair that are not dropped; of robot and scene those that move and are not
   /// allowed to touch. Throws InputError for a mesh without triangles, and Stopped.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
+  /// The same with the trees of every mesh that `like` has met.
+  World(const World& like, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
   /// The robot of `like` in front of another scene: shares its robot pairs, its scene's shapes and the trees of every mesh that it
   /// has met, so that an episode with moved objects costs next to nothing. Safe to call from many threads on one `like`.
   World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
@@ -191,6 +195,7 @@ class World {
 
  private:
   struct Impl;
+  World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget);
   std::unique_ptr<Impl> impl_;
 };
 

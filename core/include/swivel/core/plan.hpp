@@ -118,6 +118,8 @@ struct PlanResult {
   double min_manipulability = 0;
   std::vector<double> arm_angle;          ///< conventional arm angle of each row, rad
   std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
+  /// Where there is no answer: rows from the first layer on that are valid, as far as they are known; maybe none.
+  std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
   Diagnosis diagnosis;                     ///< filled when infeasible
   std::vector<SpecialPair> dropped_pairs;  ///< touch in every posture: not kept apart

@@ -17,6 +17,7 @@ namespace swivel {
 struct Waypoint {
   Vector3d position = Vector3d::Zero();
   Quaterniond orientation = Quaterniond::Identity();  ///< need not be exactly unit: | |q| - 1 | <= 1e-3
+  bool operator==(const Waypoint&) const = default;
 };
 
 /// A body fixed in the base frame. One shape each.
@@ -57,17 +58,20 @@ struct Limits {
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
   [[nodiscard]] double d_self() const { return self_clearance.value_or(clearance); }
   [[nodiscard]] double d_self_edge() const { return edge_clearance.value_or(d_self() / 2); }
+  bool operator==(const Limits&) const = default;
 };
 
 struct Resolution {
   double ds = 0.005;    ///< m
   double dphi = 0.05;   ///< rad
   double dalpha = 0.1;  ///< rad of tool rotation
+  bool operator==(const Resolution&) const = default;
 };
 
 struct Cost {
   CostMetric metric = CostMetric::kL2;
   std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};  ///< 0, or 1e-6 to 1e6
+  bool operator==(const Cost&) const = default;
 };
 
 /// Uniform offsets of one scene object for campaign episodes, half-widths. docs/formats.md.
@@ -94,6 +98,7 @@ struct Task {
   Limits limits;
   std::optional<Config> start;  ///< joints to begin with, rad
   Cost cost;
+  bool operator==(const Task&) const = default;
 };
 
 /// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.

@@ -11,6 +11,8 @@ namespace swivel {
 void validate(const Problem& problem);
 /// The same of a robot model: indices, one parent a link, no loops, unit axes, limits, shapes.
 void validate(const RobotModel& robot);
+/// The same of an object's pose.
+void validate(const Pose& pose, const std::string& object);
 
 /// 0 (the joint moves at no cost), or 1e-6 to 1e6.
 [[nodiscard]] bool weight_allowed(double weight);

@@ -25,8 +25,12 @@ class CostToGo {
   [[nodiscard]] virtual const Lattice& lattice() const = 0;
   [[nodiscard]] const Budget& budget() const { return budget_; }
 
+  /// Forgets removals and counts, and begins again within another budget. True where values are now those of a lattice without
+  /// removals and the last layer as its goal, as they were found before; else sweep() comes next.
+  [[nodiscard]] bool restart(const Budget& budget);
+
   /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept.
-  virtual void sweep(int goal_layer) = 0;
+  void sweep(int goal_layer);
   [[nodiscard]] int goal_layer() const { return goal_; }
   /// Exact on every best path; kUnreachable where none is known.
   [[nodiscard]] virtual double at(int layer, int slot) const = 0;
@@ -38,7 +42,7 @@ class CostToGo {
   [[nodiscard]] const Verdicts& verdicts() const { return verdicts_; }
   void remove_edge(int layer, int a, int b);
   /// Makes best() exact again after removals.
-  virtual void repair() = 0;
+  void repair();
 
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
   [[nodiscard]] virtual int deepest_reachable() = 0;
@@ -58,18 +62,30 @@ class CostToGo {
 
  protected:
   CostToGo(const Lattice& lattice, const Budget& budget) : budget_(budget), verdicts_(lattice) {}
+  virtual void compute(int goal_layer) = 0;
+  virtual void compute_removals() = 0;
+  /// Keeps the present values for restore(), which brings them back as often as asked.
+  virtual void save() = 0;
+  virtual void restore() = 0;
 
   Budget budget_;
   int goal_ = 0;
   Verdicts verdicts_;
   std::int64_t ik_nodes_ = 0, edges_ = 0;
+
+ private:
+  /// Of the values without removals and the last layer as the goal.
+  enum class Unremoved { kUnknown, kPresent, kSaved };
+  void save_unremoved();
+  Unremoved unremoved_ = Unremoved::kUnknown;
 };
 
 /// kBounded may leave out nodes that a lower bound proves to lie on no best path: they then read as unreachable, or as costlier
 /// than they are. best() and every best path are exact all the same.
 enum class Extent { kWhole, kBounded };
-/// Of grids (SrsLattice) in vector code; of explicit lattices by plain loops, always whole.
+/// Of grids (SrsLattice) in vector code; of explicit lattices by plain loops, always whole. What `retired`, of any lattice, had
+/// allocated serves again: pages fresh from the system take a quarter of a plan that meets obstacles.
 [[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent = Extent::kWhole,
-                                                        const Budget& budget = {});
+                                                        const Budget& budget = {}, std::unique_ptr<CostToGo> retired = nullptr);
 
 }  // namespace swivel

@@ -29,14 +29,20 @@ struct PathFirstOptions {
 
 struct SearchCounters {
   std::int64_t expansions = 0, iterations = 0;
+  SlotPath candidate;  ///< tried last
+};
+/// What failed in a search of the same lattice before, and is likely to fail again.
+struct Suspects {
+  std::vector<NodeQuestion> nodes;
+  std::vector<EdgeQuestion> edges;
 };
 
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid
 /// is the least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
-/// Throws Stopped.
+/// Suspects are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                       SearchCounters& counters);
+                                       SearchCounters& counters, const Suspects& suspects = {});
 
 /// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
 /// the cost-to-go with that layer as its goal. Throws Stopped.

@@ -11,7 +11,7 @@ namespace swivel {
 enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
 
 /// What a node fails by, numbered as the Validity likes: a hint for questions about nodes nearby, which often fail by the same.
-using Fault = int;
+using Fault = std::int64_t;
 inline constexpr Fault kNoFault = -1;
 
 struct NodeQuestion {

@@ -14,13 +14,15 @@ namespace swivel {
 class Verdicts {
  public:
   explicit Verdicts(const Lattice& lattice);
+  /// Nothing is known any more. As quick as what was known is little.
+  void clear();
 
   [[nodiscard]] Verdict node(int layer, int slot) const { return node_[index(layer, slot)]; }
   /// Of the slots from `slot` on.
   [[nodiscard]] const Verdict* nodes(int layer, int slot) const { return node_.data() + index(layer, slot); }
   /// Of every node, layer by layer in slot order.
   [[nodiscard]] const std::vector<Verdict>& nodes() const { return node_; }
-  void keep_node(int layer, int slot) { node_[index(layer, slot)] = Verdict::kValid; }
+  void keep_node(int layer, int slot);
   void remove_node(int layer, int slot);
 
   /// Slot a of `layer`, slot b of the next.
@@ -68,6 +70,7 @@ class Verdicts {
 
   std::vector<std::size_t> first_;  // of each layer
   std::vector<Verdict> node_;
+  std::vector<std::size_t> known_;  // indices of nodes, as they came to be known
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
   std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::int64_t removed_ = 0;

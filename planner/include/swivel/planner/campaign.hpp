@@ -13,7 +13,7 @@ struct CampaignOptions {
   std::uint64_t seed = 1;
   Shard shard;
   std::uint64_t skip = 0;  ///< episodes of the shard that are answered already, from its first on
-  PlanOptions plan;        ///< threads: episodes planned at once, each by one thread; evidence, progress and record are ignored
+  PlanOptions plan;        ///< threads: episodes planned at once, each by one thread; evidence and progress are ignored
   /// Called by the planning threads, several at a time and in any order, with every answer, before its row.
   std::function<void(std::uint64_t episode, const PlanResult& result)> planned;
 };

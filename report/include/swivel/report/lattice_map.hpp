@@ -52,9 +52,8 @@ struct LatticeMap {
 };
 
 /// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
-/// search asked about; with `full`, or where the record is an eager planner's, for every node. Throws Stopped.
-[[nodiscard]] LatticeMap make_map(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record, bool full,
-                                  const Budget& budget = {});
+/// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.
+[[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
 /// The map in text, one panel per inhabited label: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for
 /// as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.

@@ -12,7 +12,7 @@ namespace swivel {
 /// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi) map, plots over s, summary.
 /// `result_json`: the result in the format of `--json`. Made after planning: clearances along the path are asked for again. Throws
 /// Stopped.
-[[nodiscard]] std::string to_page(const PreparedRobot& robot, const Problem& problem, const SearchRecord& record,
-                                  const LatticeMap& map, const std::string& result_json, const Budget& budget = {});
+[[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json,
+                                  const Budget& budget = {});
 
 }  // namespace swivel

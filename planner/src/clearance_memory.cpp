@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "clearance_memory.hpp"
+
+#include <algorithm>
+
+namespace swivel {
+
+void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, int robot_bodies) {
+  // Far more than a search asks about; a planner that runs for days in a changing scene must not grow for days.
+  constexpr std::size_t kMost = 1'000'000;
+  if (nodes_.size() + edges_.size() > kMost) {
+    nodes_.clear();
+    edges_.clear();
+    failed_nodes_.clear();
+    failed_edges_.clear();
+  }
+  learn();
+  plan_ = plan;
+  met_ = std::move(met);
+  robot_bodies_ = robot_bodies;
+  unchanged_since_ = 0;
+  changed_.clear();
+  for (std::size_t k = 0; k < met_.size(); ++k)
+    if (met_[k] == plan)
+      changed_.push_back(static_cast<int>(k));
+    else
+      unchanged_since_ = std::max(unchanged_since_, met_[k]);
+}
+
+void ClearanceMemory::object_removed(int object) {
+  learn();
+  const int body = robot_bodies_ + object;
+  const auto renumber = [&](auto& findings) {
+    for (auto& [key, finding] : findings) {
+      if (finding.valid || finding.pair.b < body) continue;
+      // Of the rest of the bodies nothing is known: as if no plan had found anything.
+      if (finding.pair.b == body)
+        finding = {{0, true, kNoPair, finding.listed}};
+      else
+        --finding.pair.b;
+    }
+  };
+  renumber(nodes_);
+  renumber(edges_);
+}
+
+ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) const {
+  if (!finding.valid) {
+    const int object = finding.pair.b - robot_bodies_;
+    return object < 0 || met_[static_cast<std::size_t>(object)] <= finding.plan ? Holds::kAll : Holds::kNothing;
+  }
+  if (finding.plan == 0 || finding.plan < unchanged_since_) return Holds::kNothing;
+  return changed_.empty() || finding.plan == plan_ ? Holds::kAll : Holds::kUnlessChanged;
+}
+
+const ClearanceMemory::NodeFinding* ClearanceMemory::node(int layer, int slot) const {
+  const auto found = nodes_.find(key(layer, slot));
+  return found == nodes_.end() ? nullptr : &found->second;
+}
+
+const ClearanceMemory::Finding* ClearanceMemory::edge(int layer, int a, int b) const {
+  const auto found = edges_.find({key(layer, a), b});
+  return found == edges_.end() ? nullptr : &found->second;
+}
+
+void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair) {
+  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair}, question.q, answer}});
+}
+
+void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair) {
+  noted_edges_.push_back({{key(question.layer, question.a), question.b}, {{plan_, valid, pair}, question.qa, question.qb}});
+}
+
+void ClearanceMemory::learn() {
+  const auto take = [](auto& noted, auto& findings, auto& failed) {
+    for (auto& [key, finding] : noted) {
+      auto& known = findings[key];
+      finding.listed = known.listed || !finding.valid;
+      if (finding.listed && !known.listed) failed.push_back(key);
+      known = finding;
+    }
+    noted.clear();
+  };
+  take(noted_nodes_, nodes_, failed_nodes_);
+  take(noted_edges_, edges_, failed_edges_);
+}
+
+Suspects ClearanceMemory::failures() const {
+  Suspects failures;
+  for (const std::uint64_t node : failed_nodes_)
+    if (const NodeFinding& finding = nodes_.at(node); !finding.valid)
+      failures.nodes.push_back({static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), finding.q});
+  for (const EdgeKey& edge : failed_edges_)
+    if (const EdgeFinding& finding = edges_.at(edge); !finding.valid)
+      failures.edges.push_back({static_cast<int>(edge.tail >> 32), static_cast<int>(static_cast<std::uint32_t>(edge.tail)), edge.b,
+                                finding.qa, finding.qb});
+  return failures;
+}
+
+}  // namespace swivel

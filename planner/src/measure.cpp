@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Measured between the base's vertical and the elbow, in the plane normal to S->W: the convention of vendors and of Shimizu 2008.
+double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config& q) {
+  const double axis_angle = first_plane(arm, tool).angle_of(arm.elbow_axis(q));
+  return wrap_angle(axis_angle +
+                    (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
+}
+
+void measure_tool_path_error(const Chain& chain, const ToolPath& path, const Budget& budget, PlanResult& result) {
+  double sum = 0;
+  std::int64_t samples = 0;
+  const int rows = static_cast<int>(result.trajectory.size());
+  for (int i = 0; i + 1 < rows; ++i) {
+    if (i % 64 == 0) budget.poll(Stage::kMeasuring, i, rows);
+    const Config& q = result.trajectory[static_cast<std::size_t>(i)].q;
+    for (const double error : path_deviation(chain, path, i, q, result.trajectory[static_cast<std::size_t>(i) + 1].q - q)) {
+      sum += error;
+      ++samples;
+      result.tool_path_error_mm.max = std::max(result.tool_path_error_mm.max, 1e3 * error);
+    }
+  }
+  result.tool_path_error_mm.mean = 1e3 * sum / static_cast<double>(samples);
+  result.evidence.tool_path_error = true;
+}
+
+void measure_postures(const PreparedRobot& robot, const ToolPath& path, const World& world, const Budget& budget,
+                      PlanResult& result) {
+  World::Query query(world);
+  std::optional<double> least;
+  std::optional<LeastMargin> margin;
+  double manipulability = std::numeric_limits<double>::infinity();
+  std::vector<double> arm_angle;
+  const int rows = static_cast<int>(result.trajectory.size());
+  for (int i = 0; i < rows; ++i) {
+    budget.poll(Stage::kMeasuring, i, rows);
+    const Config& q = result.trajectory[static_cast<std::size_t>(i)].q;
+    manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
+    arm_angle.push_back(conventional_arm_angle(robot.srs(), path.layer(i).tool, q));
+    const auto clearance = query.clearance(q);
+    if (!clearance) continue;
+    least = std::min(least.value_or(clearance->least), clearance->least);
+    if (!margin || clearance->margin() < margin->margin)
+      margin = {clearance->margin(), clearance->distance, clearance->required, world.names(clearance->pair), i};
+  }
+  result.min_clearance = least;
+  result.min_margin = std::move(margin);
+  result.min_manipulability = manipulability;
+  result.arm_angle = std::move(arm_angle);
+  result.evidence.postures = true;
+}
+
+}  // namespace
+
+void measure(const PreparedRobot& robot, const ToolPath& path, const World& world, const Evidence& wanted, const Budget& budget,
+             PlanResult& result) {
+  if (wanted.tool_path_error) measure_tool_path_error(robot.arm().chain, path, budget, result);
+  if (wanted.postures) measure_postures(robot, path, world, budget, result);
+}
+
+}  // namespace swivel

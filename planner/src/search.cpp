@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "search.hpp"
+
+#include "stopwatch.hpp"
+
+namespace swivel {
+
+Found search_eagerly(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+                     Counters& counters) {
+  Found found;
+  EagerOutcome eager;
+  try {
+    if (options.planner == PlannerKind::kEager)
+      eager_search(lattice, validity, options.eager_search, budget, eager);
+    else
+      eager_dp(lattice, validity, budget, eager);
+    found = {true, eager, eager.deepest, eager.path};
+  } catch (const Stopped&) {
+  }
+  counters.ik_nodes = eager.ik_nodes;
+  counters.edges = eager.edges;
+  counters.expansions = eager.expansions;
+  return found;
+}
+
+namespace {
+
+/// The beginning of a path that is proved.
+SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Validity& validity) {
+  SlotPath proved;
+  for (const int slot : path) {
+    const int layer = static_cast<int>(proved.size());
+    if (verdicts.node(layer, slot) != Verdict::kValid) break;
+    if (layer > 0 && validity.asks_edges() && verdicts.edge(layer - 1, proved.back(), slot) != Verdict::kValid) break;
+    proved.push_back(slot);
+  }
+  return proved;
+}
+
+}  // namespace
+
+Found search_lazily(CostToGo& togo, bool swept, CollisionValidity& validity, const Suspects& suspects, const PlanOptions& options,
+                    Counters& counters, std::map<std::string, double>& time_ms) {
+  Stopwatch watch;
+  Found found;
+  SearchCounters searched;
+  // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
+  const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
+  try {
+    if (!swept) togo.sweep(togo.lattice().layers() - 1);
+    time_ms["sweep"] = watch.lap();
+    found.outcome = path_first(togo, validity, path_first_options, searched, suspects);
+    found.decided = true;
+    found.valid_path = found.outcome.path;
+    time_ms["search"] = watch.lap();
+    if (found.outcome.path.empty()) {
+      togo.budget().tell(Stage::kReach);
+      found.deepest = deepest_valid_layer(togo, validity, path_first_options, searched);
+      std::int64_t expansions = 0;  // no part of the search
+      if (*found.deepest >= 0) found.valid_path = best_path(togo, expansions);
+      time_ms["reach"] = watch.lap();
+    }
+  } catch (const Stopped&) {
+    found.valid_path = proved_part(searched.candidate, togo.verdicts(), validity);
+  }
+  counters.ik_nodes = togo.ik_nodes();
+  counters.edges = togo.edges();
+  counters.expansions = searched.expansions;
+  counters.iterations = searched.iterations;
+  return found;
+}
+
+}  // namespace swivel
