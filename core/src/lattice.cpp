@@ -98,6 +98,10 @@ bool Lattice::step_allowed(int layer, const Config& delta) const {
   return true;
 }
 
+double Lattice::rounded_cost(double cost) const {
+  return rounded(cost, cost_unit_);
+}
+
 double Lattice::edge_cost(const Config& delta) const {
   double x[kDof];
   for (std::size_t k = 0; k < kDof; ++k) x[k] = cost_scale_[k] * delta[static_cast<Eigen::Index>(k)];

@@ -18,7 +18,8 @@ struct EdgeCost {
   double cost = 0;
 };
 /// Edges point from the goal towards the start, so that a search from the goal yields every node's cost-to-go and ties can be
-/// settled from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer at no cost.
+/// settled from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer. What a node costs itself counts on the
+/// edges that lead to it.
 using Graph = boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
@@ -53,7 +54,7 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
   std::vector<EdgeCost> costs;
   for (std::size_t k = 0; k < valid.layers.back().size(); ++k) {
     ends.emplace_back(0, built.first.back() + k);
-    costs.push_back({0.0});
+    costs.push_back({valid.cost(valid.layers.size() - 1, k)});
   }
   built.least_before.assign(valid.layers.size(), 0.0);
   std::vector<EdgeQuestion> questions;
@@ -74,7 +75,7 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
       successors.for_each(node, outcome.edges, [&](int b, const Config& delta) {
         const auto& head = next[static_cast<std::size_t>(b)];
         candidate_ends.emplace_back(built.first[i + 1] + static_cast<std::size_t>(b), built.first[i] + a);
-        candidate_costs.push_back({lattice.edge_cost(delta)});
+        candidate_costs.push_back({valid.cost(i, a) + lattice.edge_cost(delta)});
         if (validity.asks_edges()) questions.push_back({layer, node.slot, head.slot, node.q, head.q});
       });
     }

@@ -47,6 +47,7 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
   // best[layer][node] = index of the best successor; smallest slot among equals.
   std::vector<std::vector<int>> best(valid.layers.size());
   std::vector<double> value(valid.layers.back().size(), 0.0), here;
+  if (!valid.costs.empty()) value = valid.costs.back();
   struct Candidate {
     double total;
     int b;
@@ -70,7 +71,7 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
                 [](const Candidate& x, const Candidate& y) { return x.total != y.total ? x.total < y.total : x.b < y.b; });
       for (const Candidate& candidate : candidates)
         if (edge_valid(validity, layer, valid.layers[i][a], next[static_cast<std::size_t>(candidate.b)])) {
-          here[a] = candidate.total;
+          here[a] = valid.cost(i, a) + candidate.total;
           best[i][a] = candidate.b;
           break;
         }

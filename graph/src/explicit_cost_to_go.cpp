@@ -98,13 +98,14 @@ void ExplicitCostToGo::settle(int layer, Values& out) {
     relax(layer, layer, layer + 1, value_[static_cast<std::size_t>(layer) + 1], out);
   for (int slot = 0; slot < count; ++slot)
     if (removed(layer, slot)) out[static_cast<std::size_t>(slot)] = kUnreachable;
-  const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer);
-  if (!edges) return;
-  for (const auto& [a, heads] : edges->tails) {
-    double& value = out[static_cast<std::size_t>(a)];
-    const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
-    if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
-  }
+  if (const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer))
+    for (const auto& [a, heads] : edges->tails) {
+      double& value = out[static_cast<std::size_t>(a)];
+      const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
+      if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
+    }
+  if (const double* own = verdicts_.costs(layer))
+    for (double& value : out) value += *own++;
 }
 
 void ExplicitCostToGo::compute(int goal_layer) {
@@ -175,6 +176,7 @@ Config ExplicitCostToGo::config(int layer, int slot) {
 
 void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
   const Config q = config(layer, slot);
+  const double own = verdicts_.cost(layer, slot);
   out.clear();
   for (int b = 0; b < lattice_->slots(layer + 1); ++b) {
     const double rest = at(layer + 1, b);
@@ -182,7 +184,7 @@ void ExplicitCostToGo::steps(int layer, int slot, double bound, std::vector<Step
     const Config delta = lattice_->delta(q, config(layer + 1, b));
     if (!lattice_->step_allowed(layer, delta)) continue;
     const double cost = lattice_->edge_cost(delta);
-    if (cost + rest <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, cost});
+    if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, own + cost});
   }
 }
 

@@ -32,7 +32,7 @@ class ExplicitCostToGo final : public CostToGo {
   using Values = std::vector<double>;  // [slot]
   /// Least edge cost plus value over `others`, for every node of a layer; `step_layer` numbers the step between the two.
   void relax(int step_layer, int layer, int other_layer, const Values& others, Values& out);
-  /// The same for one node, by plain loops over what is not removed.
+  /// The same for one node, by plain loops over what is not removed. Neither counts what the node itself costs.
   [[nodiscard]] double relax_one(int layer, int slot);
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before);
   /// Values of a layer from those of the next, removals left out.

@@ -82,13 +82,14 @@ class GridCostToGo final : public CostToGo {
   /// Chunks of the circle that lie in the windows of these.
   [[nodiscard]] Marks widened(const Marks& columns) const;
   void bar(Block& block) const;
+  void add_costs(Block& block) const;
   void cut(Block& block) const;
   void settle(Block& block);
   void store(const Block& block);
   void load(int layer, const Marks& columns, Block& block);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
-  [[nodiscard]] double relax_one(int layer, int slot);
+  [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Block& before);
   void relax_removed(Block& block);
   void forget();  // everything is unreachable

@@ -52,7 +52,7 @@ double GridCostToGo::relax_one(int layer, int slot) {
         if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
           best = value;
       });
-  return best;
+  return verdicts_.cost(layer, slot) + best;
 }
 
 void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
@@ -60,13 +60,14 @@ void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& o
   const int offset = (lattice_->angle_of(slot) - solved_.run.first + n) % n;
   const bool known = solved_.layer == layer && solved_.family == lattice_->family_of(label) && offset < solved_.run.count;
   const Config q = known ? solved_.nodes.nodes->config(label, solved_.nodes.shift + offset) : config(layer, slot);
+  const double own = verdicts_.cost(layer, slot);
   out.clear();
   each_in_window(
       layer, slot, q, [&](double rest) { return rest != kUnreachable && rest <= bound; },
       [&](int b, double rest, const Config& delta) {
         if (!lattice_->step_allowed(layer, delta)) return;
         const double cost = lattice_->edge_cost(delta);
-        if (cost + rest <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, cost});
+        if (own + (cost + rest) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, own + cost});
       });
 }
 
@@ -76,12 +77,24 @@ void GridCostToGo::relax_removed(Block& block) {
   for (const auto& [a, edges] : removed->tails) {
     if (!block.find(lattice_->label_of(a), lattice_->angle_of(a) / kChunk)) continue;
     double& value = block.row[static_cast<std::size_t>(a)];
-    const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(block.layer + 1, edge.other) == value; };
+    const double own = verdicts_.cost(block.layer, a);
+    const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
+      return own + (edge.cost + at(block.layer + 1, edge.other)) == value;
+    };
     if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(block.layer, a);
   }
 }
 
-// --- removals
+// --- removals and costs
+
+void GridCostToGo::add_costs(Block& block) const {
+  const double* own = verdicts_.costs(block.layer);
+  if (!own) return;
+  const int n = lattice_->angles();
+  for (const Part& part : block.parts)
+    for (int slot = part.label * n + part.begin(); slot < part.label * n + part.end(n); ++slot)
+      block.row[static_cast<std::size_t>(slot)] += own[slot];
+}
 
 void GridCostToGo::compute_removals() {
   // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 40 bytes a node.
@@ -126,6 +139,11 @@ void GridCostToGo::repair_once() {
       here_changed[static_cast<std::size_t>(lattice_->angle_of(slot) / kChunk)] = 1;
       here_any = true;
     };
+    const auto pending = verdicts_.pending.find(layer);
+    // Nodes now cost what they cost first, with the layer after as it was; where that changed, too, they are relaxed next.
+    if (pending != verdicts_.pending.end())
+      for (const int slot : pending->second.raised)
+        if (const double value = at(layer, slot); value != kUnreachable) set(slot, verdicts_.cost(layer, slot) + value);
     if (any && layer == 0 && lattice_->has_start()) {
       if (at(0, lattice_->start_slot()) != kUnreachable) set(lattice_->start_slot(), relax_one(0, lattice_->start_slot()));
     } else if (any) {
@@ -134,6 +152,7 @@ void GridCostToGo::repair_once() {
       load(layer, dependent, *here);
       relax(layer, *here, *next);
       bar(*here);
+      add_costs(*here);
       relax_removed(*here);
       cut(*here);
       for (const Part& part : here->parts)
@@ -141,7 +160,6 @@ void GridCostToGo::repair_once() {
           set(slot, here->row[static_cast<std::size_t>(slot)]);
     }
     std::swap(here, next);  // its joints serve once more
-    const auto pending = verdicts_.pending.find(layer);
     if (pending != verdicts_.pending.end()) {
       for (const int slot : pending->second.nodes)
         if (at(layer, slot) != kUnreachable) set(slot, kUnreachable);

@@ -173,6 +173,7 @@ void GridCostToGo::sweep_once() {
   Block* next = block_[0].get();
   Block* here = block_[1].get();
   start_from(goal_, *next);
+  add_costs(*next);
   cut(*next);
   settle(*next);
   store(*next);
@@ -187,6 +188,7 @@ void GridCostToGo::sweep_once() {
     mark_reach(layer, *next, *here);
     relax(layer, *here, *next);
     bar(*here);
+    add_costs(*here);
     relax_removed(*here);
     cut(*here);
     settle(*here);

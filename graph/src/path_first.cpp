@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <deque>
 #include <stdexcept>
+#include <unordered_set>
 
 #include "swivel/core/timeline.hpp"
 
@@ -36,12 +37,13 @@ class FailFirst {
 
 class Search {
  public:
-  Search(CostToGo& togo, Validity& validity, const PathFirstOptions& options)
+  Search(CostToGo& togo, Validity& validity, const PathFirstOptions& options, bool asks_costs)
       : togo_(togo),
         verdicts_(togo.verdicts()),
         lattice_(togo.lattice()),
         validity_(validity),
         options_(options),
+        asks_costs_(asks_costs),
         fail_first_(lattice_.layers()) {}
 
   SearchOutcome run(SearchCounters& counters, const Suspects& suspects) {
@@ -54,6 +56,10 @@ class Search {
       if (path.empty()) return {};
       counters.candidate = path;
       ++counters.iterations;
+      if (asks_costs_ && costs_more(path)) {
+        togo_.repair();
+        continue;
+      }
       fail_first_.next_round();
       const std::int64_t removed = verdicts_.removed();
       if (valid(path)) return {path, togo_.best()};
@@ -67,6 +73,46 @@ class Search {
     int layer, slot;
     Fault fault;
   };
+
+  /// Asks what the path's nodes cost, where that is not known and counts as 0, and sets it; true where a node costs something. A
+  /// node's neighbours often cost as much, and each round in which a path turns out to cost more asks about twice as many of them
+  /// as the one before: so rounds are few where every node costs something, and questions are few where hardly any does.
+  bool costs_more(const SlotPath& path) {
+    const Span span("costs");
+    std::vector<NodeQuestion> questions;
+    std::unordered_set<std::int64_t> asked;
+    const auto ask_about = [&](int layer, int slot) {
+      if (verdicts_.knows_cost(layer, slot) || togo_.at(layer, slot) == kUnreachable) return;
+      if (!asked.insert((std::int64_t{layer} << 32) + slot).second) return;
+      if (questions.size() % 256 == 0) togo_.budget().poll();
+      questions.push_back({layer, slot, togo_.config(layer, slot)});
+    };
+    for (int layer = 0; layer < static_cast<int>(path.size()); ++layer) {
+      const int slot = path[static_cast<std::size_t>(layer)];
+      if (verdicts_.knows_cost(layer, slot)) continue;
+      ask_about(layer, slot);
+      for (const int by : {-1, 1})
+        for (int beside = slot, k = 0; k < cost_reach_; ++k) {
+          beside = lattice_.beside(layer, beside, by);
+          if (beside < 0 || beside == slot) break;
+          ask_about(layer, beside);
+        }
+    }
+    bool more = false;
+    std::vector<double> costs;
+    constexpr std::size_t kMost = 4096;  // at once, so that the budget is polled
+    for (std::size_t first = 0; first < questions.size(); first += kMost) {
+      const auto some = std::span<const NodeQuestion>(questions).subspan(first, std::min(kMost, questions.size() - first));
+      costs.assign(some.size(), 0.0);
+      validity_.costs(some, costs);
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        verdicts_.set_cost(some[k].layer, some[k].slot, costs[k]);
+        more = more || (costs[k] > 0 && path[static_cast<std::size_t>(some[k].layer)] == some[k].slot);
+      }
+    }
+    if (more) cost_reach_ = std::max(1, std::min(2 * cost_reach_, kMostReach));
+    return more;
+  }
 
   /// Asks what is not known of the path, failures first, and removes what fails.
   bool valid(const SlotPath& path) {
@@ -229,6 +275,9 @@ class Search {
   const Lattice& lattice_;
   Validity& validity_;
   PathFirstOptions options_;
+  bool asks_costs_;
+  static constexpr int kMostReach = 1 << 20;
+  int cost_reach_ = 0;  // neighbours on either side that costs_more() asks about
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
@@ -239,7 +288,7 @@ class Search {
 
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
                          const Suspects& suspects) {
-  return Search(cost_to_go, validity, options).run(counters, suspects);
+  return Search(cost_to_go, validity, options, validity.asks_costs()).run(counters, suspects);
 }
 
 int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
@@ -248,7 +297,7 @@ int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptio
     if (optimistic < 0) return -1;
     const std::int64_t removed = togo.verdicts().removed();
     togo.sweep(optimistic);
-    if (!path_first(togo, validity, options, counters).path.empty()) return optimistic;
+    if (!Search(togo, validity, options, false).run(counters).path.empty()) return optimistic;  // at whatever cost
     if (togo.verdicts().removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }

@@ -11,6 +11,7 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
   const Span span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
+  if (validity.asks_costs()) valid.costs.resize(valid.layers.size());
   std::vector<Lattice::Node> nodes;
   std::vector<NodeQuestion> questions;
   std::vector<NodeAnswer> answers;
@@ -26,6 +27,13 @@ ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Bu
         std::count_if(answers.begin(), answers.end(), [](const NodeAnswer& answer) { return answer.valid; })));
     for (std::size_t k = 0; k < questions.size(); ++k)
       if (answers[k].valid) valid.layers[static_cast<std::size_t>(layer)].push_back({questions[k].slot, questions[k].q});
+    if (valid.costs.empty()) continue;
+    questions.clear();
+    for (const ValidNodes::Node& node : valid.layers[static_cast<std::size_t>(layer)])
+      questions.push_back({layer, node.slot, node.q});
+    std::vector<double>& costs = valid.costs[static_cast<std::size_t>(layer)];
+    costs.resize(questions.size());
+    validity.costs(questions, costs);
   }
   return valid;
 }

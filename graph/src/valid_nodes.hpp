@@ -11,6 +11,8 @@ namespace swivel {
 struct ValidNodes {
   using Node = Lattice::Node;
   std::vector<std::vector<Node>> layers;
+  std::vector<std::vector<double>> costs;  ///< of the nodes themselves; empty where none costs anything
+  [[nodiscard]] double cost(std::size_t layer, std::size_t k) const { return costs.empty() ? 0.0 : costs[layer][k]; }
 };
 /// Asks about every node that exists; adds to `ik_nodes` those that were solved. Throws Stopped.
 [[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes);

@@ -16,6 +16,8 @@ Verdicts::Verdicts(const Lattice& lattice) {
 void Verdicts::clear() {
   for (const std::size_t node : known_) node_[node] = Verdict::kUnknown;
   known_.clear();
+  costs_.clear();
+  cost_known_.clear();
   edge_.clear();
   removed_edges_.clear();
   pending.clear();
@@ -53,6 +55,17 @@ void Verdicts::remove_edge(int layer, int a, int b, double cost) {
   removed_edges_[layer].tails[a].push_back({b, cost});
   removed_edges_[layer].heads[b].push_back({a, cost});
   pending[layer].tails.push_back(a);
+}
+
+void Verdicts::set_cost(int layer, int slot, double cost) {
+  if (cost_known_.empty()) cost_known_.resize(node_.size());
+  cost_known_[index(layer, slot)] = 1;
+  if (!(cost > 0)) return;
+  const auto at = static_cast<std::size_t>(layer);
+  costs_.resize(first_.size());
+  if (costs_[at].empty()) costs_[at].resize((at + 1 < first_.size() ? first_[at + 1] : node_.size()) - first_[at]);
+  costs_[at][static_cast<std::size_t>(slot)] = cost;
+  pending[layer].raised.push_back(slot);
 }
 
 const Verdicts::RemovedEdges* Verdicts::removed_edges(int layer) const {

@@ -99,6 +99,8 @@ class Lattice {
   /// The least power of two that no cost_scale() exceeds; 1 where all are 0. Costs are rounded in this unit, so sums of a path's
   /// costs are exact whatever the size of the weights.
   [[nodiscard]] double cost_unit() const { return cost_unit_; }
+  /// A cost of up to 2048 units, rounded as edge_cost() is.
+  [[nodiscard]] double rounded_cost(double cost) const;
 
  protected:
   Lattice(const Lattice&) = default;  // copied whole, as what it is

@@ -12,9 +12,10 @@ namespace swivel {
 
 inline constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-/// The cost from the nodes to the goal layer over the lattice minus what has been removed from it: a backward dynamic program over
-/// layers. Repaired, not recomputed, after removals; so it is always the perfect heuristic of the lattice that remains. How it is
-/// computed depends on the kind of lattice, see make_cost_to_go.
+/// The cost from the nodes to the goal layer over the lattice minus what has been removed from it, what the nodes themselves cost
+/// included, first and last: a backward dynamic program over layers. Repaired, not recomputed, after removals and where nodes turn
+/// out to cost something; so it is always the perfect heuristic of what is known. How it is computed depends on the kind of
+/// lattice, see make_cost_to_go.
 /// Whatever takes long throws Stopped once the budget is spent; verdicts are kept, and at() means nothing then.
 class CostToGo {
  public:
@@ -29,7 +30,7 @@ class CostToGo {
   /// removals and the last layer as its goal, as they were found before; else sweep() comes next.
   [[nodiscard]] bool restart(const Budget& budget);
 
-  /// Cost-to-go with every node of `goal_layer` as a goal; removals are kept.
+  /// Cost-to-go with every node of `goal_layer` as a goal; verdicts are kept.
   void sweep(int goal_layer);
   [[nodiscard]] int goal_layer() const { return goal_; }
   /// Exact on every best path; kUnreachable where none is known.
@@ -37,11 +38,11 @@ class CostToGo {
   /// Least over layer 0, exact; kUnreachable when no path is left.
   [[nodiscard]] virtual double best() const = 0;
 
-  /// What has been asked, and what is removed: values follow at the next repair().
+  /// What has been asked, what is removed, what nodes cost: values follow at the next repair().
   [[nodiscard]] Verdicts& verdicts() { return verdicts_; }
   [[nodiscard]] const Verdicts& verdicts() const { return verdicts_; }
   void remove_edge(int layer, int a, int b);
-  /// Makes best() exact again after removals.
+  /// Makes best() exact again after removals and costs.
   void repair();
 
   /// Deepest layer that layer 0 reaches over what remains; -1 when layer 0 is empty.
@@ -51,7 +52,7 @@ class CostToGo {
   [[nodiscard]] virtual Config config(int layer, int slot) = 0;
   struct Step {
     int slot = 0;
-    double cost = 0;
+    double cost = 0;  ///< of the edge and of the node that it leaves
   };
   /// Replaces `out` by the edges that are left from a node to the next layer with cost + at() <= bound, in the order of slots.
   virtual void steps(int layer, int slot, double bound, std::vector<Step>& out) = 0;

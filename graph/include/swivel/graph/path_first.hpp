@@ -38,8 +38,9 @@ struct Suspects {
 };
 
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
-/// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. The first path found valid
-/// is the least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
+/// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
+/// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
+/// least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
 /// Suspects are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                        SearchCounters& counters, const Suspects& suspects = {});

@@ -36,7 +36,8 @@ struct NodeAnswer {
 
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once. A batch throws
 /// Stopped where the budget of the caller is spent.
-/// Nodes: manipulability, clearance. Edges (both ends valid, joint steps allowed): tool-path error, clearance of the motion.
+/// Nodes: manipulability, clearance, a user's check. Edges (both ends valid, joint steps allowed): tool-path error, clearance of
+/// the motion, a user's check.
 class Validity {
  public:
   virtual ~Validity() = default;
@@ -46,6 +47,13 @@ class Validity {
   virtual void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) = 0;
   /// False when every edge is valid as it stands, so that none need be asked.
   [[nodiscard]] virtual bool asks_edges() const = 0;
+  /// What nodes themselves cost, valid or not: >= 0, rounded by Lattice::rounded_cost. Asked only where asks_costs(). Spans of
+  /// equal size.
+  virtual void costs(std::span<const NodeQuestion> questions, std::span<double> costs) {
+    static_cast<void>(questions), static_cast<void>(costs);
+  }
+  /// False when no node costs anything.
+  [[nodiscard]] virtual bool asks_costs() const { return false; }
 };
 
 }  // namespace swivel

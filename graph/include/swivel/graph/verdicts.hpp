@@ -10,7 +10,8 @@
 
 namespace swivel {
 
-/// What the validity has said of the nodes and edges of a lattice, and which of them are removed. Memory: a byte a node.
+/// What the validity has said of the nodes and edges of a lattice: which of them are removed, and what nodes cost themselves.
+/// Memory: a byte a node, and 9 where a cost is known in its layer.
 class Verdicts {
  public:
   explicit Verdicts(const Lattice& lattice);
@@ -33,6 +34,20 @@ class Verdicts {
   /// Nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 
+  /// What a node costs besides the edges to and from it: 0 until it is known.
+  [[nodiscard]] double cost(int layer, int slot) const {
+    const double* costs = this->costs(layer);
+    return costs ? costs[slot] : 0;
+  }
+  /// Of all slots of a layer; null where all are 0.
+  [[nodiscard]] const double* costs(int layer) const {
+    return costs_.empty() || costs_[static_cast<std::size_t>(layer)].empty() ? nullptr
+                                                                             : costs_[static_cast<std::size_t>(layer)].data();
+  }
+  [[nodiscard]] bool knows_cost(int layer, int slot) const { return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0; }
+  /// Once a node.
+  void set_cost(int layer, int slot, double cost);
+
   struct HalfEdge {
     int other = 0;  ///< slot
     double cost = 0;
@@ -44,10 +59,11 @@ class Verdicts {
   /// Null where none is.
   [[nodiscard]] const RemovedEdges* removed_edges(int layer) const;
 
-  /// Removed since the cost-to-go was last made exact, by layer.
+  /// What came in since the cost-to-go was last made exact, by layer.
   struct Pending {
-    std::vector<int> nodes;  ///< slots
-    std::vector<int> tails;  ///< slots that lost an edge
+    std::vector<int> nodes;   ///< slots removed
+    std::vector<int> tails;   ///< slots that lost an edge
+    std::vector<int> raised;  ///< slots that cost more than they did
   };
   std::map<int, Pending> pending;
 
@@ -71,6 +87,8 @@ class Verdicts {
   std::vector<std::size_t> first_;  // of each layer
   std::vector<Verdict> node_;
   std::vector<std::size_t> known_;  // indices of nodes, as they came to be known
+  std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
+  std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
   std::map<int, RemovedEdges> removed_edges_;  // by layer of the tail
   std::int64_t removed_ = 0;
