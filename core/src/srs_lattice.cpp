@@ -113,23 +113,39 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     }
 
   const auto m = static_cast<std::size_t>(layers());
-  planes_.reserve(m);
+  planes_ = carried_planes(arm, path, budget);
   reach_.reserve(m);
   circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {
     if (i % 64 == 0) budget.poll(Stage::kLattice, i, layers());
     const Pose& tool = path.layer(i).tool;
-    planes_.push_back(i == 0 ? first_plane(arm, tool) : carry_plane(arm, planes_.back(), tool));
-    reach_.push_back(reach_status(arm, planes_.back().reach));
+    reach_.push_back(reach_status(arm, plane(i).reach));
     const bool reachable = reach_.back() == ReachStatus::kReachable;
     auto& circles = circles_.emplace_back();
-    if (reachable) circles = elbow_circles(arm, planes_.back(), tool);
+    if (reachable) circles = elbow_circles(arm, plane(i), tool);
     const Images& images = images_[kElbowJoint];
     for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it
       elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
   }
 
-  if (problem.start) place_start(*problem.start, problem.source);
+  if (problem.start) place_start(problem);
+}
+
+std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget) {
+  std::optional<ArmPlane> last;  // of the whole path's layers
+  const auto carried = [&](const Pose& tool) { return last ? carry_plane(arm, *last, tool) : first_plane(arm, tool); };
+  for (std::size_t i = 0; i < path.before().size(); ++i) {
+    if (i % 64 == 0) budget.poll();
+    last = carried(path.before()[i]);
+  }
+  std::vector<ArmPlane> planes;
+  planes.reserve(static_cast<std::size_t>(path.size()));
+  for (int i = 0; i < path.size(); ++i) {
+    if (i % 64 == 0) budget.poll();
+    planes.push_back(carried(path.layer(i).tool));
+    if (i > 0 || path.begins_on_layer()) last = planes.back();
+  }
+  return planes;
 }
 
 SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start) {
@@ -144,7 +160,9 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   return images;
 }
 
-void SrsLattice::place_start(const Config& q, const std::string& source) {
+void SrsLattice::place_start(const Problem& problem) {
+  const Config& q = *problem.start;
+  const std::string& source = problem.source;
   const Pose reached = chain_->tool(q);
   const Pose& first = path_->layer(0).tool;
   const double distance = (reached.translation() - first.translation()).norm();
@@ -157,11 +175,13 @@ void SrsLattice::place_start(const Config& q, const std::string& source) {
                        std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) + " to " +
                        std::to_string(upper));
   }
-  if (!(distance <= 1e-6 && angle <= 1e-6)) {
-    char text[160];
+  const double tolerance = problem.start_tolerance;
+  if (!(distance <= tolerance && angle <= tolerance)) {
+    char text[200], pose[40] = "first pose";
+    if (problem.start_at) std::snprintf(pose, sizeof pose, "pose at start_at, %.9g m", *problem.start_at);
     std::snprintf(text, sizeof text,
-                  ": start.joints: the tool is %.3g m and %.3g rad from the path's first pose: allowed are 1e-6 m and 1e-6 rad",
-                  distance, angle);
+                  ": start.joints: the tool is %.3g m and %.3g rad from the path's %s: allowed are %g m and rad (start_tolerance)",
+                  distance, angle, pose, tolerance);
     throw InputError(source + text);
   }
   Start start;

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
+#include "swivel/core/arm.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel {
@@ -76,6 +79,69 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     from = to;
   }
   if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
+}
+
+void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double tolerance, const std::string& source) {
+  constexpr double kOnLayer = 1e-6;  // m and rad
+  const double s = start_at.value_or(0), length = layers_.back().s;
+  const auto refuse = [&] {
+    char text[120];
+    std::snprintf(text, sizeof text, ": start_at: is %.9g m: allowed is from 0 to before the end of the path, at %.9g m", s,
+                  length);
+    throw InputError(source + text);
+  };
+  if (!(s >= 0 && s <= length + kOnLayer)) refuse();
+  const auto gap = [&](const Pose& pose) {
+    return std::max((pose.translation() - tool.translation()).norm(),
+                    Eigen::AngleAxisd(pose.linear().transpose() * tool.linear()).angle());
+  };
+  // The place: on step `first`, by a share `t` of it.
+  int first = 0;
+  double t = 0, least = std::numeric_limits<double>::infinity();
+  const auto try_place = [&](int step, double share) {
+    const double distance = gap(share > 0 ? at(step, share) : layer(step).tool);
+    if (!(distance < least - 1e-9)) return;
+    first = step, t = share, least = distance;
+  };
+  if (!start_at) try_place(0, 0);
+  for (int i = 0; start_at && i < size() && least > kOnLayer; ++i)
+    if (std::abs(layer(i).s - s) <= kOnLayer) try_place(i, 0);
+  for (int i = 0; start_at && i + 1 < size() && least > kOnLayer; ++i) {
+    const PathLayer& step = layer(i);
+    if (step.s > s + kOnLayer || layer(i + 1).s < s - kOnLayer) continue;
+    const double turned = Eigen::AngleAxisd(step.tool.linear().transpose() * tool.linear()).angle();
+    const double share = step.step_length > kOnLayer ? (s - step.s) / step.step_length : turned / step.step_angle;
+    if (share > 0 && share < 1) try_place(i, share);
+  }
+  if (first + 1 >= size()) refuse();
+
+  const bool aside = least > kOnLayer && least <= tolerance;
+  for (int i = 0; i < first; ++i) before_.push_back(layer(i).tool);
+  if (t > 0 || aside) {
+    before_.push_back(layer(first).tool);
+    begins_on_layer_ = false;
+    PathLayer start = layer(first);
+    if (t > 0) {
+      start.s = s;
+      start.waypoint = -1;
+    }
+    start.tool = aside ? tool : at(first, t);
+    const PathLayer& next = layer(first + 1);
+    start.step_length = (next.tool.translation() - start.tool.translation()).norm();
+    start.step_rotation = short_arc(Quaterniond(start.tool.linear()), Quaterniond(next.tool.linear()));
+    start.step_angle = start.step_rotation.norm();
+    layers_[static_cast<std::size_t>(first)] = start;
+  }
+  layers_.erase(layers_.begin(), layers_.begin() + first);
+}
+
+ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget) {
+  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
+  if (problem.start) {
+    const Pose tool = chain.tool(*problem.start);
+    path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
+  }
+  return path;
 }
 
 Pose ToolPath::at(int i, double t) const {

@@ -187,6 +187,10 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(field("edge_clearance"), limits.edge_clearance, kNonNegative);
   number(field("edge_tolerance"), limits.edge_tolerance, kPositive);
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
+  if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "only with one");
+  number(root("start_at"), problem.start_at, kNonNegative);
+  number(root("start_tolerance"), problem.start_tolerance, kPositive);
+  if (problem.start_tolerance > kMostStartTolerance) fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");
   for (std::size_t k = 0; k < kDof; ++k) {
     const double weight = problem.cost.weights[k];
     if (weight_allowed(weight)) continue;

@@ -5,6 +5,7 @@
 #include "bad_input.hpp"
 #include "files.hpp"
 #include "srdf.hpp"
+#include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
 #include "swivel/core/validate.hpp"
@@ -95,7 +96,9 @@ auto with_key(const YamlValue& key, const Read& read) {
 class ProblemReader {
  public:
   explicit ProblemReader(const fs::path& file)
-      : file_(file), root_(load_yaml(file).section({"robot", "path", "scene", "resolution", "limits", "start", "cost", "vary"})) {}
+      : file_(file),
+        root_(load_yaml(file).section(
+            {"robot", "path", "scene", "resolution", "limits", "start", "start_at", "start_tolerance", "cost", "vary"})) {}
 
   Problem read() {
     problem_.source = file_.string();
@@ -105,6 +108,7 @@ class ProblemReader {
     if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
     if (const auto value = root_.find_filled("limits")) read_limits(*value);
     if (const auto value = root_.find_filled("start")) read_start(*value);
+    read_start_place();
     if (const auto value = root_.find_filled("cost")) read_cost(*value);
     if (const auto value = root_.find_filled("vary")) read_vary(*value);
     return std::move(problem_);
@@ -303,6 +307,16 @@ class ProblemReader {
   void read_start(const YamlValue& value) {
     const YamlValue joints = value.section({"joints"}).require("joints", "a list of 7 numbers");
     problem_.start = Config::Map(joints.numbers(kDof, Range::kFinite).data());
+  }
+
+  void read_start_place() {
+    const auto at = root_.find_filled("start_at"), tolerance = root_.find_filled("start_tolerance");
+    for (const auto& value : {at, tolerance})
+      if (value && !problem_.start) value->fail("is given without start", "only with it");
+    if (at) problem_.start_at = at->number(Range::kExtent);
+    if (!tolerance) return;
+    problem_.start_tolerance = tolerance->number(Range::kPositive);
+    if (problem_.start_tolerance > kMostStartTolerance) tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
   }
 
   void read_cost(const YamlValue& value) {

@@ -85,14 +85,13 @@ class Check {
         chain_(robot.arm().chain),
         arm_(robot.srs()),
         rows_(rows),
-        path_(waypoints_in_base(problem), problem.resolution, problem.source),
+        path_(problem_path(problem, chain_)),
         allowed_(allowed_moves(problem, chain_, path_)),
+        planes_(carried_planes(arm_, path_)),
         contacts_(robot, problem),
         along_{limits_.tool_path_error.value_or(kNone), limits_.tool_angle_error.value_or(kNone)},
         at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
                       limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
-    for (int i = 0; i < path_.size(); ++i)
-      planes_.push_back(i == 0 ? first_plane(arm_, path_.layer(i).tool) : carry_plane(arm_, planes_.back(), path_.layer(i).tool));
     if (limits_.step_error) lattice_.emplace(chain_, arm_, path_, problem);
   }
 
@@ -163,9 +162,9 @@ class Check {
   /// The places at a row's s at which the path has the tool's pose, in order. Fails the row where there is none.
   std::vector<Candidate> places_of(std::size_t k) {
     const double s = rows_[k].s;
-    const double length = path_.layer(path_.size() - 1).s;
-    if (!(s >= -kSame && s <= length + kSame)) {
-      fail("row %zu: s = %.9g lies outside the path: allowed are 0 to %.9g", k, s, length);
+    const double begin = path_.layer(0).s, end = path_.layer(path_.size() - 1).s;
+    if (!(s >= begin - kSame && s <= end + kSame)) {
+      fail("row %zu: s = %.9g lies outside the path: allowed are %.9g to %.9g", k, s, begin, end);
       return {};
     }
     const Pose tool = chain_.tool(rows_[k].q);

@@ -22,6 +22,8 @@ TEST(ProblemFile, Defaults) {
   EXPECT_FALSE(problem.limits.edge_clearance);
   EXPECT_FALSE(problem.limits.self_clearance);
   EXPECT_FALSE(problem.start);
+  EXPECT_FALSE(problem.start_at);
+  EXPECT_EQ(problem.start_tolerance, 1e-6);
   EXPECT_EQ(problem.cost.metric, CostMetric::kL2);
   EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() && problem.attached.empty());
 }
@@ -55,6 +57,8 @@ TEST(ProblemFile, EveryKey) {
        "tool_path_error: null, "
        "tool_angle_error: 0.8, tool_speed: 0.9, tool_turn_speed: 1, edges: nodes, edge_clearance: 0, edge_tolerance: 0.001}"},
       {"start", "{joints: [1, 2, 3, 4, 5, 6, 7]}"},
+      {"start_at", "0.25"},
+      {"start_tolerance", "0.002"},
       {"cost", "{metric: time, weights: [1, 2, 3, 4, 5, 6, 0]}"},
       {"vary", "[{object: door, xyz: [0.1, 0.2, 0.3]}, {object: ball, rpy: [0, 0, 1]}]"},
   });
@@ -96,6 +100,8 @@ TEST(ProblemFile, EveryKey) {
   EXPECT_EQ(limits.edge_tolerance, 0.001);
   ASSERT_TRUE(problem.start);
   EXPECT_EQ((*problem.start)[6], 7);
+  EXPECT_EQ(problem.start_at, 0.25);
+  EXPECT_EQ(problem.start_tolerance, 0.002);
   EXPECT_EQ(problem.cost.metric, CostMetric::kTime);
   EXPECT_EQ(problem.cost.weights[5], 6);
   ASSERT_EQ(problem.vary.size(), 2u);

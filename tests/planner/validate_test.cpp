@@ -97,6 +97,15 @@ std::vector<Case> all_cases() {
         },
         none);
   }
+  add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; }, {0, -1, 0.11});
+  add_number(
+      cases, "start_at",
+      [](Problem& p) -> double& {
+        p.start = Config::Zero();
+        return p.start_at.emplace();
+      },
+      negative);
+  cases.push_back({"start_at", [](Problem& p) { p.start_at = 0.1; }});
   for (int k = 0; k < 3; ++k) {
     const std::string at = "[" + std::to_string(k) + "]";
     add_number(

@@ -8,6 +8,7 @@ namespace swivel {
 
 /// Sizes and coordinates, m. Beyond it distances between bodies are no longer right to 0.05 mm.
 inline constexpr double kMostMetres = 1000;
+inline constexpr double kMostStartTolerance = 0.1;  ///< m and rad
 
 /// Names of links, joints, bodies and frames stand in messages, JSON, SVG, pages and on terminals: UTF-8 that XML can hold, without
 /// control characters (C0, DEL, C1), and not empty.

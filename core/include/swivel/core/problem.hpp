@@ -97,6 +97,11 @@ struct Task {
   Resolution resolution;
   Limits limits;
   std::optional<Config> start;  ///< joints to begin with, rad
+  /// Where on the path the start stands, m along the whole of it: layers begin there. Only with `start`; default: its beginning.
+  std::optional<double> start_at;
+  /// How far the tool may stand from the path at the start, m and rad. A start further than 1e-6 from it is taken as it is: the
+  /// first layer has the pose that it has, and the first step leads from there to the path's next layer.
+  double start_tolerance = 1e-6;
   Cost cost;
   bool operator==(const Task&) const = default;
 };

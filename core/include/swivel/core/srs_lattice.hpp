@@ -145,7 +145,7 @@ class SrsLattice final : public Lattice {
   /// Joint 4 of a layer's nodes by the sign of the elbow, where the arm angle does not move it: exact arms, layers without a start.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
   [[nodiscard]] bool elbow_alive(int layer, int elbow) const { return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)]; }
-  void place_start(const Config& q, const std::string& source);
+  void place_start(const Problem& problem);
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 
@@ -161,6 +161,10 @@ class SrsLattice final : public Lattice {
   std::vector<std::uint8_t> elbow_alive_;            // [layer][elbow]: its angle lies within the limits
   std::optional<Start> start_;
 };
+
+/// The planes of a path's layers, carried from the beginning of the whole path: where it begins at a start between two layers, that
+/// start changes no other plane.
+[[nodiscard]] std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget = {});
 
 /// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq.
 /// (12) replaced by the part normal to the tangent plane: 1/2 |(I - P_T) d^2 theta / dt^2| along (1, dphi). end 0: at layer; end 1:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "swivel/core/types.hpp"
 
 namespace swivel {
+
+struct Chain;
 
 /// One layer of the lattice: a tool pose on the path, and the straight step from it to the next layer.
 struct PathLayer {
@@ -35,9 +38,25 @@ class ToolPath {
   /// motion continued (what a one-sided derivative at a corner needs).
   [[nodiscard]] Pose at(int i, double t) const;
 
+  /// Leaves the path from s = `start_at` on, m; where it only turns there, from where it first comes nearest to `tool`. That place
+  /// is layer 0: the whole path's own layer where one lies within 1e-6 of it, m and rad. A tool that is further than that from its
+  /// pose, but at most `tolerance`, takes its place. Without `start_at` layer 0 is the path's first. Throws InputError where
+  /// nothing is left.
+  void begin_at(std::optional<double> start_at, const Pose& tool, double tolerance, const std::string& source);
+  /// Poses of the layers that begin_at() has cut off: arm angles are carried along the whole path.
+  [[nodiscard]] const std::vector<Pose>& before() const { return before_; }
+  /// False where layer 0 is none of the whole path's.
+  [[nodiscard]] bool begins_on_layer() const { return begins_on_layer_; }
+
  private:
   std::vector<PathLayer> layers_;
+  std::vector<Pose> before_;
+  bool begins_on_layer_ = true;
   int merged_ = 0;
 };
+
+/// The layers of a problem: of its whole path, or from its start on. Throws InputError as ToolPath does, and for a start_at beyond
+/// the path. Throws Stopped.
+[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {});
 
 }  // namespace swivel
