@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "asked_hooks.hpp"
 #include "collision_validity.hpp"
 #include "swivel/core/timeline.hpp"
 
@@ -92,11 +93,13 @@ class LayerBlockers {
 
 class Inspector {
  public:
-  Inspector(const SrsLattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget)
+  Inspector(const SrsLattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
+            const std::shared_ptr<StateCheck>& check)
       : lattice_(lattice),
         world_(world),
         rule_(rule),
         budget_(budget),
+        check_(check, budget),
         query_(world, Certificates::kOn),
         blockers_(lattice, world, query_),
         blockers_before_(lattice, world, query_) {
@@ -129,6 +132,15 @@ class Inspector {
     Reasons reasons;
     for (const auto& [blocker, count] : counts)
       if (blocker != kFree) reasons[name(blocker)] += count;
+    if (!check_) return reasons;
+    states_.clear();
+    for (const int slot : left) states_.push_back(config(nodes_, slot));
+    const auto allowed = check_.states(states_);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < allowed.size(); ++k)
+      if (allowed[k]) left[kept++] = left[k];
+    left.resize(kept);
+    if (kept < allowed.size()) reasons[check_.cause()] = static_cast<std::int64_t>(allowed.size() - kept);
     return reasons;
   }
 
@@ -138,26 +150,39 @@ class Inspector {
     if (!lattice_.alive(layer)) return kinematic_cause(layer);
     blockers_.start();
     std::map<int, std::int64_t> counts;
+    std::int64_t refused = 0;
     const int n = lattice_.angles(), hint_label = lattice_.label_of(hint), hint_angle = lattice_.angle_of(hint);
     for (int k = 0; k < n; ++k) {
       const int j = (hint_angle + (k % 2 ? n - (k + 1) / 2 : k / 2)) % n;  // at the hint, then on either side
       lattice_.solve(layer, j, 1, nodes_);
       ik_ += lattice_.labels();
+      states_.clear();
+      free_.clear();
       for (int l = 0; l < lattice_.labels(); ++l) {
         const int label = (hint_label + l) % lattice_.labels(), slot = label * n + j;
         if (!nodes_.valid(label, 0)) continue;
         budget_.poll();
         const int blocker = blockers_.any(layer, slot, nodes_.config(label, 0));
         if (blocker == kFree) {
-          hint = slot;
-          return std::nullopt;
+          states_.push_back(nodes_.config(label, 0));
+          free_.push_back(slot);
+          if (!check_) break;
+          continue;
         }
         if (blockers_.all()) return Cause{name(blocker), {}};
         ++counts[blocker];
       }
+      const auto allowed = check_.states(states_);
+      const auto first = std::find(allowed.begin(), allowed.end(), true) - allowed.begin();
+      if (first < static_cast<std::ptrdiff_t>(free_.size())) {
+        hint = free_[static_cast<std::size_t>(first)];
+        return std::nullopt;
+      }
+      refused += static_cast<std::int64_t>(free_.size());
     }
-    if (counts.empty()) return kinematic_cause(layer);
+    if (counts.empty() && refused == 0) return kinematic_cause(layer);
     Reasons reasons;
+    if (refused > 0) reasons[check_.cause()] = refused;
     for (const auto& [blocker, count] : counts) reasons[name(blocker)] += count;
     return Cause{most_frequent(reasons), {}};
   }
@@ -221,7 +246,7 @@ class Inspector {
       if (!before.valid(lattice_.label_of(a), lattice_.angle_of(a))) continue;
       budget_.poll();
       const Config qa = config(before, a);
-      if (blockers_before_.any(layer, a, qa) != kFree) continue;
+      if (blockers_before_.any(layer, a, qa) != kFree || !check_.states({&qa, 1})[0]) continue;
       const SrsLattice::Run run = lattice_.run_after(layer, a);
       for (int label = 0; label < lattice_.labels(); ++label)
         for (int k = 0; k < run.count; ++k) {
@@ -248,6 +273,8 @@ class Inspector {
       const auto pair = edge_blocked(query_, rule_, qa, qa + delta, budget_);
       if (pair) return name(*pair) + " between layers";
     }
+    const StateCheck::Motion motion{qa, qa + delta};
+    if (check_.checks_motions() && !check_.motions({&motion, 1})[0]) return check_.cause() + " between layers";
     return "";
   }
 
@@ -298,9 +325,12 @@ class Inspector {
   const World& world_;
   EdgeRule rule_;
   const Budget& budget_;
+  AskedCheck check_;
   World::Query query_;
   LayerBlockers blockers_, blockers_before_;
   LayerNodes nodes_;
+  std::vector<Config> states_;  // that only the user's check may refuse
+  std::vector<int> free_;       // their slots
   double question_us_ = 0, ik_us_ = 0;
   std::int64_t ik_ = 0;
 };
@@ -313,7 +343,7 @@ EmptyLayer empty_layer(const SrsLattice& lattice, int layer, const Cause& cause)
 }  // namespace
 
 void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
-              const Budget& budget, Diagnosis& diagnosis) {
+              const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check) {
   const Span span("diagnosis");
   diagnosis.complete = false;
   if (deepest_layer >= 0) {
@@ -321,7 +351,7 @@ void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rul
     diagnosis.reached_s = lattice.path().layer(deepest_layer).s;
   }
   diagnosis.layers_known = deepest_layer + 1;  // those before have a node: a path leads through them
-  Inspector inspector(lattice, world, rule, budget);
+  Inspector inspector(lattice, world, rule, budget, check);
 
   const int next = deepest_layer + 1;
   std::vector<int> left;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <memory>
+
 #include "swivel/collision/world.hpp"
 #include "swivel/core/budget.hpp"
+#include "swivel/core/hooks.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
@@ -12,6 +15,6 @@ namespace swivel {
 /// planners. Later layers are looked at until they would take more than about a second by a fixed estimate. Throws Stopped;
 /// `diagnosis` then holds what was found, and `complete` is false.
 void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
-              const Budget& budget, Diagnosis& diagnosis);
+              const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check = nullptr);
 
 }  // namespace swivel

@@ -8,6 +8,7 @@
 
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
+#include "hooked_validity.hpp"
 #include "measure.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"
@@ -241,7 +242,8 @@ struct Planner::Impl {
     if (was_eager) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(layout->lattice, problem.source);
       CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, 0, budget);
-      found = search_eagerly(lattice, validity, options, budget, result.counters);
+      HookedValidity hooked(lattice, validity, options.hooks, budget);
+      found = search_eagerly(lattice, hooked, options, budget, result.counters);
       count(validity);
       return found;
     }
@@ -256,7 +258,8 @@ struct Planner::Impl {
     if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
                                budget, &memory, changed ? &*changed : nullptr);
-    found = search_lazily(*togo, swept, validity, memory.failures(), options, result.counters, result.time_ms);
+    HookedValidity hooked(lattice, validity, options.hooks, budget);
+    found = search_lazily(*togo, swept, hooked, memory.failures(), options, result.counters, result.time_ms);
     count(validity);
     return found;
   }
@@ -297,7 +300,8 @@ struct Planner::Impl {
         return;
       }
       budget.tell(Stage::kDiagnosis);
-      diagnose(layout->lattice, *world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis);
+      diagnose(layout->lattice, *world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis,
+               options.hooks.check);
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
     }

@@ -5,7 +5,7 @@
 
 namespace swivel {
 
-Found search_eagerly(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options, const Budget& budget,
+Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
                      Counters& counters) {
   Found found;
   EagerOutcome eager;
@@ -39,7 +39,7 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
-Found search_lazily(CostToGo& togo, bool swept, CollisionValidity& validity, const Suspects& suspects, const PlanOptions& options,
+Found search_lazily(CostToGo& togo, bool swept, Validity& validity, const Suspects& suspects, const PlanOptions& options,
                     Counters& counters, std::map<std::string, double>& time_ms) {
   Stopwatch watch;
   Found found;

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "collision_validity.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/plan_options.hpp"
@@ -23,10 +22,10 @@ struct Found {
 };
 
 /// The planners eager and eager_dp.
-[[nodiscard]] Found search_eagerly(const Lattice& lattice, CollisionValidity& validity, const PlanOptions& options,
+[[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options,
                                    const Budget& budget, Counters& counters);
 /// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals.
-[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, CollisionValidity& validity, const Suspects& suspects,
+[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const Suspects& suspects,
                                   const PlanOptions& options, Counters& counters, std::map<std::string, double>& time_ms);
 
 }  // namespace swivel

@@ -122,9 +122,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       Values costs(place.size(), std::vector<double>(static_cast<std::size_t>(lattice.width()), 0.0));
       SlotPath last;
       for (int round = 0; round < 14; ++round) {
-        const std::string what =
-            "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial) + " round " +
-            std::to_string(round);
+        const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial) +
+                                 " round " + std::to_string(round);
         ++rounds;
         const Values values = plain_values(lattice, whole.verdicts(), costs);
         const SlotPath best = plain_path(lattice, whole.verdicts(), values, costs);
@@ -162,9 +161,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
           change(static_cast<CostToGo&>(whole), [](int, int slot) { return slot; });
           change(static_cast<CostToGo&>(bounded), [](int, int slot) { return slot; });
           if (open)
-            change(*listed, [&](int layer, int slot) {
-              return place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
-            });
+            change(*listed,
+                   [&](int layer, int slot) { return place[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)]; });
         };
         // Costs of the best path's nodes, or of some, and of those beside them; large ones, small ones, none.
         const double scale = lattice.cost_unit() * std::array{1e-3, 0.02, 0.5, 100.0}[static_cast<std::size_t>(random.below(4))];

@@ -186,8 +186,8 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
       std::vector<Lattice::Node> nodes;
       lattice.layer_nodes(0, nodes);
       const auto distance = [&](const Lattice::Node& node) { return lattice.delta(q, node.q).norm(); };
-      const auto nearest = std::min_element(nodes.begin(), nodes.end(),
-                                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+      const auto nearest =
+          std::min_element(nodes.begin(), nodes.end(), [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
       if (nearest == nodes.end()) continue;
       q += lattice.delta(q, nearest->q);
     } else {
@@ -209,12 +209,14 @@ TEST(StartAt, BetweenLayersTheFirstRowIsTheStartAsItIs) {
     ASSERT_EQ(result.trajectory.size(), whole.trajectory.size() - cut) << what;
     ASSERT_EQ(result.trajectory[0].q, q) << what;
     ASSERT_NEAR(result.trajectory[0].s, *rest.start_at, 1e-6) << what;
-    for (std::size_t k = 1; k < result.trajectory.size(); ++k) ASSERT_EQ(result.trajectory[k].s, whole.trajectory[cut + k].s) << what;
+    for (std::size_t k = 1; k < result.trajectory.size(); ++k)
+      ASSERT_EQ(result.trajectory[k].s, whole.trajectory[cut + k].s) << what;
     const CheckResult checked = check_trajectory(robot, rest, result.trajectory);
     ASSERT_TRUE(checked.passed) << what << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
     exact += on_path;
     const ToolPath path = problem_path(rest, robot.arm().chain);
-    aside += !on_path && (whole_path(problem).at(static_cast<int>(cut), t).translation() - path.layer(0).tool.translation()).norm() > 1e-5;
+    aside += !on_path &&
+             (whole_path(problem).at(static_cast<int>(cut), t).translation() - path.layer(0).tool.translation()).norm() > 1e-5;
     // All planners agree.
     for (const PlannerKind planner : kPlanners) {
       const PlanResult other = plan(robot, rest, options_for(planner));

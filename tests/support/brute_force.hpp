@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
 
 namespace swivel::test {
@@ -21,9 +22,9 @@ struct Answer {
 };
 
 /// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; ties by slot.
-/// `in_window`: whether slots a and b of neighbouring layers may be joined.
+/// `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks are asked about one state or motion at a time.
 inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
-                          const std::function<bool(int layer, int a, int b)>& in_window) {
+                          const std::function<bool(int layer, int a, int b)>& in_window, const Hooks& hooks = {}) {
   World::Query query(world);
   const Chain& chain = lattice.chain();
   const Limits& limits = lattice.limits();
@@ -34,7 +35,15 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       nodes[i].push_back(lattice.node(static_cast<int>(i), slot));
       std::optional<Config>& q = nodes[i].back();
       if (q && (chain.manipulability(*q) < limits.manipulability || query.first_below(*q, Keep::kNode))) q.reset();
+      bool allowed = true;
+      if (q && hooks.check) hooks.check->states({&*q, 1}, {&allowed, 1});
+      if (!allowed) q.reset();
     }
+  const auto own_cost = [&](const Config& q) {
+    double cost = 0;
+    if (hooks.cost) hooks.cost->costs({&q, 1}, {&cost, 1});
+    return lattice.rounded_cost(cost);
+  };
   const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
     const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
     if (!in_window(layer, sa, sb)) return std::nullopt;
@@ -47,6 +56,12 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     }
     if (!lattice.follows_path(layer, sa, qa, sb, qb)) return std::nullopt;
     if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, qa, qa + delta)) return std::nullopt;
+    if (hooks.check && hooks.check->checks_motions()) {
+      const StateCheck::Motion motion{qa, qa + delta};
+      bool allowed = true;
+      hooks.check->motions({&motion, 1}, {&allowed, 1});
+      if (!allowed) return std::nullopt;
+    }
     return lattice.edge_cost(delta);
   };
   constexpr double kNone = std::numeric_limits<double>::infinity();
@@ -59,19 +74,22 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     into[i].resize(nodes[i].size());
   }
   for (std::size_t slot = 0; slot < nodes.back().size(); ++slot)
-    if (nodes.back()[slot]) g.back()[slot] = 0;
+    if (nodes.back()[slot]) g.back()[slot] = own_cost(*nodes.back()[slot]);
   for (std::size_t i = layers - 1; i-- > 0;)
-    for (std::size_t a = 0; a < nodes[i].size(); ++a)
-      for (std::size_t b = 0; nodes[i][a] && b < nodes[i + 1].size(); ++b) {
+    for (std::size_t a = 0; a < nodes[i].size(); ++a) {
+      if (!nodes[i][a]) continue;
+      const double own = own_cost(*nodes[i][a]);
+      for (std::size_t b = 0; b < nodes[i + 1].size(); ++b) {
         if (!nodes[i + 1][b]) continue;
         const auto cost = edge(i, a, b);
         if (!cost) continue;
         into[i + 1][b].push_back(a);
-        if (*cost + g[i + 1][b] < g[i][a]) {
-          g[i][a] = *cost + g[i + 1][b];
+        if (own + *cost + g[i + 1][b] < g[i][a]) {
+          g[i][a] = own + *cost + g[i + 1][b];
           next[i][a] = static_cast<int>(b);
         }
       }
+    }
   Answer answer;
   const auto best = std::min_element(g[0].begin(), g[0].end());
   answer.cost = best == g[0].end() ? kNone : *best;

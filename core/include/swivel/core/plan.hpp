@@ -62,7 +62,7 @@ struct EmptyLayer {
   int layer = 0;
   int waypoint = -1;  ///< 0-based row of the path file when the layer is a waypoint, else -1
   double s = 0;
-  std::string reason;  ///< "no IK", "joint <name>", "joint limits", "singular", "manipulability", "<body> - <body>"
+  std::string reason;  ///< "no IK", "joint <name>", "joint limits", "singular", "manipulability", "<body> - <body>", "check <name>"
   std::optional<Shortfall> shortfall = {};  ///< of "no IK", "joint <name>" and "joint limits"
 };
 struct Diagnosis {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "swivel/core/budget.hpp"
+#include "swivel/core/hooks.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/parallel/executor.hpp"
@@ -32,6 +33,7 @@ struct PlanOptions {
   std::stop_token stop;                       ///< asked from elsewhere to stop, as a time-out does
   const std::atomic<bool>* cancel = nullptr;  ///< the same, for signal handlers
   Evidence evidence;                          ///< what to find besides the verdict
+  Hooks hooks;                                ///< rules and costs of the caller's own, of any planner
   ProgressFunction progress;                  ///< called now and then from the planning thread; must be quick
   EagerSearch eager_search = EagerSearch::kDijkstra;
   /// lazy, parallel: FCL is asked about every pair as well; std::logic_error where a certificate contradicts it. For tests.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "hooked_validity.hpp"
+
+#include <algorithm>
+
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
+  first_->nodes(questions, answers);
+  if (!check_) return;
+  const Span span("check of states");
+  states_.clear();
+  for (std::size_t k = 0; k < questions.size(); ++k)
+    if (answers[k].valid) states_.push_back(questions[k].q);
+  auto allowed = check_.states(states_).begin();
+  for (NodeAnswer& answer : answers)
+    if (answer.valid) answer.valid = *allowed++;
+}
+
+void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+  if (first_->asks_edges())
+    first_->edges(questions, answers);
+  else
+    std::fill(answers.begin(), answers.end(), std::uint8_t{1});
+  if (!check_.checks_motions()) return;
+  const Span span("check of motions");
+  motions_.clear();
+  for (std::size_t k = 0; k < questions.size(); ++k)
+    if (answers[k]) motions_.push_back({questions[k].qa, questions[k].qa + lattice_->delta(questions[k].qa, questions[k].qb)});
+  auto allowed = check_.motions(motions_).begin();
+  for (std::uint8_t& answer : answers)
+    if (answer) answer = *allowed++ ? 1 : 0;
+}
+
+void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<double> costs) {
+  const Span span("cost of states");
+  states_.clear();
+  for (const NodeQuestion& question : questions) states_.push_back(question.q);
+  cost_.costs(states_, costs);
+}
+
+}  // namespace swivel

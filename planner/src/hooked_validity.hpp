@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <vector>
+
+#include "asked_hooks.hpp"
+#include "swivel/graph/validity.hpp"
+
+namespace swivel {
+
+/// The user's hooks after the validity that comes first: the check is asked about what that one allows, in one call for each batch
+/// of it.
+class HookedValidity final : public Validity {
+ public:
+  /// `lattice` and `first` must outlive it.
+  HookedValidity(const Lattice& lattice, Validity& first, const Hooks& hooks, const Budget& budget)
+      : lattice_(&lattice), first_(&first), check_(hooks.check, budget), cost_(hooks.cost, lattice, budget) {}
+
+  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
+  void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
+  [[nodiscard]] bool asks_edges() const override { return first_->asks_edges() || check_.checks_motions(); }
+  void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override;
+  [[nodiscard]] bool asks_costs() const override { return static_cast<bool>(cost_); }
+
+ private:
+  const Lattice* lattice_;
+  Validity* first_;
+  AskedCheck check_;
+  AskedCost cost_;
+  std::vector<Config> states_;  // scratch
+  std::vector<StateCheck::Motion> motions_;
+};
+
+}  // namespace swivel

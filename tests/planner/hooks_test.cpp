@@ -1,0 +1,492 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rules and costs of the caller's own: all planners and brute force honour them alike.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "brute_force.hpp"
+#include "collision_validity.hpp"
+#include "hooked_validity.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/explicit_lattice.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/eager.hpp"
+#include "swivel/graph/path_first.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// A smooth function of the joints, from -1 to 1, that repeats with every turn of any joint.
+class Wave {
+ public:
+  explicit Wave(Random& random) {
+    for (int j = 0; j < kDof; ++j) {
+      turns_[j] = random.below(4);
+      shift_[j] = random.uniform(0, kTwoPi);
+    }
+  }
+  double operator()(const Config& q) const {
+    double sum = 0;
+    for (int j = 0; j < kDof; ++j) sum += std::sin(turns_[j] * q[j] + shift_[j]);
+    return std::sin(2 * sum);
+  }
+
+ private:
+  Config turns_, shift_;
+};
+
+/// Refuses where a wave is high, of motions: half way. Counts what it is asked, and that nobody else asks meanwhile.
+class WaveCheck : public StateCheck {
+ public:
+  WaveCheck(Random& random, double states_above, double motions_above)
+      : wave_(random), states_above_(states_above), motions_above_(motions_above) {}
+  [[nodiscard]] std::string name() const override { return "wave"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    const Alone alone(*this);
+    ++calls;
+    ASSERT_EQ(states.size(), allowed.size());
+    ASSERT_FALSE(states.empty());
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      allowed[k] = wave_(states[k]) <= states_above_;
+      ++asked;
+      refused += !allowed[k];
+      if (world_ && query_->first_below(states[k], Keep::kNode)) ++in_collision;
+    }
+  }
+  [[nodiscard]] bool checks_motions() const override { return motions_above_ < 1; }
+  void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
+    const Alone alone(*this);
+    ++calls;
+    ASSERT_EQ(motions.size(), allowed.size());
+    ASSERT_FALSE(motions.empty());
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      allowed[k] = wave_((motions[k].from + motions[k].to) / 2) <= motions_above_;
+      ++asked;
+      refused += !allowed[k];
+      ASSERT_LE((motions[k].to - motions[k].from).lpNorm<Eigen::Infinity>(), kPi);
+    }
+  }
+  /// Every state that is asked about is held against the scene.
+  void look_for_collisions(const World& with) {
+    world_ = &with;
+    query_.emplace(with);
+  }
+
+  std::int64_t asked = 0, refused = 0, calls = 0, in_collision = 0;
+  std::atomic<int> at_once{0}, most_at_once{0};
+
+ private:
+  struct Alone {
+    explicit Alone(WaveCheck& check) : of(check) { of.most_at_once = std::max(of.most_at_once.load(), ++of.at_once); }
+    ~Alone() { --of.at_once; }
+    WaveCheck& of;
+  };
+  Wave wave_;
+  double states_above_, motions_above_;
+  const World* world_ = nullptr;
+  std::optional<World::Query> query_;
+};
+
+/// A wave from 0 to `most` where it is above `from`: nearly everywhere, or here and there.
+class WaveCost : public StateCost {
+ public:
+  WaveCost(Random& random, double from, double most) : wave_(random), from_(from), most_(most) {}
+  [[nodiscard]] std::string name() const override { return "wave"; }
+  void costs(std::span<const Config> states, std::span<double> costs) override {
+    ASSERT_EQ(states.size(), costs.size());
+    ++calls;
+    for (std::size_t k = 0; k < states.size(); ++k) costs[k] = of(states[k]);
+    asked += static_cast<std::int64_t>(states.size());
+  }
+  [[nodiscard]] double of(const Config& q) const { return most_ * std::max(0.0, wave_(q) - from_) / (1 - from_); }
+
+  std::int64_t asked = 0, calls = 0;
+
+ private:
+  Wave wave_;
+  double from_, most_;
+};
+
+std::shared_ptr<WaveCheck> random_check(Random& random) {
+  const double states = std::array{1.0, 0.9, 0.5, -0.5}[static_cast<std::size_t>(random.below(4))];
+  const double motions = std::array{1.0, 0.9, 0.4}[static_cast<std::size_t>(random.below(3))];
+  return std::make_shared<WaveCheck>(random, states, motions);
+}
+
+std::shared_ptr<WaveCost> random_cost(Random& random, double unit) {
+  const double from = std::array{-0.999, 0.0, 0.8}[static_cast<std::size_t>(random.below(3))];
+  const double most = unit * std::array{1e-4, 0.02, 0.3, 5.0, 300.0}[static_cast<std::size_t>(random.below(5))];
+  return std::make_shared<WaveCost>(random, from, most);
+}
+
+PlanOptions options_for(PlannerKind planner) {
+  PlanOptions options;
+  options.planner = planner;
+  options.threads = 2;
+  return options;
+}
+
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+
+TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("Hooks");
+  const auto robots = all_robots();
+  int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0, other_verdict = 0, by_check = 0;
+  std::int64_t asked = 0, refused = 0, lazy_costs = 0, eager_costs = 0;
+  const int count = trials(200);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const PreparedRobot robot(problem);
+    const ToolPath path = problem_path(problem, robot.arm().chain);
+    const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
+    const std::shared_ptr<WaveCheck> check = trial % 4 == 1 ? nullptr : random_check(random);
+    const std::shared_ptr<WaveCost> cost = trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit());
+    const Hooks hooks{check, cost};
+    const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
+    const World world(robot.world(), problem);
+    const Answer truth = brute_force(
+        lattice, world, world.edge_rule(robot.radii()),
+        [&](int layer, int a, int b) {
+          return std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) <= window;
+        },
+        hooks);
+    (truth.solved ? solved : infeasible) += 1;
+    with_cost += cost != nullptr;
+    with_check += check != nullptr;
+    with_motions += check && check->checks_motions();
+    if (check) check->look_for_collisions(world);
+
+    std::vector<PlanResult> results;
+    for (int k = 0; k < 5; ++k) {
+      PlanOptions options = options_for(kPlanners[k % 4]);
+      if (k == 4) options.eager_search = EagerSearch::kAStar;
+      options.evidence.layers = true;
+      options.hooks = hooks;
+      if (check) check->asked = check->refused = 0;
+      if (cost) cost->asked = 0;
+      results.push_back(plan(robot, problem, options));
+      const PlanResult& result = results.back();
+      const std::string who = what + " planner " + result.planner;
+      ASSERT_EQ(result.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << who;
+      ASSERT_EQ(result.cost, truth.solved ? truth.cost : 0) << who;
+      for (int i = 0; truth.solved && i < lattice.layers(); ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        ASSERT_EQ(result.trajectory[row].phi, lattice.phi(i, truth.slots[row])) << who << " row " << i;
+        ASSERT_EQ(result.trajectory[row].branch, lattice.branch(i, truth.slots[row])) << who << " row " << i;
+        ASSERT_EQ(result.trajectory[row].q, results[0].trajectory[row].q) << who << " row " << i;
+      }
+      ASSERT_EQ(result.diagnosis.reason, results[0].diagnosis.reason) << who;
+      ASSERT_EQ(result.diagnosis.removed, results[0].diagnosis.removed) << who;
+      if (!truth.solved) {
+        ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
+        ASSERT_FALSE(result.diagnosis.reason.empty()) << who;
+        std::vector<int> empty;
+        for (const EmptyLayer& layer : result.diagnosis.empty_layers) empty.push_back(layer.layer);
+        ASSERT_TRUE(!result.diagnosis.complete || empty == truth.empty) << who;
+      }
+      if (check) {
+        ASSERT_EQ(check->in_collision, 0) << who;
+        ASSERT_LE(check->most_at_once, 1) << who;
+        asked += check->asked;
+        refused += check->refused;
+      }
+      if (cost && k == 1) eager_costs += cost->asked;
+      if (cost && k == 2) lazy_costs += cost->asked;
+    }
+    by_check += results[0].diagnosis.reason.starts_with("check wave");
+    if (truth.solved) {
+      const CheckResult checked = check_trajectory(robot, problem, results[0].trajectory);
+      ASSERT_TRUE(checked.passed) << what << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
+      double of_states = 0;
+      for (const TrajectoryRow& row : results[0].trajectory) of_states += cost ? cost->of(row.q) : 0;
+      ASSERT_NEAR(checked.cost + of_states, truth.cost, 1e-9 * std::max(1.0, truth.cost)) << what;
+    }
+    const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
+    other_verdict += plain.status != results[0].status;
+    if (truth.solved)
+      other_path += !std::equal(plain.trajectory.begin(), plain.trajectory.end(), results[0].trajectory.begin(),
+                                [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+  }
+  std::printf(
+      "%d problems: %d solved, %d infeasible (%d by a check); %d with costs, %d with checks, %d of motions; another path %d times, "
+      "another verdict %d times; %lld asked, %lld refused; costs asked: %lld lazily, %lld eagerly\n",
+      count, solved, infeasible, by_check, with_cost, with_check, with_motions, other_path, other_verdict,
+      static_cast<long long>(asked), static_cast<long long>(refused), static_cast<long long>(lazy_costs),
+      static_cast<long long>(eager_costs));
+  EXPECT_GE(solved, count / 4);
+  EXPECT_GE(infeasible, count / 10);
+  EXPECT_GE(with_motions, count / 4);
+  EXPECT_GE(other_path, count / 10);
+  EXPECT_GE(other_verdict, count / 40);
+  EXPECT_GE(by_check, count / 40);
+  EXPECT_GT(refused, asked / 20);
+  EXPECT_LT(lazy_costs, eager_costs);
+}
+
+TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
+  const std::uint64_t base = seed("Hooks.Lists");
+  const auto robots = all_robots();
+  int solved = 0, infeasible = 0, rounds = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const TestRobot& robot = robots[static_cast<std::size_t>(trial) % robots.size()];
+    Problem problem = random_problem(robot, random);
+    problem.limits.step_error.reset();
+    problem.start.reset();
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, what);
+    const ToolPath path = problem_path(problem, arm.chain);
+    const SrsLattice grid(arm.chain, srs, path, problem);
+    std::vector<std::vector<ExplicitLattice::Point>> layers(static_cast<std::size_t>(grid.layers()));
+    std::vector<Lattice::Node> nodes;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      grid.layer_nodes(static_cast<int>(i), nodes);
+      for (const Lattice::Node& node : nodes)
+        if (random.coin(0.5)) layers[i].push_back({.q = node.q});
+    }
+    const ExplicitLattice lattice(arm.chain, path, problem, std::move(layers));
+    const World world(*robot.model, arm, problem);
+    const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
+    const Hooks hooks{random_check(random), random_cost(random, lattice.cost_unit())};
+    const Answer truth = brute_force(
+        lattice, world, rule, [](int, int, int) { return true; }, hooks);
+    (truth.solved ? solved : infeasible) += 1;
+
+    Executor executor(1);
+    const Budget never;
+    const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest, const char* planner) {
+      ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
+      ASSERT_TRUE(!truth.solved || cost == truth.cost) << what << ' ' << planner;
+      ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
+    };
+    for (const int search : {0, 1, 2}) {
+      CollisionValidity collision(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      HookedValidity validity(lattice, collision, hooks, never);
+      EagerOutcome found;
+      if (search == 2)
+        eager_dp(lattice, validity, never, found);
+      else
+        eager_search(lattice, validity, search == 0 ? EagerSearch::kDijkstra : EagerSearch::kAStar, never, found);
+      expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
+    }
+    for (const int batch : {1, 32}) {
+      CollisionValidity collision(lattice, world, rule, Certificates::kOn, executor, batch == 1 ? 1 : 4, never, {});
+      HookedValidity validity(lattice, collision, hooks, never);
+      const auto togo = make_cost_to_go(lattice);
+      togo->sweep(lattice.layers() - 1);
+      SearchCounters counters;
+      const SearchOutcome found = path_first(*togo, validity, {.batch = batch}, counters);
+      rounds += static_cast<int>(counters.iterations);
+      int deepest = -1;
+      if (found.path.empty()) deepest = deepest_valid_layer(*togo, validity, {.batch = batch}, counters);
+      expect_truth(found.path, found.cost, deepest, "lazy");
+    }
+    if (HasFatalFailure()) return;
+  }
+  std::printf("%d solved, %d infeasible, %d rounds\n", solved, infeasible, rounds);
+  EXPECT_GE(solved, count / 5);
+  EXPECT_GE(infeasible, count / 10);
+  EXPECT_GT(rounds, 4 * count);
+}
+
+Problem experiment(const char* name, double ds, double dphi) {
+  Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+  problem.resolution.ds = ds;
+  problem.resolution.dphi = dphi;
+  return problem;
+}
+
+/// What a function says of each state.
+template <class Of>
+class CheckOf : public StateCheck {
+ public:
+  explicit CheckOf(Of of) : of_(std::move(of)) {}
+  [[nodiscard]] std::string name() const override { return "of the test"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = of_(states[k]);
+  }
+
+ private:
+  Of of_;
+};
+template <class Of>
+class CostOf : public StateCost {
+ public:
+  explicit CostOf(Of of) : of_(std::move(of)) {}
+  [[nodiscard]] std::string name() const override { return "of the test"; }
+  void costs(std::span<const Config> states, std::span<double> costs) override {
+    for (std::size_t k = 0; k < states.size(); ++k) costs[k] = of_(states[k]);
+  }
+
+ private:
+  Of of_;
+};
+template <class Of>
+std::shared_ptr<StateCheck> check_of(Of of) {
+  return std::make_shared<CheckOf<Of>>(std::move(of));
+}
+template <class Of>
+std::shared_ptr<StateCost> cost_of(Of of) {
+  return std::make_shared<CostOf<Of>>(std::move(of));
+}
+
+void expect_same(const PlanResult& a, const PlanResult& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.cost, b.cost);
+  ASSERT_EQ(a.trajectory.size(), b.trajectory.size());
+  for (std::size_t i = 0; i < a.trajectory.size(); ++i) EXPECT_EQ(a.trajectory[i].q, b.trajectory[i].q);
+}
+
+TEST(Hooks, ThatSayNothingChangeNothing) {
+  const Problem problem = experiment("experiment_a", 0.02, 0.1);
+  const PreparedRobot robot(problem);
+  for (const PlannerKind planner : kPlanners) {
+    const PlanResult plain = plan(robot, problem, options_for(planner));
+    PlanOptions options = options_for(planner);
+    options.hooks = {check_of([](const Config&) { return true; }), cost_of([](const Config&) { return 0.0; })};
+    const PlanResult hooked = plan(robot, problem, options);
+    ASSERT_EQ(plain.status, PlanStatus::kSolved);
+    expect_same(plain, hooked);
+    EXPECT_EQ(plain.counters.nodes_checked, hooked.counters.nodes_checked);
+    EXPECT_EQ(plain.counters.iterations, hooked.counters.iterations);
+  }
+}
+
+TEST(Hooks, ACheckThatRefusesIsTheCause) {
+  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PreparedRobot robot(problem);
+  class NoMotion : public StateCheck {
+   public:
+    [[nodiscard]] std::string name() const override { return "rest"; }
+    void states(std::span<const Config>, std::span<bool> allowed) override { std::fill(allowed.begin(), allowed.end(), true); }
+    [[nodiscard]] bool checks_motions() const override { return true; }
+    void motions(std::span<const Motion>, std::span<bool>) override {}  // nothing said is no
+  };
+  for (const PlannerKind planner : kPlanners) {
+    PlanOptions options = options_for(planner);
+    options.evidence.layers = true;
+    options.hooks.check = check_of([](const Config&) { return false; });
+    PlanResult result = plan(robot, problem, options);
+    EXPECT_EQ(result.status, PlanStatus::kInfeasible);
+    EXPECT_FALSE(result.diagnosis.reached_layer.has_value());
+    EXPECT_EQ(result.diagnosis.reason, "check of the test");
+    ASSERT_GT(result.diagnosis.empty_layers.size(), 5U);
+    for (const EmptyLayer& layer : result.diagnosis.empty_layers) EXPECT_EQ(layer.reason, "check of the test");
+    options.hooks.check = std::make_shared<NoMotion>();
+    result = plan(robot, problem, options);
+    EXPECT_EQ(result.status, PlanStatus::kInfeasible);
+    EXPECT_EQ(result.diagnosis.reached_layer, 0);
+    EXPECT_GT(result.diagnosis.removed["check rest between layers"], 0);
+  }
+}
+
+TEST(Hooks, WhatIsNoCostIsRefusedByName) {
+  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PreparedRobot robot(problem);
+  for (const auto& [cost, said] : {std::pair{-1e-300, "is -1e-300"},
+                                   {std::nan(""), "nan"},
+                                   {std::numeric_limits<double>::infinity(), "is inf"},
+                                   {1000.001, "allowed is a number from 0 to 1000"}})
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options = options_for(planner);
+      options.hooks.cost = cost_of([c = cost](const Config&) { return c; });
+      try {
+        static_cast<void>(plan(robot, problem, options));
+        ADD_FAILURE() << cost;
+      } catch (const InvalidArgument& error) {
+        EXPECT_NE(std::string(error.what()).find("state cost 'of the test'"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
+      }
+    }
+}
+
+TEST(Hooks, WhatTheyThrowComesThroughAndNothingElseIsLost) {
+  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PreparedRobot robot(problem);
+  const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
+  struct Own {
+    int number;
+  };
+  int thrown = 0;
+  for (const PlannerKind planner : kPlanners)
+    for (const int after : {0, 1, 7, 20}) {
+      PlanOptions options = options_for(planner);
+      int calls = 0;
+      options.hooks.check = check_of([&](const Config&) {
+        if (calls++ == after) throw Own{after};
+        return true;
+      });
+      try {
+        static_cast<void>(plan(robot, problem, options));
+        ADD_FAILURE();
+      } catch (const Own& own) {
+        EXPECT_EQ(own.number, after);
+        ++thrown;
+      }
+      options.hooks.cost = cost_of([](const Config&) -> double { throw std::runtime_error("of the user"); });
+      calls = 1000;
+      EXPECT_THROW(static_cast<void>(plan(robot, problem, options)), std::runtime_error);
+      options.hooks.cost = nullptr;
+      expect_same(plan(robot, problem, options), plain);
+    }
+  EXPECT_EQ(thrown, 16);
+}
+
+TEST(Hooks, ASlowOneEndsAtTheDeadline) {
+  const Problem problem = experiment("experiment_a", 0.01, 0.05);
+  const PreparedRobot robot(problem);
+  using Clock = std::chrono::steady_clock;
+  const auto slow = [](const Config&) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return true;
+  };
+  for (const PlannerKind planner : {PlannerKind::kLazy, PlannerKind::kParallel}) {
+    PlanOptions options = options_for(planner);
+    options.timeout_s = 0.02;
+    options.hooks.check = check_of(slow);
+    const auto begin = Clock::now();
+    EXPECT_EQ(plan(robot, problem, options).status, PlanStatus::kTimeout);
+    EXPECT_LT(Clock::now() - begin, std::chrono::seconds(5));  // the machine may be busy
+    // Another plan's turn is waited for no longer than that.
+    options.hooks.check = check_of([](const Config&) { return true; });
+    const std::lock_guard turn(options.hooks.check->turn());
+    EXPECT_EQ(plan(robot, problem, options).status, PlanStatus::kTimeout);
+  }
+}
+
+TEST(Hooks, PlansInSeveralThreadsTakeTurns) {
+  const Problem problem = experiment("experiment_a", 0.02, 0.2);
+  const PreparedRobot robot(problem);
+  Random random(1);
+  const auto check = std::make_shared<WaveCheck>(random, 0.9, 1);
+  PlanOptions options = options_for(PlannerKind::kLazy);
+  options.hooks.check = check;
+  const PlanResult alone = plan(robot, problem, options);
+  std::vector<PlanResult> results(8);
+  std::vector<std::thread> threads;
+  for (PlanResult& result : results) threads.emplace_back([&] { result = plan(robot, problem, options); });
+  for (std::thread& thread : threads) thread.join();
+  for (const PlanResult& result : results) expect_same(result, alone);
+  EXPECT_EQ(check->most_at_once, 1);
+  EXPECT_GT(check->calls, 8);
+}
+
+}  // namespace
+}  // namespace swivel
