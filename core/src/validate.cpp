@@ -187,7 +187,7 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(field("edge_clearance"), limits.edge_clearance, kNonNegative);
   number(field("edge_tolerance"), limits.edge_tolerance, kPositive);
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
-  if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "only with one");
+  if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "a number beside a start");
   number(root("start_at"), problem.start_at, kNonNegative);
   number(root("start_tolerance"), problem.start_tolerance, kPositive);
   if (problem.start_tolerance > kMostStartTolerance) fail(root("start_tolerance"), "is more than 0.1", "a number > 0, at most 0.1");

@@ -312,7 +312,7 @@ class ProblemReader {
   void read_start_place() {
     const auto at = root_.find_filled("start_at"), tolerance = root_.find_filled("start_tolerance");
     for (const auto& value : {at, tolerance})
-      if (value && !problem_.start) value->fail("is given without start", "only with it");
+      if (value && !problem_.start) value->fail("is given without start", "this key beside start");
     if (at) problem_.start_at = at->number(Range::kExtent);
     if (!tolerance) return;
     problem_.start_tolerance = tolerance->number(Range::kPositive);
