@@ -3,9 +3,6 @@ option(SWIVEL_BENCH "Build the benchmarks" OFF)
 option(SWIVEL_WERROR "Treat warnings as errors" OFF)
 option(SWIVEL_FRAME_POINTERS "Keep frame pointers, for profilers" OFF)
 set(SWIVEL_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
-set(SWIVEL_PGO "" CACHE STRING "Profile-guided optimisation (GCC): empty, generate or use")
-set_property(CACHE SWIVEL_PGO PROPERTY STRINGS "" generate use)
-set(SWIVEL_PGO_DIR "${PROJECT_SOURCE_DIR}/build/pgo-data" CACHE PATH "Where the profiles of SWIVEL_PGO lie")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -16,7 +13,7 @@ set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-if(PROJECT_IS_TOP_LEVEL AND NOT SWIVEL_PGO AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
+if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(SWIVEL_CCACHE ccache)
   mark_as_advanced(SWIVEL_CCACHE)
   if(SWIVEL_CCACHE)
@@ -39,18 +36,6 @@ endif()
 if(SWIVEL_SANITIZE)
   target_compile_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE})
-endif()
-# The prefix path keeps the build folder out of the .gcda names, which GCC would else look for under the wrong folder and
-# silently not find; missing-profile is an error for the same reason.
-if(SWIVEL_PGO STREQUAL "generate")
-  target_compile_options(swivel_settings INTERFACE -fprofile-generate=${SWIVEL_PGO_DIR} -fprofile-update=atomic
-                                                   -fprofile-prefix-path=${CMAKE_BINARY_DIR})
-  target_link_options(swivel_settings INTERFACE -fprofile-generate=${SWIVEL_PGO_DIR})
-elseif(SWIVEL_PGO STREQUAL "use")
-  target_compile_options(swivel_settings INTERFACE -fprofile-use=${SWIVEL_PGO_DIR} -fprofile-partial-training
-                                                   -fprofile-prefix-path=${CMAKE_BINARY_DIR} -Werror=missing-profile)
-elseif(SWIVEL_PGO)
-  message(FATAL_ERROR "SWIVEL_PGO is '${SWIVEL_PGO}': allowed are empty, generate and use")
 endif()
 
 # swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ...): one library, one include root, one layer, installed.

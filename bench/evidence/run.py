@@ -73,7 +73,6 @@ def main():
     parser = argparse.ArgumentParser(prog="bench/reproduce", description="Regenerates every table and figure of the documents.")
     parser.add_argument("--only", choices=STEPS, action="append", help="this step alone (may be given several times)")
     parser.add_argument("--quick", action="store_true", help="few repetitions; leaves the documents of the repository alone")
-    parser.add_argument("--pgo", action="store_true", help="also measure profile-guided optimisation (bench/pgo, 8 minutes more)")
     arguments = parser.parse_args()
     data = ROOT / "build" / ("evidence-quick" if arguments.quick else "evidence")
     data.mkdir(parents=True, exist_ok=True)
@@ -90,8 +89,6 @@ def main():
         start = time.monotonic()
         STEPS[name](data, arguments.quick)
         print(f"{name}: {time.monotonic() - start:.0f} s", flush=True)
-    if arguments.pgo:
-        run([ROOT / "bench/pgo"], data / "pgo.log")
     if (data / "trace.png").exists():
         shutil.copy(data / "trace.png", figures)
     written = plots.draw(data, figures, ROOT) + tables.fill(data, [documents / "README.md", documents / "docs/performance.md"])

@@ -186,12 +186,6 @@ def pieces(data):
     return "\n\n".join((vector, single, pair))
 
 
-def pgo(data):
-    result = load(data / "pgo.json")
-    return result and (f"Planning time of `pgo-use` over `release`: {result['median']:.3f} (95 % bounds {result['low']:.3f} to {result['high']:.3f}), median over {result['episodes']} door poses by `lazy`, "
-                       f"motions checked, each pose's least time of {result['rounds']} campaigns run in turn.")
-
-
 def headline(data):
     one = TableOne(data / "table1.json")
     if not one:
@@ -204,7 +198,7 @@ def headline(data):
     return markdown([f"{len(one.episodes('lazy', '#4'))} door poses, 5 mm / 0.05 rad", "ms", "tool-path error, mm", "success, %", "paper: ms", "mm", "%"], rows)
 
 
-BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, plans, scenes, pieces, pgo, headline)}
+BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, plans, scenes, pieces, headline)}
 
 
 def fill(data, documents):
