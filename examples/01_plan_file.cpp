@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The example of README.md: plan a problem file, print the joints.
+// The example of README.md: plans a problem file, prints the joints.
 #include <iostream>
 #include <swivel/io/io.hpp>
 #include <swivel/planner/planner.hpp>

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A plan ends when its time is over, and when another thread says so.
+#include <atomic>
+#include <chrono>
+#include <iostream>
+#include <swivel/io/io.hpp>
+#include <swivel/planner/planner.hpp>
+#include <thread>
+
+int main(int argc, char** argv) {
+  swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml");
+  problem.resolution = {.ds = 0.0002, .dphi = 0.0002};  // so fine that an answer takes minutes
+  const swivel::PreparedRobot robot(problem);
+
+  swivel::PlanOptions options;
+  options.timeout_s = 0.005;
+  std::cout << "5 ms: " << to_string(swivel::plan(robot, problem, options).status) << '\n';
+
+  std::atomic<bool> cancel{false};
+  options.timeout_s.reset();
+  options.cancel = &cancel;
+  std::jthread user([&cancel] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    cancel = true;
+  });
+  std::cout << "another thread: " << to_string(swivel::plan(robot, problem, options).status) << '\n';
+}
