@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The search of `lazy` and `parallel`: Boost.Graph's A* over the lattice that is never stored. Its heuristic is exact: CostToGo is
+// a backward dynamic program over all layers, repaired after every removal, so what it says of a node is the cost of the best path
+// that is left from there, and not just a lower bound. With an exact heuristic, distance + heuristic is the same at every vertex of
+// a best path, and larger at all others, which ImplicitLattice does not even list. So A* walks straight to the goal and expands one
+// vertex a layer. Costs are multiples of one unit and their sums exact, so that equal costs compare equal.
 #include <algorithm>
 #include <boost/graph/astar_search.hpp>
 #include <stdexcept>

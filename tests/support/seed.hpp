@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -15,10 +16,16 @@ inline std::uint64_t seed(const char* test) {
   return value;
 }
 
-/// How many trials: SWIVEL_TEST_TRIALS or the default.
+/// How many trials: SWIVEL_TEST_TRIALS, or SWIVEL_TEST_SCALE (0.1: a tenth) times the usual number, at least one.
 inline int trials(int usual) {
-  const char* given = std::getenv("SWIVEL_TEST_TRIALS");
-  return given ? std::atoi(given) : usual;
+  if (const char* given = std::getenv("SWIVEL_TEST_TRIALS")) return std::atoi(given);
+  const char* scale = std::getenv("SWIVEL_TEST_SCALE");
+  return scale ? std::max(1, static_cast<int>(usual * std::atof(scale))) : usual;
+}
+
+/// How many of the trials must have met something, for a test to have tried it: nothing is asked of fewer trials than usual.
+inline int at_least(int usual) {
+  return std::getenv("SWIVEL_TEST_TRIALS") || std::getenv("SWIVEL_TEST_SCALE") ? 0 : usual;
 }
 
 /// std::mt19937_64 with uniform doubles that do not depend on the standard library's distributions.

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The search by Boost.Graph against a plain descent: both go by the cost-to-go, the descent by one that is computed here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "robots.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/path_first.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// Nodes of each layer that are not removed, and their costs to the last layer: every pair of nodes compared.
+struct PlainLattice {
+  PlainLattice(const Lattice& lattice, const Verdicts& verdicts) : lattice_(lattice), verdicts_(verdicts) {
+    nodes.resize(lattice.layers());
+    togo.resize(lattice.layers());
+    for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
+      lattice.layer_nodes(layer, nodes[layer]);
+      std::erase_if(nodes[layer], [&](const auto& node) { return verdicts.node(layer, node.slot) == Verdict::kRemoved; });
+      for (std::size_t a = 0; a < nodes[layer].size(); ++a) {
+        double least = layer + 1 == lattice.layers() ? 0 : kUnreachable;
+        for (std::size_t b = 0; layer + 1 < lattice.layers() && b < nodes[layer + 1].size(); ++b)
+          least = std::min(least, cost(layer, a, b) + togo[layer + 1][b]);
+        togo[layer].push_back(least);
+      }
+    }
+  }
+  /// Of node a of a layer to node b of the next; kUnreachable where no edge joins them.
+  [[nodiscard]] double cost(int layer, std::size_t a, std::size_t b) const {
+    const Lattice::Node &from = nodes[layer][a], &to = nodes[layer + 1][b];
+    const Config delta = lattice_.delta(from.q, to.q);
+    const bool joined = lattice_.in_window(layer, from.slot, to.slot) && lattice_.step_allowed(layer, delta) &&
+                        verdicts_.edge(layer, from.slot, to.slot) != Verdict::kRemoved;
+    return joined ? lattice_.edge_cost(delta) : kUnreachable;
+  }
+  /// From the first node of layer 0 with the least cost always to the first node that keeps it. `ties` counts the others that would.
+  [[nodiscard]] SlotPath descend(int& ties) const {
+    SlotPath path;
+    double left = togo[0].empty() ? kUnreachable : *std::min_element(togo[0].begin(), togo[0].end());
+    if (left == kUnreachable) return path;
+    std::size_t here = 0;
+    for (int layer = 0; layer < lattice_.layers(); ++layer) {
+      std::optional<std::size_t> first;
+      for (std::size_t b = 0; b < nodes[layer].size(); ++b) {
+        if ((layer == 0 ? 0 : cost(layer - 1, here, b)) + togo[layer][b] != left) continue;
+        if (first) ++ties;
+        if (!first) first = b;
+      }
+      here = first.value();
+      left = togo[layer][here];
+      path.push_back(nodes[layer][here].slot);
+    }
+    return path;
+  }
+
+  std::vector<std::vector<Lattice::Node>> nodes;
+  std::vector<std::vector<double>> togo;
+
+ private:
+  const Lattice& lattice_;
+  const Verdicts& verdicts_;
+};
+
+TEST(BestPath, IsThatOfAPlainDescent) {
+  const std::uint64_t base = seed("BestPath");
+  const auto robots = all_robots();
+  int found = 0, none = 0, ties = 0, changed = 0;
+  const int count = trials(120);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + trial);
+    const TestRobot& robot = robots[trial % robots.size()];
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    const Config q0 = random_config(arm.chain, random);
+    Config q1 = q0;
+    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.25, 0.25);
+    Problem problem = problem_for(robot);
+    problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+    const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+    problem.resolution = {.ds = length / 4, .dphi = robot.name == "windings" ? 0.5 : random.uniform(0.2, 0.35), .dalpha = 10};
+    problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
+    problem.limits.joint_step = random.uniform(0.3, 0.6);
+    problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
+    if (random.coin(0.2)) problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
+    if (random.coin(0.3)) problem.start = q0;
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+    const SrsLattice lattice(arm.chain, srs, path, problem);
+    const auto togo = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
+    togo->sweep(lattice.layers() - 1);
+    for (int round = 0; round < 4; ++round) {
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + robot.name +
+                               " round " + std::to_string(round);
+      const SlotPath wanted = PlainLattice(lattice, togo->verdicts()).descend(ties);
+      std::int64_t expansions = 0;
+      ASSERT_EQ(best_path(*togo, expansions), wanted) << what;
+      ++(wanted.empty() ? none : found);
+      if (wanted.empty()) break;
+      ASSERT_EQ(expansions, lattice.layers()) << what;  // no vertex beside the path
+      const double before = togo->best();
+      const int layer = random.below(lattice.layers() - 1);
+      if (random.coin())
+        togo->verdicts().remove_node(layer, wanted[layer]);
+      else
+        togo->remove_edge(layer, wanted[layer], wanted[layer + 1]);
+      togo->repair();
+      changed += togo->best() != before;
+    }
+  }
+  std::printf("%d paths, %d lattices without one; %d ties, %d removals changed the optimum\n", found, none, ties, changed);
+  EXPECT_GE(found, 2 * count);
+  EXPECT_GE(ties, at_least(count + 1));
+  EXPECT_GE(changed, at_least(count / 4 + 1));
+}
+
+}  // namespace
+}  // namespace swivel
