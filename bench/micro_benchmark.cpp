@@ -22,6 +22,7 @@
 namespace {
 
 using namespace swivel;
+using namespace swivel::detail;
 
 constexpr std::size_t kPool = 1024;
 constexpr double kAsked = 0.005;  // m, the clearance that pairs are asked about

@@ -27,14 +27,14 @@ class Guesser {
  public:
   explicit Guesser(const RobotModel& robot) : robot_(robot), children_(robot.links.size()), depth_(robot.links.size(), 0) {
     for (const Joint& joint : robot.joints) {
-      children_[index(joint.parent_link)].push_back(&joint);
+      children_[joint.parent_link].push_back(&joint);
       if (joint.mimic) leaders_.insert(joint.mimic->joint);
     }
     std::vector<int> order{robot.root_link};  // parents first
     for (std::size_t k = 0; k < order.size(); ++k)
-      for (const Joint* joint : children_[index(order[k])]) order.push_back(joint->child_link);
+      for (const Joint* joint : children_[order[k]]) order.push_back(joint->child_link);
     for (auto link = order.rbegin(); link != order.rend(); ++link)
-      for (const Joint* joint : children_[index(*link)]) depth_[index(*link)] = std::max(depth_[index(*link)], depth_below(*joint));
+      for (const Joint* joint : children_[*link]) depth_[*link] = std::max(depth_[*link], depth_below(*joint));
   }
 
   ArmGuesses run() {
@@ -60,10 +60,8 @@ class Guesser {
   /// Links that the last of at least seven arm joints in a row moves, from the base outwards.
   using Chain = std::vector<int>;
 
-  static std::size_t index(int k) { return static_cast<std::size_t>(k); }
-
   /// Movable joints from this one on, in the longest chain.
-  [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[index(joint.child_link)] + joint.movable(); }
+  [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + joint.movable(); }
 
   /// Turns on its own, as the joints of an arm do.
   bool is_arm_joint(const Joint& joint) const {
@@ -85,7 +83,7 @@ class Guesser {
         end_of_most_ = visit.link;
       }
       std::vector<const Joint*> moving;
-      for (const Joint* joint : children_[index(visit.link)])
+      for (const Joint* joint : children_[visit.link])
         if (depth_below(*joint) > 0) moving.push_back(joint);
       // Where an arm branches, its hand begins.
       const bool hand = visit.count >= static_cast<int>(kDof) && moving.size() > 1;
@@ -110,9 +108,9 @@ class Guesser {
 
   std::vector<std::string> longest_row() const {
     std::vector<std::string> names;
-    for (int joint = robot_.links[index(end_of_most_)].parent_joint; joint >= 0 && static_cast<int>(names.size()) < most_;) {
-      if (robot_.joints[index(joint)].movable()) names.push_back(robot_.joints[index(joint)].name);
-      joint = robot_.links[index(robot_.joints[index(joint)].parent_link)].parent_joint;
+    for (int joint = robot_.links[end_of_most_].parent_joint; joint >= 0 && static_cast<int>(names.size()) < most_;) {
+      if (robot_.joints[joint].movable()) names.push_back(robot_.joints[joint].name);
+      joint = robot_.links[robot_.joints[joint].parent_link].parent_joint;
     }
     std::reverse(names.begin(), names.end());
     return names;
@@ -120,8 +118,8 @@ class Guesser {
 
   bool is_srs(int link) const {
     try {
-      const std::string& root = robot_.links[index(robot_.root_link)].name;
-      static_cast<void>(fit_srs(build_arm(robot_, root, robot_.links[index(link)].name, {}, Pose::Identity()).chain, ""));
+      const std::string& root = robot_.links[robot_.root_link].name;
+      static_cast<void>(fit_srs(build_arm(robot_, root, robot_.links[link].name, {}, Pose::Identity()).chain, ""));
       return true;
     } catch (const InputError&) {
       return false;
@@ -131,36 +129,36 @@ class Guesser {
   std::string tip_name(int last) const {
     std::vector<int> fixed{last};
     for (std::size_t k = 0; k < fixed.size(); ++k)
-      for (const Joint* joint : children_[index(fixed[k])])
+      for (const Joint* joint : children_[fixed[k]])
         if (!joint->movable()) fixed.push_back(joint->child_link);
     for (const char* const word :
          {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
       for (const int link : fixed)
-        if (ends_with_word(robot_.links[index(link)].name, word)) return robot_.links[index(link)].name;
+        if (ends_with_word(robot_.links[link].name, word)) return robot_.links[link].name;
     // The last link before the hand.
     int tip = last;
-    while (children_[index(tip)].size() == 1 && !children_[index(tip)].front()->movable()) {
-      const int next = children_[index(tip)].front()->child_link;
-      const auto& below = children_[index(next)];
+    while (children_[tip].size() == 1 && !children_[tip].front()->movable()) {
+      const int next = children_[tip].front()->child_link;
+      const auto& below = children_[next];
       if (std::any_of(below.begin(), below.end(), [](const Joint* joint) { return joint->movable(); })) break;
       tip = next;
     }
-    return robot_.links[index(tip)].name;
+    return robot_.links[tip].name;
   }
 
   /// A link above the arm that is called base_link or the like, else the root.
   std::string base_name(int last) const {
     std::vector<int> above;
-    for (int joint = robot_.links[index(last)].parent_joint, count = 0; joint >= 0;) {
-      const int link = robot_.joints[index(joint)].parent_link;
-      count += robot_.joints[index(joint)].movable();
+    for (int joint = robot_.links[last].parent_joint, count = 0; joint >= 0;) {
+      const int link = robot_.joints[joint].parent_link;
+      count += robot_.joints[joint].movable();
       if (count >= static_cast<int>(kDof)) above.push_back(link);
-      joint = robot_.links[index(link)].parent_joint;
+      joint = robot_.links[link].parent_joint;
     }
     for (const char* const word : {"base_link", "base", "link_base"})
       for (auto link = above.rbegin(); link != above.rend(); ++link)
-        if (ends_with_word(robot_.links[index(*link)].name, word)) return robot_.links[index(*link)].name;
-    return robot_.links[index(robot_.root_link)].name;
+        if (ends_with_word(robot_.links[*link].name, word)) return robot_.links[*link].name;
+    return robot_.links[robot_.root_link].name;
   }
 
   const RobotModel& robot_;

@@ -188,7 +188,7 @@ int run(const CampaignArguments& arguments) {
       const auto& found = file->rows();
       const auto lacking =
           std::find_if_not(found.begin(), found.end(), [&](const EpisodeRow& row) { return trajectories->has(row); });
-      file->keep(static_cast<std::size_t>(lacking - found.begin()));
+      file->keep(lacking - found.begin());
     }
     rows = file->rows();
   }

@@ -27,8 +27,7 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   if (problem.limits.tool_angle_error) std::printf(" (allowed %.3g)", *problem.limits.tool_angle_error);
   std::printf(" between, joint moves within %.0f %% of what is allowed", 100 * result.largest_step);
   if (result.nearest_limit)
-    std::printf(", '%s' %.2f deg from its limit at row %zu",
-                chain.joint_names[static_cast<std::size_t>(result.nearest_limit->joint)].c_str(),
+    std::printf(", '%s' %.2f deg from its limit at row %zu", chain.joint_names[result.nearest_limit->joint].c_str(),
                 result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
   if (result.min_clearance)
     std::printf(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);

@@ -67,9 +67,9 @@ void require_known(const char* option, const std::string& name, const std::vecto
 
 bool is_below(const RobotModel& robot, const std::string& tip, const std::string& base) {
   int link = robot.find_link(tip);
-  while (link >= 0 && robot.links[static_cast<std::size_t>(link)].name != base) {
-    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
-    link = joint < 0 ? -1 : robot.joints[static_cast<std::size_t>(joint)].parent_link;
+  while (link >= 0 && robot.links[link].name != base) {
+    const int joint = robot.links[link].parent_joint;
+    link = joint < 0 ? -1 : robot.joints[joint].parent_link;
   }
   return link >= 0;
 }
@@ -79,7 +79,7 @@ ArmGuess choose_arm(const RobotModel& robot, const std::string& base, const std:
   if (!base.empty()) require_known("--base", base, robot.links, "link", robot.source);
   if (!tip.empty()) {
     require_known("--tip", tip, robot.links, "link", robot.source);
-    return {base.empty() ? robot.links[static_cast<std::size_t>(robot.root_link)].name : base, tip};
+    return {base.empty() ? robot.links[robot.root_link].name : base, tip};
   }
   ArmGuesses guesses = guess_arms(robot);
   if (!base.empty()) {

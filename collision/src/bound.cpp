@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -16,7 +16,7 @@ struct BoundVisitor {
   Bound operator()(const MeshPtr& mesh) const {
     Eigen::AlignedBox3d box;
     for (const auto& triangle : mesh->triangles)
-      for (const int v : triangle) box.extend(mesh->vertices[static_cast<std::size_t>(v)]);
+      for (const int v : triangle) box.extend(mesh->vertices[v]);
     return {box.center(), box.sizes() / 2, 0};
   }
 };
@@ -64,4 +64,4 @@ bool surely_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const
   return offset.squaredNorm() >= reach * reach || gap_along_box_axes(a, at_a.axes, b, at_b.axes, offset) >= d;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

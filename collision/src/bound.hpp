@@ -2,7 +2,7 @@
 #pragma once
 #include "swivel/core/shape.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// A box in the shape's axes, grown by a ball: it contains the shape. A capsule is a degenerate box with a radius, so that its
 /// round sides cost nothing.
@@ -31,4 +31,4 @@ struct PlacedBound {
 /// True only if distance_floor >= d; asks the cheap balls first.
 [[nodiscard]] bool surely_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -6,7 +6,7 @@
 
 #include "swivel/collision/world.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -135,4 +135,4 @@ Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) 
   return prove(a, b, d, 0).certificate;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -2,7 +2,7 @@
 #pragma once
 #include "placed_shape.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// What is proved of one pair of bodies without FCL.
 enum class Certificate { kFree, kColliding, kNone };
@@ -23,4 +23,4 @@ struct Proof {
 };
 [[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead);
 
-}  // namespace swivel
+}  // namespace swivel::detail

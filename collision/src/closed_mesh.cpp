@@ -6,7 +6,7 @@
 #include <map>
 #include <numeric>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -42,7 +42,7 @@ ClosedMesh::ClosedMesh(const TriangleMesh& mesh) {
   corners_.reserve(mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
     Corners corners;
-    for (std::size_t k = 0; k < 3; ++k) corners[k] = turned(mesh.vertices[static_cast<std::size_t>(triangle[k])]);
+    for (std::size_t k = 0; k < 3; ++k) corners[k] = turned(mesh.vertices[triangle[k]]);
     std::sort(corners.begin(), corners.end(), before);
     for (const Vector3d& corner : corners) box_.extend(corner);
     corners_.push_back(corners);
@@ -58,16 +58,15 @@ ClosedMesh::ClosedMesh(const TriangleMesh& mesh) {
   const auto each_cell = [&](const Corners& c, const auto& visit) {
     const auto [low, high] = std::minmax({c[0].y(), c[1].y(), c[2].y()});
     for (int i = column(c[0].x()); i <= column(c[2].x()); ++i)
-      for (int j = row(low); j <= row(high); ++j)
-        visit(static_cast<std::size_t>(i) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(j));
+      for (int j = row(low); j <= row(high); ++j) visit(static_cast<std::size_t>(i) * rows_ + j);
   };
-  first_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
+  first_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
   for (const Corners& c : corners_) each_cell(c, [&](std::size_t cell) { ++first_[cell + 1]; });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  members_.resize(static_cast<std::size_t>(first_.back()));
+  members_.resize(first_.back());
   std::vector<int> next(first_.begin(), first_.end() - 1);
   for (std::size_t k = 0; k < corners_.size(); ++k)
-    each_cell(corners_[k], [&](std::size_t cell) { members_[static_cast<std::size_t>(next[cell]++)] = static_cast<int>(k); });
+    each_cell(corners_[k], [&](std::size_t cell) { members_[next[cell]++] = static_cast<int>(k); });
 }
 
 Vector3d ClosedMesh::turned(const Vector3d& point) const {
@@ -85,11 +84,9 @@ int ClosedMesh::row(double v) const {
 bool ClosedMesh::contains(const Vector3d& point) const {
   const Vector3d p = turned(point);
   if (!box_.contains(p)) return false;
-  const std::size_t cell =
-      static_cast<std::size_t>(column(p.x())) * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(row(p.y()));
+  const std::size_t cell = static_cast<std::size_t>(column(p.x())) * rows_ + row(p.y());
   bool inside = false;
-  for (int k = first_[cell]; k < first_[cell + 1]; ++k)
-    inside ^= ray_crosses(corners_[static_cast<std::size_t>(members_[static_cast<std::size_t>(k)])], p);
+  for (int k = first_[cell]; k < first_[cell + 1]; ++k) inside ^= ray_crosses(corners_[members_[k]], p);
   return inside;
 }
 
@@ -101,25 +98,25 @@ std::vector<Vector3d> one_point_per_part(const TriangleMesh& mesh) {
     if (ids.size() > leader.size()) leader.push_back(id.back());
   }
   const auto root = [&](int vertex) {
-    int v = id[static_cast<std::size_t>(vertex)];
-    while (leader[static_cast<std::size_t>(v)] != v) {
-      int& up = leader[static_cast<std::size_t>(v)];
-      up = leader[static_cast<std::size_t>(up)];
+    int v = id[vertex];
+    while (leader[v] != v) {
+      int& up = leader[v];
+      up = leader[up];
       v = up;
     }
     return v;
   };
   for (const auto& triangle : mesh.triangles)
-    for (const std::size_t k : {1u, 2u}) leader[static_cast<std::size_t>(root(triangle[k]))] = root(triangle[0]);
+    for (const std::size_t k : {1u, 2u}) leader[root(triangle[k])] = root(triangle[0]);
 
   std::vector<bool> seen(leader.size(), false);
   std::vector<Vector3d> points;
   for (const auto& triangle : mesh.triangles) {
-    const std::size_t part = static_cast<std::size_t>(root(triangle[0]));
-    if (!seen[part]) points.push_back(mesh.vertices[static_cast<std::size_t>(triangle[0])]);
+    const int part = root(triangle[0]);
+    if (!seen[part]) points.push_back(mesh.vertices[triangle[0]]);
     seen[part] = true;
   }
   return points;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -5,7 +5,7 @@
 
 #include "swivel/core/shape.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// The inside of a closed mesh, for points that are not on its surface: a ray from the point leaves the solid as often as it
 /// enters it, plus once if the point is inside.
@@ -35,4 +35,4 @@ class ClosedMesh {
 /// One vertex of each connected part of the surface, vertices at equal positions being one.
 [[nodiscard]] std::vector<Vector3d> one_point_per_part(const TriangleMesh& mesh);
 
-}  // namespace swivel
+}  // namespace swivel::detail

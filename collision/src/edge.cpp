@@ -8,7 +8,7 @@ namespace swivel {
 
 double EdgeRule::motion(const Config& q0, const Config& q1, int first, int last) const {
   double bound = 0;
-  for (int j = first; j < last; ++j) bound += std::abs(q1[j] - q0[j]) * radii[static_cast<std::size_t>(j)];
+  for (int j = first; j < last; ++j) bound += std::abs(q1[j] - q0[j]) * radii[j];
   return bound;
 }
 

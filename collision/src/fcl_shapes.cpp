@@ -10,15 +10,14 @@
 
 #include "swivel/core/input_error.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
 template <class Tree>
 void build(Tree& tree, const TriangleMesh& mesh) {
   std::vector<fcl::Triangle> triangles;
-  for (const auto& t : triangles_with_area(mesh))
-    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2]));
+  for (const auto& t : triangles_with_area(mesh)) triangles.emplace_back(t[0], t[1], t[2]);
   tree.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
   tree.addSubModel(mesh.vertices, triangles);
   tree.endModel();
@@ -78,4 +77,4 @@ FclShape make_fcl_shape(const Shape& shape, MeshStore& store) {
   return result;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -17,7 +17,7 @@
 #include "polyhedron.hpp"
 #include "swivel/core/shape.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// What collision needs of one mesh, computed once. Const calls are safe from many threads.
 class MeshModel {
@@ -70,4 +70,4 @@ struct FclShape {
 };
 [[nodiscard]] FclShape make_fcl_shape(const Shape& shape, MeshStore& store);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -12,7 +12,7 @@
 
 #include "pair_test.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -80,4 +80,4 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, c
   return std::nullopt;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -30,8 +30,8 @@ class Clusters {
 
  private:
   [[nodiscard]] const Joint* above(int link) const {
-    const int joint = robot_.links[static_cast<std::size_t>(link)].parent_joint;
-    return joint < 0 ? nullptr : &robot_.joints[static_cast<std::size_t>(joint)];
+    const int joint = robot_.links[link].parent_joint;
+    return joint < 0 ? nullptr : &robot_.joints[joint];
   }
   [[nodiscard]] int of_parent(int cluster) const {
     const Joint* joint = above(cluster);
@@ -57,4 +57,4 @@ std::vector<BodyPair> candidate_robot_pairs(const RobotModel& robot, const std::
   return pairs;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -11,7 +11,7 @@
 #include <limits>
 #include "swivel/core/timeline.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -105,4 +105,4 @@ double PairTest::distance(const fcl::CollisionGeometryd& a, const Pose& X_a, con
   }
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -3,7 +3,7 @@
 #include "placed_shape.hpp"
 #include "swivel/collision/world.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// GJK stops at the first step that gains less than this. At the default, 1e-6, it returned up to 13 mm too much between a box and
 /// a cylinder; at 1e-10 no more than 0.05 um, for the same time.
@@ -30,4 +30,4 @@ class PairTest {
   CollisionCounters counters_;
 };
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -23,4 +23,4 @@ bool one_inside_other(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   return holds_a_point(a, b) || holds_a_point(b, a);
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -2,7 +2,7 @@
 #pragma once
 #include "fcl_shapes.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// A body where it is.
 struct PlacedShapeRef {
@@ -13,4 +13,4 @@ struct PlacedShapeRef {
 /// A point of one lies inside the other, which is a closed mesh. Decides where surfaces do not meet: FCL sees a mesh as a surface.
 [[nodiscard]] bool one_inside_other(const PlacedShapeRef& a, const PlacedShapeRef& b);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -5,14 +5,14 @@
 #include <array>
 #include <cmath>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
 constexpr int kSides = 32;
 
 Vector3d at(const TriangleMesh& mesh, int vertex) {
-  return mesh.vertices[static_cast<std::size_t>(vertex)];
+  return mesh.vertices[vertex];
 }
 
 }  // namespace
@@ -62,4 +62,4 @@ double beyond_prism(const Cylinder& cylinder) {
   return cylinder.radius * (1 - std::cos(kPi / kSides));
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

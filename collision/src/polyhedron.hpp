@@ -5,7 +5,7 @@
 #include "swivel/core/shape.hpp"
 #include "triangle_tree.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// Triangles as collision has them: those less than a nanometre high are left out, since their neighbours' edges cover them and FCL
 /// returns an unset distance for a triangle without area.
@@ -18,4 +18,4 @@ namespace swivel {
 [[nodiscard]] TriangleMesh surface_of(const Cylinder& cylinder);
 [[nodiscard]] double beyond_prism(const Cylinder& cylinder);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -10,7 +10,7 @@
 #include "pair_test.hpp"
 #include "swivel/core/timeline.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -26,7 +26,7 @@ class Samples {
   std::array<Pose, kDof + 1> next() {
     Config q;
     for (int j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
+      const JointLimit& limit = chain_->limit[j];
       const double lower = limit.continuous ? -kPi : limit.lower, upper = limit.continuous ? kPi : limit.upper;
       // The library's distributions differ by vendor.
       q[j] = lower + static_cast<double>(random_() >> 11) * 0x1.0p-53 * (upper - lower);
@@ -42,13 +42,11 @@ class Samples {
 /// One pair of the robot's bodies at one posture.
 struct PlacedPair {
   PlacedPair(const RobotPart& part, const BodyPair& pair, const std::array<Pose, kDof + 1>& moved)
-      : shape_a(&part.shapes[static_cast<std::size_t>(pair.a)]),
-        shape_b(&part.shapes[static_cast<std::size_t>(pair.b)]),
-        pose_a(pose(part.bodies[static_cast<std::size_t>(pair.a)], moved)),
-        pose_b(pose(part.bodies[static_cast<std::size_t>(pair.b)], moved)) {}
-  static Pose pose(const RobotBody& body, const std::array<Pose, kDof + 1>& moved) {
-    return moved[static_cast<std::size_t>(body.group)] * body.pose;
-  }
+      : shape_a(&part.shapes[pair.a]),
+        shape_b(&part.shapes[pair.b]),
+        pose_a(pose(part.bodies[pair.a], moved)),
+        pose_b(pose(part.bodies[pair.b], moved)) {}
+  static Pose pose(const RobotBody& body, const std::array<Pose, kDof + 1>& moved) { return moved[body.group] * body.pose; }
   [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
   [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
   [[nodiscard]] Certificate certificate(double d) const {
@@ -68,7 +66,7 @@ struct PlacedPair {
 /// Where a joint moves no shape at all, nothing keeps what it moves clear of anything.
 std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm, const std::vector<RobotBody>& bodies) {
   std::array<bool, kDof + 1> has_shape{};
-  for (const RobotBody& body : bodies) has_shape[static_cast<std::size_t>(body.group)] = true;
+  for (const RobotBody& body : bodies) has_shape[body.group] = true;
   if (std::find(has_shape.begin() + 1, has_shape.end(), true) == has_shape.end())
     return {robot.name + ": the arm has no collision shape at all: it is kept clear of nothing"};
   std::vector<std::string> warnings;
@@ -97,7 +95,7 @@ RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem
     budget.poll();
     shapes.push_back(make_fcl_shape(body.shape, meshes));
   }
-  const auto attached = [&](int i) { return bodies[static_cast<std::size_t>(i)].attached; };
+  const auto attached = [&](int i) { return bodies[i].attached; };
   for (const BodyPair& pair : candidate_robot_pairs(robot, bodies))
     candidates_.push_back({pair, !robot.has_srdf || attached(pair.a) || attached(pair.b)});
   medians_.assign(candidates_.size(), kFar);
@@ -192,4 +190,4 @@ std::vector<RobotPair> RobotPart::pairs(const Limits& limits) const {
   return pairs;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

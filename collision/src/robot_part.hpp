@@ -6,7 +6,7 @@
 #include "fcl_shapes.hpp"
 #include "swivel/collision/world.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// What worlds of one robot share: it does not depend on the scene. Immutable. Whatever takes a budget throws Stopped.
 class RobotPart {
@@ -44,4 +44,4 @@ class RobotPart {
   std::vector<double> medians_;  // by candidate; infinite from medians_up_to_ on
 };
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -99,4 +99,4 @@ double squared_distance(const Triangle& s, const Triangle& t, double limit) {
   return limit;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -2,7 +2,7 @@
 #pragma once
 #include "swivel/core/types.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// start + t along, 0 <= t <= 1; a point where `along` is zero. Metres, any one frame.
 struct Segment {
@@ -25,4 +25,4 @@ struct Triangle {
 [[nodiscard]] double squared_distance(const Segment& s, const Triangle& t, double limit);
 [[nodiscard]] double squared_distance(const Triangle& s, const Triangle& t, double limit);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace swivel {
+namespace swivel::detail {
 
 namespace {
 
@@ -18,7 +18,7 @@ constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, an
 class BoxBound {
  public:
   explicit BoxBound(const Segment& s) : middle_(s.at(0.5)), half_(s.along.cwiseAbs() / 2) {
-    for (int k = 0; k < 3; ++k) across_[static_cast<std::size_t>(k)] = Vector3d::Unit(k).cross(s.along).stableNormalized();
+    for (int k = 0; k < 3; ++k) across_[k] = Vector3d::Unit(k).cross(s.along).stableNormalized();
   }
   [[nodiscard]] double squared(const Vector3d& center, const Vector3d& half, double limit) const {
     const Vector3d offset = center - middle_;
@@ -63,7 +63,7 @@ TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::mo
   build(items, 0, static_cast<int>(items.size()));
   std::vector<Triangle> in_order;
   in_order.reserve(items.size());
-  for (const Item& item : items) in_order.push_back(triangles_[static_cast<std::size_t>(item.triangle)]);
+  for (const Item& item : items) in_order.push_back(triangles_[item.triangle]);
   triangles_.swap(in_order);
 }
 
@@ -73,12 +73,12 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
   Eigen::AlignedBox3d box;
   if (end - begin <= kLeaf) {
     for (int k = begin; k < end; ++k) {
-      const Triangle& t = triangles_[static_cast<std::size_t>(items[static_cast<std::size_t>(k)].triangle)];
+      const Triangle& t = triangles_[items[k].triangle];
       box.extend(t.a).extend(t.a + t.ab).extend(t.a + t.ac);
     }
   } else {
     Eigen::AlignedBox3d centers;
-    for (int k = begin; k < end; ++k) centers.extend(items[static_cast<std::size_t>(k)].center);
+    for (int k = begin; k < end; ++k) centers.extend(items[k].center);
     int axis = 0;
     centers.sizes().maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;
@@ -104,17 +104,17 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
   const auto squared_bound = [&](int node) {
-    const Node& n = nodes_[static_cast<std::size_t>(node)];
+    const Node& n = nodes_[node];
     return bound.squared(n.center, n.half, least);
   };
   stack[open++] = {0, squared_bound(0)};
   while (open > 0) {
     const auto [index, at_least] = stack[--open];
     if (at_least >= least) continue;
-    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    const Node& node = nodes_[index];
     if (node.right == 0) {
       for (int k = node.begin; k < node.end; ++k) {
-        least = std::min(least, squared_distance(segment, triangles_[static_cast<std::size_t>(k)], least));
+        least = std::min(least, squared_distance(segment, triangles_[k], least));
         if (least < squared_enough) return std::sqrt(least);
       }
       continue;
@@ -130,7 +130,7 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
 double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit) const {
   const BoxPairBound bound(pose);
   const auto squared_bound = [&](int a, int b) {
-    const Node &m = nodes_[static_cast<std::size_t>(a)], &n = other.nodes_[static_cast<std::size_t>(b)];
+    const Node &m = nodes_[a], &n = other.nodes_[b];
     return bound.squared(m.center, m.half, n.center, n.half);
   };
   struct Open {
@@ -145,13 +145,13 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   while (open > 0) {
     const Open here = stack[--open];
     if (here.bound >= least) continue;
-    const Node &m = nodes_[static_cast<std::size_t>(here.a)], &n = other.nodes_[static_cast<std::size_t>(here.b)];
+    const Node &m = nodes_[here.a], &n = other.nodes_[here.b];
     if (m.right == 0 && n.right == 0) {
       for (int j = n.begin; j < n.end; ++j) {
-        const Triangle& t = other.triangles_[static_cast<std::size_t>(j)];
+        const Triangle& t = other.triangles_[j];
         const Triangle moved = t.moved(pose);
         for (int k = m.begin; k < m.end; ++k) {
-          least = std::min(least, squared_distance(triangles_[static_cast<std::size_t>(k)], moved, least));
+          least = std::min(least, squared_distance(triangles_[k], moved, least));
           if (least < squared_enough) return std::sqrt(least);
         }
       }
@@ -170,4 +170,4 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   return std::sqrt(least);
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -4,7 +4,7 @@
 
 #include "segment.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// Triangles in a binary tree of boxes, for exact distances up to a limit. Const calls are safe from many threads.
 class TriangleTree {
@@ -33,4 +33,4 @@ class TriangleTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace swivel
+}  // namespace swivel::detail

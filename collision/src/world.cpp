@@ -14,6 +14,8 @@
 
 namespace swivel {
 
+using namespace detail;
+
 namespace {
 
 /// What one pair must keep, by Keep.
@@ -131,7 +133,7 @@ struct World::Impl {
     std::vector<std::string> dropped, reduced;
     for (const RobotPair& p : robot_pairs) {
       if (!p.dropped && !p.reduced) continue;
-      const std::string text = names[static_cast<std::size_t>(p.pair.a)] + " - " + names[static_cast<std::size_t>(p.pair.b)];
+      const std::string text = names[p.pair.a] + " - " + names[p.pair.b];
       if (p.dropped)
         dropped.push_back(text);
       else if (p.keeps.node < limits.d_self())
@@ -157,7 +159,7 @@ struct World::Impl {
     return found == bodies.end() ? nullptr : &*found;
   }
 
-  const Body& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
+  const Body& body(int i) const { return bodies[i]; }
 
   void sort_pairs() {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
@@ -206,7 +208,7 @@ const std::vector<std::string>& World::body_names() const {
   return impl_->names;
 }
 std::array<std::string, 2> World::names(const BodyPair& pair) const {
-  return {impl_->names[static_cast<std::size_t>(pair.a)], impl_->names[static_cast<std::size_t>(pair.b)]};
+  return {impl_->names[pair.a], impl_->names[pair.b]};
 }
 const std::vector<BodyPair>& World::pairs() const {
   return impl_->pairs;
@@ -291,7 +293,7 @@ struct World::Query::Impl {
       world->robot->chain.displace(q, displaced, body.group, displacements);
       displaced = body.group;
     }
-    poses[i] = product(displacements[static_cast<std::size_t>(body.group)], body.pose);
+    poses[i] = product(displacements[body.group], body.pose);
     bounds[i] = place(body.shape.bound, poses[i]);
     in_place[i] = 1;
   }
@@ -362,9 +364,7 @@ struct World::Query::Impl {
       moved_to[i] = bounds[i];
     }
   }
-  [[nodiscard]] double moved_together(const BodyPair& p) const {
-    return moved[static_cast<std::size_t>(p.a)] + moved[static_cast<std::size_t>(p.b)];
-  }
+  [[nodiscard]] double moved_together(const BodyPair& p) const { return moved[p.a] + moved[p.b]; }
   void find_due(const Level& level) {
     due.resize(reserve.size());
     std::size_t found = 0;
@@ -386,7 +386,7 @@ struct World::Query::Impl {
   Certificate renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double spent = moved_together(p);
-    const double ahead = step[static_cast<std::size_t>(p.a)] + step[static_cast<std::size_t>(p.b)] < kAhead ? kAhead : kBoundSafety;
+    const double ahead = step[p.a] + step[p.b] < kAhead ? kAhead : kBoundSafety;
     const auto clear_by = [&](double floor) {
       reserve[k] = floor + spent;
       return floor >= d + ahead;
@@ -398,9 +398,9 @@ struct World::Query::Impl {
     clear_by(std::max(floor, proof.floor));
     return floor >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
-  [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[static_cast<std::size_t>(i)]}; }
+  [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[i]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
-  [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[i]; }
 };
 
 World::Query::Query(const World& world, Certificates certificates) : impl_(std::make_unique<Impl>(*world.impl_, certificates)) {}
@@ -474,7 +474,7 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
   impl_->move_to(q);
   impl_->put_all();
-  return swivel::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
+  return detail::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
 }
 
 CollisionCounters World::Query::counters() const {

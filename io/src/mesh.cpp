@@ -24,10 +24,10 @@ void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh&
   std::vector<int> index(surface.points().size(), -1);
   for (std::array<int, 3> triangle : surface.triangles()) {
     for (int& corner : triangle) {
-      int& known = index[static_cast<std::size_t>(corner)];
+      int& known = index[corner];
       if (known < 0) {
         known = static_cast<int>(mesh.vertices.size());
-        mesh.vertices.push_back(placed * surface.points()[static_cast<std::size_t>(corner)]);
+        mesh.vertices.push_back(placed * surface.points()[corner]);
         const Vector3d& vertex = mesh.vertices.back();
         if (!(vertex.array().abs() <= kMostMetres).all())
           file.fail(0, "a vertex lies " + format_double(vertex.norm()) + " m from the origin, scale applied",
@@ -42,9 +42,7 @@ void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh&
 
 bool has_area(const TriangleMesh& mesh) {
   return std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const auto& triangle) {
-    const auto vertex = [&](int k) -> const Vector3d& {
-      return mesh.vertices[static_cast<std::size_t>(triangle[static_cast<std::size_t>(k)])];
-    };
+    const auto vertex = [&](int k) -> const Vector3d& { return mesh.vertices[triangle[k]]; };
     return (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).squaredNorm() > 0;
   });
 }

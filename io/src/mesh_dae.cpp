@@ -87,7 +87,7 @@ class DaeReader {
       return Affine3d(Eigen::AngleAxisd(x[3] * kPi / 180, axis.normalized()));
     }
     Affine3d result = Affine3d::Identity();
-    for (int k = 0; k < 12; ++k) result.matrix()(k / 4, k % 4) = x[static_cast<std::size_t>(k)];
+    for (int k = 0; k < 12; ++k) result.matrix()(k / 4, k % 4) = x[k];
     return result;
   }
 
@@ -191,8 +191,8 @@ class DaeReader {
         for (const double size : sizes) {
           if (!(size >= 0) || size != std::floor(size) || !(size <= static_cast<double>(corners.size() - next)))
             fail(faces, "has a polygon of more corners than <p> holds", "the same number of corners in <vcount> and <p>");
-          surface.add_polygon(std::span(corners).subspan(next, static_cast<std::size_t>(size)), p->GetLineNum());
-          next += static_cast<std::size_t>(size);
+          surface.add_polygon(std::span(corners).subspan(next, size), p->GetLineNum());
+          next += size;
           ++found;
         }
         if (next != corners.size())
@@ -235,7 +235,7 @@ class DaeReader {
     std::size_t k = 0;
     for (auto* param = accessor->FirstChildElement("param"); param != nullptr; param = param->NextSiblingElement("param"), ++k)
       if (const char* name = param->Attribute("name"); name != nullptr && std::strlen(name) == 1 && *name >= 'X' && *name <= 'Z')
-        at[static_cast<std::size_t>(*name - 'X')] = k;
+        at[*name - 'X'] = k;
     const std::size_t last = *std::max_element(at.begin(), at.end());
     if (count == 0) return {static_cast<std::int64_t>(surface.points().size()), 0};
     if (stride < 1 || last >= stride || offset + (count - 1) * stride + last >= values.size())

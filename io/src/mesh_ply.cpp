@@ -159,7 +159,7 @@ class PlyReader {
       } else {
         const double number = value(property.type);
         if (!vertex || property.name.size() != 1 || property.name[0] < 'x' || property.name[0] > 'z') continue;
-        x[static_cast<std::size_t>(property.name[0] - 'x')] = number;
+        x[property.name[0] - 'x'] = number;
         ++found;
       }
     }

@@ -35,7 +35,7 @@ void Surface::add_polygon(std::span<const std::int64_t> corners, int line) {
   if (corners_.size() < 3) return;
   if (corners_.size() == 3) return add_triangle(corners_[0], corners_[1], corners_[2], line);
   const std::size_t n = corners_.size();
-  const auto point = [&](std::size_t k) -> const Vector3d& { return points_[static_cast<std::size_t>(corners_[k % n])]; };
+  const auto point = [&](std::size_t k) -> const Vector3d& { return points_[corners_[k % n]]; };
   Vector3d normal = Vector3d::Zero();  // twice the area, whatever the polygon's form
   for (std::size_t k = 1; k + 1 < n; ++k) normal += (point(k) - point(0)).cross(point(k + 1) - point(0));
   bool convex = true;
@@ -47,7 +47,7 @@ void Surface::add_polygon(std::span<const std::int64_t> corners, int line) {
 
 void Surface::cut(std::vector<int> corners, const Vector3d& normal, int line) {
   constexpr std::size_t kMostWork = 50'000'000;
-  const auto point = [&](int corner) -> const Vector3d& { return points_[static_cast<std::size_t>(corner)]; };
+  const auto point = [&](int corner) -> const Vector3d& { return points_[corner]; };
   const auto left_of = [&](const Vector3d& a, const Vector3d& b, const Vector3d& p) { return (b - a).cross(p - a).dot(normal); };
   std::size_t k = 0, misses = 0;
   while (corners.size() > 3 && misses < corners.size()) {

@@ -256,7 +256,7 @@ class ModelBuilder {
       joint.axis = to_eigen(parsed.axis) / length;
       read_limits(parsed, at, joint);
     }
-    model_->links[static_cast<std::size_t>(joint.child_link)].parent_joint = static_cast<int>(model_->joints.size());
+    model_->links[joint.child_link].parent_joint = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
   }
 
@@ -295,7 +295,7 @@ class ModelBuilder {
   void add_mimic(const tinyxml2::XMLElement& element) {
     const std::string name = element.Attribute("name");
     const urdf::JointMimicSharedPtr& mimic = parsed_->getJoint(name)->mimic;
-    Joint& joint = model_->joints[static_cast<std::size_t>(joints_.at(name))];
+    Joint& joint = model_->joints[joints_.at(name)];
     if (!mimic || !joint.movable()) return;
     const auto found = joints_.find(mimic->joint_name);
     if (found == joints_.end())
@@ -303,7 +303,7 @@ class ModelBuilder {
     const int leader = found->second;
     // Leaders come before or after in the file, so follow the chain as far as it is known.
     for (int k = leader; k >= 0;) {
-      const Joint& next = model_->joints[static_cast<std::size_t>(k)];
+      const Joint& next = model_->joints[k];
       if (&next == &joint) bad_input(where(element), "mimics itself", "the name of another joint");
       k = next.mimic ? next.mimic->joint : -1;
     }

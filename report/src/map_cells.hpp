@@ -9,7 +9,7 @@
 
 #include "swivel/report/lattice_map.hpp"
 
-namespace swivel {
+namespace swivel::detail {
 
 /// A panel's cells, each standing for layers_each x angles_each nodes (fewer at the ends).
 class MapCells {
@@ -32,7 +32,7 @@ class MapCells {
   [[nodiscard]] bool on_path(int label, int column, int row) const {
     const int end = std::min(static_cast<int>(map_.path.size()), (column + 1) * layers_each);
     for (int i = column * layers_each; i < end; ++i) {
-      const int slot = map_.path[static_cast<std::size_t>(i)];
+      const int slot = map_.path[i];
       if (slot / map_.angles == label && slot % map_.angles / angles_each == row) return true;
     }
     return false;
@@ -91,4 +91,4 @@ class MapLegend {
   std::set<std::tuple<int, std::uint8_t, bool>> seen_;  // minus the state, cause, certified (of free ones)
 };
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -7,6 +7,8 @@
 
 namespace swivel {
 
+using namespace detail;
+
 namespace {
 
 // Okabe & Ito's palette, told apart by all kinds of colour vision; shades for joints and for bodies.

@@ -6,6 +6,8 @@
 
 namespace swivel {
 
+using namespace detail;
+
 namespace {
 
 struct Look {

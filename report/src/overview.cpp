@@ -8,6 +8,8 @@
 
 namespace swivel {
 
+using namespace detail;
+
 namespace {
 
 using Json = nlohmann::ordered_json;

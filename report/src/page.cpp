@@ -17,6 +17,8 @@
 
 namespace swivel {
 
+using namespace detail;
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -101,7 +103,7 @@ Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<
   Config previous = Config::Zero();
   for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
     budget.poll();
-    const int slot = slots[static_cast<std::size_t>(layer)];
+    const int slot = slots[layer];
     LayerNodes nodes;
     lattice.solve(layer, lattice.angle_of(slot), 1, nodes);
     Config q = nodes.config(lattice.label_of(slot), 0);
@@ -122,8 +124,7 @@ Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<
                 {"error_mm", std::move(error)}};
     if (const auto clearance = query.clearance(q)) {
       row["clearance_mm"] = 1e3 * clearance->distance;
-      row["pair"] = {world.body_names()[static_cast<std::size_t>(clearance->pair.a)],
-                     world.body_names()[static_cast<std::size_t>(clearance->pair.b)]};
+      row["pair"] = {world.body_names()[clearance->pair.a], world.body_names()[clearance->pair.b]};
       if (const auto points = query.nearest_points(q, *clearance)) {
         row["nearest"] = vector_json((*points)[0]);
         for (const double x : (*points)[1]) row["nearest"].push_back(x);
@@ -165,13 +166,13 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
   Json pair = nullptr;
   const auto& names = world.body_names();
   const auto between = std::find_if(world.pairs().begin(), world.pairs().end(), [&](const BodyPair& p) {
-    return reason == names[static_cast<std::size_t>(p.a)] + " - " + names[static_cast<std::size_t>(p.b)] + " between layers";
+    return reason == names[p.a] + " - " + names[p.b] + " between layers";
   });
   if (node.state == NodeState::kBlocked) {
     pair = {map.blockers[node.cause].first, map.blockers[node.cause].second};
     what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + map.blocker_name(node);
   } else if (between != world.pairs().end()) {
-    pair = {names[static_cast<std::size_t>(between->a)], names[static_cast<std::size_t>(between->b)]};
+    pair = {names[between->a], names[between->b]};
     what = "the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " + pair[1].get<std::string>();
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
@@ -183,7 +184,7 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
       const double most = step.cwiseAbs().maxCoeff(&joint);
       char text[32];
       std::snprintf(text, sizeof text, " by %.2f rad", most);
-      what += ", " + map.joint_names[static_cast<std::size_t>(joint)] + text;
+      what += ", " + map.joint_names[joint] + text;
     }
   }
   return {{"layer", layer},
@@ -234,7 +235,7 @@ Json map_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
   for (const int label : labels) panels.push_back({{"label", label}, {"name", map.label_name(label)}});
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
-    std::vector<Config> shown(labels.size() * static_cast<std::size_t>(cells.rows), Config::Constant(2 * reach));
+    std::vector<Config> shown(labels.size() * cells.rows, Config::Constant(2 * reach));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.solve(layer, nodes);

@@ -20,7 +20,7 @@ SWIVEL_EMBED("overview");
 extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[], swivel_overview_end[];
 #endif
 
-namespace swivel {
+namespace swivel::detail {
 
 std::string_view page_template() {
 #ifdef SWIVEL_PAGES
@@ -49,4 +49,4 @@ std::string fill(std::string_view page, const std::string& json) {
   return filled;
 }
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace swivel {
+namespace swivel::detail {
 
 /// The bundled pages of report/web, with "@@DATA@@" where the data goes; empty where they were left out of the build.
 [[nodiscard]] std::string_view page_template();
@@ -12,4 +12,4 @@ namespace swivel {
 /// The page with its data, a JSON text.
 [[nodiscard]] std::string fill(std::string_view page, const std::string& json);
 
-}  // namespace swivel
+}  // namespace swivel::detail

@@ -14,6 +14,7 @@
 namespace swivel {
 namespace {
 
+using namespace detail;
 using test::Random;
 
 constexpr double kTau = kVerdictBand;
@@ -34,7 +35,7 @@ Vector3d random_size(Random& random, double low, double high) {
 /// One sheet of triangles, without thickness.
 TriangleMesh sheet_mesh(double width, double height, int n) {
   TriangleMesh mesh = testing::panel_mesh(width, height, 0.04, n);
-  mesh.triangles.resize(static_cast<std::size_t>(4 * n * n));  // the upper side comes first
+  mesh.triangles.resize(4 * n * n);  // the upper side comes first
   return mesh;
 }
 
@@ -72,7 +73,7 @@ std::vector<SceneObject> random_scene(Random& random, const std::vector<MeshPtr>
         shape = Cylinder{random.uniform(0.005, 0.15), random.uniform(0.02, 1)};
         break;
       default:
-        shape = pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
+        shape = pool[random.below(static_cast<int>(pool.size()))];
     }
     Pose pose = random_pose(random, 0.9);
     pose.translation().z() += 0.6;
@@ -88,7 +89,7 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
   const auto pool = meshes();
   const auto robots = test::all_robots();
-  const test::TestRobot& robot = robots[static_cast<std::size_t>(GetParam()) % robots.size()];
+  const test::TestRobot& robot = robots[GetParam() % robots.size()];
   const ArmModel arm = test::arm_of(robot);
   const World empty(*robot.model, arm, test::problem_for(robot));
   const int scenes = test::trials(125), configurations = 1000;
@@ -167,8 +168,8 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     if (kind == 1 || kind == 2) other = Capsule{small, random.uniform(0.01, 0.5)};
     if (kind == 3) other = Box{random_size(random, small / 4, 2 * small)};
     if (kind == 4) other = Cylinder{small, random.uniform(0.005, 0.4)};
-    if (kind == 5) other = pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))];
-    const FclShape fa = make_fcl_shape(pool[static_cast<std::size_t>(random.below(static_cast<int>(pool.size())))], store);
+    if (kind == 5) other = pool[random.below(static_cast<int>(pool.size()))];
+    const FclShape fa = make_fcl_shape(pool[random.below(static_cast<int>(pool.size()))], store);
     const FclShape fb = make_fcl_shape(other, store);
     const Pose X_a = random_pose(random, 0.1);
     const Pose X_b = X_a * random_pose(random, random.coin(0.3) ? 0.15 : 0.6);  // the nearer often inside

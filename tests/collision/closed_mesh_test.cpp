@@ -12,6 +12,7 @@
 namespace swivel {
 namespace {
 
+using namespace detail;
 using namespace swivel::testing;
 
 std::vector<TriangleMesh> closed_meshes() {

@@ -119,7 +119,7 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   EXPECT_FALSE(query.first_below(q1, 0.01));
   const auto pair = edge_blocked(query, rule, q0, q1);
   ASSERT_TRUE(pair);
-  EXPECT_EQ(world.body_names()[static_cast<std::size_t>(pair->b)], "speck");
+  EXPECT_EQ(world.body_names()[pair->b], "speck");
   EXPECT_TRUE(edge_blocked(query, rule, q1, q0));
   World::Query other(empty);
   EXPECT_FALSE(edge_blocked(other, rule, q0, q1));

@@ -13,6 +13,7 @@
 namespace swivel {
 namespace {
 
+using namespace detail;
 using namespace swivel::testing;
 
 struct Tally {
@@ -35,8 +36,8 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
         const auto points = nearest_points(pa, pb, test.clearance(pa, pb));
         const double truth = reference_clearance(a, X_a, b, X_b);
-        const std::string what = kKinds[static_cast<std::size_t>(ka)] + " / " + kKinds[static_cast<std::size_t>(kb)] +
-                                 ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        const std::string what =
+            kKinds[ka] + " / " + kKinds[kb] + ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
         if (truth == 0) {
           ++touching;
           EXPECT_FALSE(points) << what;
@@ -55,8 +56,7 @@ TEST(NearestPoints, LieOnTheBodiesAndAreAsFarApartAsTheyAre) {
   EXPECT_GT(touching, 5);
   int apart = 0, answered = 0;
   for (const auto& [pair, t] : tally) {
-    std::printf("%s / %s: %d of %d have points\n", kKinds[static_cast<std::size_t>(pair.first)].c_str(),
-                kKinds[static_cast<std::size_t>(pair.second)].c_str(), t.answered, t.apart);
+    std::printf("%s / %s: %d of %d have points\n", kKinds[pair.first].c_str(), kKinds[pair.second].c_str(), t.answered, t.apart);
     apart += t.apart;
     answered += t.answered;
   }

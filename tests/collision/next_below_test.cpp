@@ -12,6 +12,7 @@
 namespace swivel {
 namespace {
 
+using namespace detail;
 using test::Random;
 
 /// Postures of a walk: small and large steps, turns, stays and jumps.
@@ -45,7 +46,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
   const std::uint64_t base = test::seed("KeptClearances");
   Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
   const auto robots = test::all_robots();
-  const test::TestRobot& robot = robots[static_cast<std::size_t>(GetParam())];
+  const test::TestRobot& robot = robots[GetParam()];
   const ArmModel arm = test::arm_of(robot);
   // With its SRDF, and without one at a clearance that many pairs cannot keep.
   const World with_srdf(*robot.model, arm, test::problem_for(robot));
@@ -69,7 +70,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       const Config& q = walk.next();
       const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
       std::optional<BodyPair> suspect;
-      if (random.coin(0.2)) suspect = world.pairs()[static_cast<std::size_t>(random.below(static_cast<int>(world.pairs().size())))];
+      if (random.coin(0.2)) suspect = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
       if (random.coin(0.01)) kept.forget();
       const Level level = special ? Level(Keep::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Level(d);
       const auto expected = plain.first_below(q, level, suspect), found = kept.next_below(q, level, suspect);

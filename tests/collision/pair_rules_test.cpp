@@ -19,7 +19,7 @@ Names names_of(const World& world) {
   Names names;
   for (const BodyPair& p : world.pairs()) {
     EXPECT_LT(p.a, p.b);
-    names.insert(std::minmax(world.body_names()[static_cast<std::size_t>(p.a)], world.body_names()[static_cast<std::size_t>(p.b)]));
+    names.insert(std::minmax(world.body_names()[p.a], world.body_names()[p.b]));
   }
   EXPECT_EQ(names.size(), world.pairs().size());
   return names;
@@ -285,9 +285,9 @@ TEST(PairRules, EnvironmentComesFirstAndTheToolFirstOfAll) {
   const World world(robot, arm_of(robot), problem);
   ASSERT_GT(world.pairs().size(), 7u);
   for (int k = 0; k < 7; ++k) {
-    const BodyPair& p = world.pairs()[static_cast<std::size_t>(k)];
-    EXPECT_EQ(world.body_names()[static_cast<std::size_t>(p.a)], numbered("l", 7 - k));
-    EXPECT_EQ(world.body_names()[static_cast<std::size_t>(p.b)], "ball");
+    const BodyPair& p = world.pairs()[k];
+    EXPECT_EQ(world.body_names()[p.a], numbered("l", 7 - k));
+    EXPECT_EQ(world.body_names()[p.b], "ball");
   }
 }
 

@@ -16,6 +16,7 @@
 namespace swivel {
 namespace {
 
+using namespace detail;
 using namespace swivel::testing;
 
 constexpr double kTau = 5e-5;  // docs/model.md: the band in which FCL alone decides
@@ -26,8 +27,8 @@ Vector3d held_point(const Shape& shape, bool of_triangle) {
   if (!mesh) return Vector3d::Zero();
   const auto& v = (*mesh)->vertices;
   const auto& t = (*mesh)->triangles[(*mesh)->triangles.size() / 2];
-  const Vector3d edge = v[static_cast<std::size_t>(t[0])] + v[static_cast<std::size_t>(t[1])];
-  return of_triangle ? Vector3d((edge + v[static_cast<std::size_t>(t[2])]) / 3) : Vector3d(edge / 2);
+  const Vector3d edge = v[t[0]] + v[t[1]];
+  return of_triangle ? Vector3d((edge + v[t[2]]) / 3) : Vector3d(edge / 2);
 }
 
 struct Tally {
@@ -52,8 +53,8 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
         const double truth = reference_clearance(a, X_a, b, X_b);
         const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
         const PlacedShapeRef pa{&fa, &X_a}, pb{&fb, &X_b};
-        const std::string what = kKinds[static_cast<std::size_t>(ka)] + " / " + kKinds[static_cast<std::size_t>(kb)] +
-                                 ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
+        const std::string what =
+            kKinds[ka] + " / " + kKinds[kb] + ", reference " + std::to_string(truth) + ", case " + std::to_string(k);
 
         const double found = test.clearance(pa, pb);
         ASSERT_NEAR(found, truth, kTau) << what;
@@ -86,7 +87,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   EXPECT_GT(verdicts, 5500);
   EXPECT_GT(certified, verdicts * 3 / 4);
   for (const auto& [kinds, t] : tally) {
-    const std::string what = kKinds[static_cast<std::size_t>(kinds.first)] + " / " + kKinds[static_cast<std::size_t>(kinds.second)];
+    const std::string what = kKinds[kinds.first] + " / " + kKinds[kinds.second];
     EXPECT_GT(t.apart, 0) << what;
     EXPECT_GT(t.touching, 0) << what;
   }

@@ -179,7 +179,7 @@ std::vector<Triangle> triangles_of(const TriangleMesh& mesh, const Pose& X) {
   std::vector<Triangle> result;
   for (const auto& t : mesh.triangles) {
     Triangle triangle;
-    for (std::size_t k = 0; k < 3; ++k) triangle[k] = X * mesh.vertices[static_cast<std::size_t>(t[k])];
+    for (std::size_t k = 0; k < 3; ++k) triangle[k] = X * mesh.vertices[t[k]];
     result.push_back(triangle);
   }
   return result;
@@ -200,7 +200,7 @@ double winding_number(const TriangleMesh& mesh, const Vector3d& point) {
   double angle = 0;
   for (const auto& t : mesh.triangles) {
     std::array<Vector3d, 3> v;
-    for (std::size_t k = 0; k < 3; ++k) v[k] = mesh.vertices[static_cast<std::size_t>(t[k])] - point;
+    for (std::size_t k = 0; k < 3; ++k) v[k] = mesh.vertices[t[k]] - point;
     const double a = v[0].norm(), b = v[1].norm(), c = v[2].norm();
     angle += 2 * std::atan2(v[0].dot(v[1].cross(v[2])), a * b * c + v[0].dot(v[1]) * c + v[1].dot(v[2]) * a + v[2].dot(v[0]) * b);
   }

@@ -22,7 +22,7 @@ std::vector<Segment> capsules(const Chain& chain, const std::vector<RobotBody>& 
   std::vector<Segment> result;
   for (const RobotBody& body : bodies) {
     const auto& capsule = std::get<Capsule>(body.shape);
-    const Pose X = G[static_cast<std::size_t>(body.group)] * body.pose;
+    const Pose X = G[body.group] * body.pose;
     result.push_back({X * Vector3d(0, 0, capsule.length / 2), X * Vector3d(0, 0, -capsule.length / 2), capsule.radius});
   }
   return result;
@@ -66,7 +66,7 @@ TEST(Size, ClearanceFromTheLargestBodiesIsRight) {
       World::Query query(world);
       const auto clearance = query.clearance(q);
       ASSERT_TRUE(clearance);
-      if (world.body_names()[static_cast<std::size_t>(clearance->pair.b)] != "large") continue;  // the arm is nearer to itself
+      if (world.body_names()[clearance->pair.b] != "large") continue;  // the arm is nearer to itself
       worst = std::max(worst, std::abs(clearance->distance - exact));
       ++compared;
     }

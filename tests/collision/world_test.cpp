@@ -47,7 +47,7 @@ RobotModel mixed_arm() {
 Pose pose_of(const World& world, const Chain& chain, const std::vector<SceneObject>& scene, int index, const Config& q) {
   const std::size_t i = static_cast<std::size_t>(index), robots = world.bodies().size();
   if (i >= robots) return scene[i - robots].pose;
-  return chain.displacements(q)[static_cast<std::size_t>(world.bodies()[i].group)] * world.bodies()[i].pose;
+  return chain.displacements(q)[world.bodies()[i].group] * world.bodies()[i].pose;
 }
 
 const Shape& shape_of(const World& world, const std::vector<SceneObject>& scene, int index) {
@@ -105,7 +105,7 @@ TEST(World, ASuspectIsAskedFirst) {
   int named = 0, others = 0, none = 0;
   for (int k = 0; k < 3000; ++k) {
     const Config q = random.config(2.5);
-    const BodyPair suspect = world.pairs()[static_cast<std::size_t>(random.index(static_cast<int>(world.pairs().size())))];
+    const BodyPair suspect = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
     const bool guilty = query.pair_below(q, suspect, 0.005);
     const auto plain = query.first_below(q, 0.005), found = query.first_below(q, 0.005, suspect);
     ASSERT_EQ(plain.has_value(), found.has_value());

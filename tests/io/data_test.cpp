@@ -45,10 +45,10 @@ TEST_F(SharedData, Sda5fAsItsAuthorsCheckedItIn) {
   EXPECT_EQ(robot->joints.size(), 18u);
   EXPECT_EQ(robot->disabled_pairs.size(), 58u);
   EXPECT_EQ(count_collisions(*robot), 17u);
-  const Joint& mimic = robot->joints[static_cast<std::size_t>(robot->find_joint("torso_joint_b2"))];
+  const Joint& mimic = robot->joints[robot->find_joint("torso_joint_b2")];
   ASSERT_TRUE(mimic.mimic);
   EXPECT_EQ(mimic.mimic->joint, robot->find_joint("torso_joint_b1"));
-  EXPECT_EQ(robot->links[static_cast<std::size_t>(robot->root_link)].name, "base_link");
+  EXPECT_EQ(robot->links[robot->root_link].name, "base_link");
 }
 
 TEST_F(SharedData, Sda5fExpanded) {

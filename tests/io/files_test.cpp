@@ -9,7 +9,7 @@ namespace swivel::io::test {
 namespace {
 
 std::size_t count_files(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
 }
 
 TEST(Files, WritesAndReplacesAndLeavesNothingBeside) {

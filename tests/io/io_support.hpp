@@ -104,7 +104,7 @@ inline std::string box_stl(double x = 1, double y = 2, double z = 3) {
 inline double volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (const auto& t : mesh.triangles) {
-    const auto vertex = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const auto vertex = [&](std::size_t k) { return mesh.vertices[t[k]]; };
     sum += vertex(0).dot(vertex(1).cross(vertex(2)));
   }
   return sum / 6;

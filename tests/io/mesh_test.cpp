@@ -133,7 +133,7 @@ TEST(Mesh, DaeMirroredNodeKeepsOutsideOut) {
   const TempFolder folder;
   const auto normal = [](const TriangleMesh& mesh) {
     const auto& t = mesh.triangles[0];
-    const auto vertex = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
+    const auto vertex = [&](std::size_t k) { return mesh.vertices[t[k]]; };
     return Vector3d((vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).normalized());
   };
   const MeshPtr plain = load(folder.write("a.dae", dae("Z_UP", "", kIdentity)));
@@ -248,7 +248,7 @@ TEST(Mesh, DaeFacesOfEveryKind) {
     const MeshPtr mesh = load(folder.write(std::string(name) + ".dae", square_dae(faces)));
     ASSERT_EQ(mesh->triangles.size(), 2u);
     for (const auto& t : mesh->triangles) {  // each half of the square, facing up
-      const auto vertex_at = [&](std::size_t k) { return mesh->vertices[static_cast<std::size_t>(t[k])]; };
+      const auto vertex_at = [&](std::size_t k) { return mesh->vertices[t[k]]; };
       EXPECT_EQ((vertex_at(1) - vertex_at(0)).cross(vertex_at(2) - vertex_at(0)), Vector3d(0, 0, 1));
     }
   }
@@ -318,7 +318,7 @@ TEST(Mesh, PolygonsAreCutIntoTrianglesInsideThem) {
     ASSERT_EQ(mesh->triangles.size(), points.size() - 2);
     double sum = 0;
     for (const auto& t : mesh->triangles) {
-      const auto vertex = [&](std::size_t k) { return mesh->vertices[static_cast<std::size_t>(t[k])]; };
+      const auto vertex = [&](std::size_t k) { return mesh->vertices[t[k]]; };
       const double part = (vertex(1) - vertex(0)).cross(vertex(2) - vertex(0)).dot(up);
       EXPECT_GT(part, -1e-6);
       sum += part;

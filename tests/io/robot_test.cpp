@@ -39,7 +39,7 @@ TEST(Robot, LinksAndJointsInTheOrderOfTheFile) {
   const Joint& d = model->joints[0];
   EXPECT_EQ(d.type, Joint::Type::kPrismatic);
   EXPECT_EQ(d.parent_link, model->find_link("c"));
-  EXPECT_EQ(model->links[static_cast<std::size_t>(d.child_link)].parent_joint, 0);
+  EXPECT_EQ(model->links[d.child_link].parent_joint, 0);
   ASSERT_TRUE(d.mimic);
   EXPECT_EQ(d.mimic->joint, 1);
   EXPECT_EQ(d.mimic->multiplier, -2);
