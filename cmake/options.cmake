@@ -1,3 +1,4 @@
+option(BUILD_SHARED_LIBS "Build the components as shared libraries" OFF)
 option(SWIVEL_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SWIVEL_BENCH "Build the benchmarks" OFF)
 option(SWIVEL_WERROR "Treat warnings as errors" OFF)
@@ -38,22 +39,44 @@ if(SWIVEL_SANITIZE)
   target_link_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE})
 endif()
 
-# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ...): one library, one include root, one layer, installed.
+# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PKG_CONFIG -lflag ...): one library, one include root, one layer,
+# installed. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)
-  cmake_parse_arguments(arg "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(swivel_${name} STATIC ${arg_SOURCES})
-  add_library(swivel::${name} ALIAS swivel_${name})
-  set_target_properties(swivel_${name} PROPERTIES EXPORT_NAME ${name})
-  target_compile_features(swivel_${name} PUBLIC cxx_std_20)
-  target_include_directories(swivel_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>
-                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(swivel_${name} PUBLIC ${arg_PUBLIC} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
-  install(TARGETS swivel_${name} EXPORT swivelTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
-  set_property(GLOBAL APPEND PROPERTY SWIVEL_COMPONENTS ${name})
+  cmake_parse_arguments(arg "" "HEADERS" "SOURCES;PUBLIC;PRIVATE;PKG_CONFIG" ${ARGN})
+  set(library swivel_${name})
+  if(NOT arg_HEADERS)
+    set(arg_HEADERS include)
+  endif()
+  if(arg_SOURCES)
+    set(scope PUBLIC)
+    add_library(${library} ${arg_SOURCES})
+    target_link_libraries(${library} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
+    # Position-independent, so that plugins and modules of other languages may hold static libraries. What a library calls of its own is
+    # its own, never a namesake of the program's, which other compiler options may have given other bits.
+    target_compile_options(${library} PRIVATE -fno-semantic-interposition)
+    target_link_options(${library} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exported.map)
+    set_target_properties(${library} PROPERTIES POSITION_INDEPENDENT_CODE ON VISIBILITY_INLINES_HIDDEN ON
+      DEFINE_SYMBOL "" LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exported.map
+      VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
+    set_property(GLOBAL APPEND PROPERTY SWIVEL_COMPONENTS ${name})
+    set_property(GLOBAL APPEND PROPERTY SWIVEL_PKG_CONFIG ${arg_PKG_CONFIG})
+  else()
+    set(scope INTERFACE)
+    add_library(${library} INTERFACE)
+  endif()
+  add_library(swivel::${name} ALIAS ${library})
+  set_target_properties(${library} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${library} ${scope} cxx_std_20)
+  target_include_directories(${library} ${scope} $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/${arg_HEADERS}>
+                                                 $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${library} ${scope} ${arg_PUBLIC})
+  install(TARGETS ${library} EXPORT swivelTargets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT dev)
+  install(DIRECTORY ${arg_HEADERS}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
 endfunction()
 
-# Once, after the components: targets, config and version file, so that find_package(swivel) works.
+# Once, after the components: targets, config and version file, so that find_package(swivel) works, and swivel.pc for pkg-config.
 function(swivel_install_package)
   set(folder ${CMAKE_INSTALL_LIBDIR}/cmake/swivel)
   get_property(SWIVEL_COMPONENTS GLOBAL PROPERTY SWIVEL_COMPONENTS)
@@ -64,6 +87,23 @@ function(swivel_install_package)
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
   install(FILES ${PROJECT_BINARY_DIR}/swivelConfig.cmake ${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake DESTINATION ${folder}
           COMPONENT dev)
+
+  # What `cmake --install` needs, and no more.
+  add_custom_target(installed DEPENDS swivel)
+  list(TRANSFORM SWIVEL_COMPONENTS PREPEND swivel_ OUTPUT_VARIABLE targets)
+  add_dependencies(installed ${targets})
+
+  # Linkers look for symbols of static libraries in those that follow, so that the lowest component comes last.
+  list(REVERSE SWIVEL_COMPONENTS)
+  list(TRANSFORM SWIVEL_COMPONENTS PREPEND "-lswivel_" OUTPUT_VARIABLE libraries)
+  if(NOT BUILD_SHARED_LIBS)
+    get_property(others GLOBAL PROPERTY SWIVEL_PKG_CONFIG)
+    list(APPEND libraries ${others})
+  endif()
+  list(JOIN libraries " " SWIVEL_LIBRARIES)
+  file(RELATIVE_PATH SWIVEL_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/swivel.pc.in ${PROJECT_BINARY_DIR}/swivel.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/swivel.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 endfunction()
 
 # swivel_isa_kernels(NAME PREFIX): adds PREFIX_avx2.cpp and PREFIX_avx512.cpp, each with its own instruction set. Chosen at run time.

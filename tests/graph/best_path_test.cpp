@@ -37,7 +37,8 @@ struct PlainLattice {
                         verdicts_.edge(layer, from.slot, to.slot) != Verdict::kRemoved;
     return joined ? lattice_.edge_cost(delta) : kUnreachable;
   }
-  /// From the first node of layer 0 with the least cost always to the first node that keeps it. `ties` counts the others that would.
+  /// From the first node of layer 0 with the least cost always to the first node that keeps it. `ties` counts the others that
+  /// would.
   [[nodiscard]] SlotPath descend(int& ties) const {
     SlotPath path;
     double left = togo[0].empty() ? kUnreachable : *std::min_element(togo[0].begin(), togo[0].end());
@@ -92,8 +93,8 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     const auto togo = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
     togo->sweep(lattice.layers() - 1);
     for (int round = 0; round < 4; ++round) {
-      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + robot.name +
-                               " round " + std::to_string(round);
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
+                               robot.name + " round " + std::to_string(round);
       const SlotPath wanted = PlainLattice(lattice, togo->verdicts()).descend(ties);
       std::int64_t expansions = 0;
       ASSERT_EQ(best_path(*togo, expansions), wanted) << what;

@@ -151,7 +151,8 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
   std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]),
               static_cast<long long>(flips[1]), static_cast<long long>(flips[2]), static_cast<long long>(windings));
   EXPECT_GE(total, at_least(10001));
-  for (const Place place : {Place::kShoulder, Place::kElbow, Place::kWrist}) EXPECT_GE(changing[place], at_least(1)) << places.at(place);
+  for (const Place place : {Place::kShoulder, Place::kElbow, Place::kWrist})
+    EXPECT_GE(changing[place], at_least(1)) << places.at(place);
   for (const std::int64_t count : flips) EXPECT_GE(count, at_least(1));
   EXPECT_GE(windings, at_least(1));
 }
