@@ -84,8 +84,8 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
     }
   std::printf("%lld valid nodes, %lld faults, worst residual %.2e\n", static_cast<long long>(valid), static_cast<long long>(faults),
               worst);
-  EXPECT_GT(valid, 20000);
-  EXPECT_GT(faults, 20000);
+  EXPECT_GE(valid, at_least(20001));
+  EXPECT_GE(faults, at_least(20001));
   EXPECT_LT(worst, 1e-9);
 }
 
@@ -446,7 +446,7 @@ TEST(Lattice, DeviationsFromThePathAreThoseOfTheTool) {
       }
     }
   std::printf("%d deviations, up to %.3f m\n", compared, largest);
-  EXPECT_GT(compared, 1000);
+  EXPECT_GE(compared, at_least(1001));
 }
 
 }  // namespace

@@ -132,14 +132,14 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
       static_cast<long long>(lazy_fcl_calls));
   std::printf("%d problems with reduced pairs, of which %d solved with motions\n", reduced, near_motions);
-  EXPECT_GE(reduced, count / 24);
-  EXPECT_GT(near_motions, 2);
-  EXPECT_GE(solved, count / 4);
+  EXPECT_GE(reduced, at_least(count / 24));
+  EXPECT_GE(near_motions, at_least(3));
+  EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GT(certified, 10 * lazy_fcl_calls);
-  EXPECT_GE(infeasible, count / 20);
-  EXPECT_GE(continuous, count / 5);
-  EXPECT_GE(started, count / 10);
-  EXPECT_GE(detours, count / 20);
+  EXPECT_GE(infeasible, at_least(count / 20));
+  EXPECT_GE(continuous, at_least(count / 5));
+  EXPECT_GE(started, at_least(count / 10));
+  EXPECT_GE(detours, at_least(count / 20));
 }
 
 /// Weights of every size, some or all of them zero, in one table so that each kind is met equally often.
@@ -207,8 +207,8 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
   }
   for (std::size_t kind = 0; kind < kKinds; ++kind) {
     std::printf("weights of kind %zu: %d solved, %d infeasible\n", kind, solved[kind], infeasible[kind]);
-    EXPECT_GE(solved[kind], count / 50);
-    EXPECT_GE(infeasible[kind], count / 50);
+    EXPECT_GE(solved[kind], at_least(count / 50));
+    EXPECT_GE(infeasible[kind], at_least(count / 50));
   }
 }
 
@@ -268,8 +268,8 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
   }
   std::printf("%d problems: %d solved, %d infeasible; %d joints began in a sliver\n", count, solved, infeasible, in_sliver);
-  EXPECT_GE(solved, count / 4);
-  EXPECT_GE(in_sliver, count / 2);
+  EXPECT_GE(solved, at_least(count / 4));
+  EXPECT_GE(in_sliver, at_least(count / 2));
 }
 
 TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {

@@ -126,9 +126,9 @@ TEST(SelfClearance, ALargerClearanceNeverMakesAPath) {
   std::printf("%d plans of %zu robots, %d with reduced pairs; %d problems lose their path on the way, %d keep it\n", plans,
               robots.size(), reduced, lost, kept);
   EXPECT_EQ(plans, static_cast<int>(robots.size()) * trials(8) * kSteps);
-  EXPECT_GT(reduced, plans / 10);
-  EXPECT_GT(lost, 3);
-  EXPECT_GT(kept, 3);
+  EXPECT_GE(reduced, at_least(plans / 10 + 1));
+  EXPECT_GE(lost, at_least(4));
+  EXPECT_GE(kept, at_least(4));
 }
 
 }  // namespace
