@@ -14,7 +14,9 @@
 
 namespace swivel {
 
+namespace detail {
 class MeshStore;
+}
 
 /// Two bodies that must keep clear of each other.
 struct BodyPair {
@@ -195,7 +197,7 @@ class World {
 
  private:
   struct Impl;
-  World(MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget);
+  World(detail::MeshStore meshes, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget);
   std::unique_ptr<Impl> impl_;
 };
 
