@@ -153,6 +153,8 @@ int run(const InfoArguments& arguments) {
   else
     std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n",
                 1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+  if (!srs.exact)
+    std::printf("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
   const auto print_point = [](const char* name, const Vector3d& p) {
     std::printf("%-10s %.6f %.6f %.6f m\n", name, p.x(), p.y(), p.z());
   };

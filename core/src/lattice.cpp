@@ -24,6 +24,12 @@ double power_of_two_from(double x) {
   return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
 }
 
+bool within(const Config& delta, const Config& bound) {
+  for (int k = 0; k < kDof; ++k)
+    if (!(std::abs(delta[k]) <= bound[k])) return false;
+  return true;
+}
+
 /// The tool's straight line from a layer to the next; a point where they coincide.
 class Step {
  public:
@@ -51,8 +57,8 @@ class Step {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem)
-    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost) {
+Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& misfit)
+    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost), misfit_(misfit) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
@@ -66,7 +72,7 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
                        "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
   cost_unit_ = power_of_two_from(*std::max_element(cost_scale_.begin(), cost_scale_.end()));
-  step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, Config::Constant(limits_.joint_step));
+  row_step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, Config::Constant(limits_.joint_step));
   for (int i = 0; timed && i + 1 < layers(); ++i) {
     const PathLayer& layer = path.layer(i);
     double dt = 0;
@@ -74,10 +80,20 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     if (limits_.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits_.tool_turn_speed);
     if (dt <= 0) continue;  // a step that the given speed does not time
     for (int k = 0; k < kDof; ++k) {
-      double& bound = step_bounds_[static_cast<std::size_t>(i)][k];
+      double& bound = row_step_bounds_[static_cast<std::size_t>(i)][k];
       bound = std::min(bound, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
     }
   }
+  for (const Config& bound : row_step_bounds_) step_bounds_.push_back(bound + 2 * misfit_);
+}
+
+std::optional<Config> Lattice::row(int, int, const Config& q) const {
+  return q;
+}
+
+std::optional<Config> Lattice::row(int layer, int slot) const {
+  const auto q = node(layer, slot);
+  return q ? row(layer, slot, *q) : std::nullopt;
 }
 
 bool Lattice::manipulable(const Config& q) const {
@@ -92,10 +108,11 @@ Config Lattice::delta(const Config& q0, const Config& q1) const {
 }
 
 bool Lattice::step_allowed(int layer, const Config& delta) const {
-  const Config& bound = step_bound(layer);
-  for (int k = 0; k < kDof; ++k)
-    if (!(std::abs(delta[k]) <= bound[k])) return false;
-  return true;
+  return within(delta, step_bound(layer));
+}
+
+bool Lattice::row_step_allowed(int layer, const Config& delta) const {
+  return within(delta, row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)]);
 }
 
 double Lattice::rounded_cost(double cost) const {
@@ -116,12 +133,13 @@ double Lattice::edge_cost(const Config& delta) const {
 }
 
 bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const {
-  const auto within = [](const std::array<double, 3>& deviation, double limit) {
+  const auto stays_within = [](const std::array<double, 3>& deviation, double limit) {
     return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
   };
   const Config move = delta(q0, q1);
-  if (limits_.tool_path_error && !within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error)) return false;
-  if (limits_.tool_angle_error && !within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
+  if (limits_.tool_path_error && !stays_within(path_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_path_error))
+    return false;
+  if (limits_.tool_angle_error && !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
     return false;
   return !limits_.step_error || step_error_allowed(layer, a, b);
 }

@@ -51,7 +51,7 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
-    : Lattice(chain, path, problem), id_(next_id()), arm_(&arm) {
+    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm) {
   const Span span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
@@ -67,7 +67,8 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       if (lower > upper)
         throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[j] +
                          "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
-      images = images_between(lower, upper, problem.start ? (*problem.start)[static_cast<Eigen::Index>(j)] : lower);
+      const auto joint = static_cast<Eigen::Index>(j);
+      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.misfit[joint]);
     }
     if (!(std::abs(images.base) <= kFarthest))
       throw InputError(problem.source + ": joint '" + chain.joint_names[j] +
@@ -85,12 +86,8 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   windings_ = static_cast<int>(windings);
 
   tracks_ = 2;
-  if (arm.exact) {
-    for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
-    tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
-  } else {
-    tracks_ += static_cast<std::size_t>(labels()) * (kDof + 1);
-  }
+  for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
+  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
 
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
@@ -124,8 +121,8 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     auto& circles = circles_.emplace_back();
     if (reachable) circles = elbow_circles(arm, plane(i), tool);
     const Images& images = images_[kElbowJoint];
-    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle, to what polishing moves it
-      elbow_alive_.push_back(reachable && (!arm.exact || image_from(circle.q4, images.base) <= images.upper));
+    for (const ElbowCircle& circle : circles)  // one elbow angle serves the whole circle
+      elbow_alive_.push_back(reachable && image_from(circle.q4, images.base) <= images.upper);
   }
 
   if (problem.start) place_start(problem);
@@ -148,15 +145,17 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, co
   return planes;
 }
 
-SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start) {
+SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start, double misfit) {
   const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
   Images images;
-  images.upper = upper + kLimitTolerance;
   images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
-  images.base = lower - kLimitTolerance;
-  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
   const double length = images.count * kTwoPi;
-  if (start >= images.base + length) images.base = images.upper - length;
+  // What is wider by the misfit at both ends must not be another image of what is there already.
+  const double spare = std::max(0.0, (length - (upper - lower)) / 2);
+  images.base = lower - kLimitTolerance - std::min(misfit, spare);
+  images.upper = upper + kLimitTolerance + misfit;
+  // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
+  if (start >= images.base + length) images.base = upper + kLimitTolerance - length;
   return images;
 }
 
@@ -185,8 +184,9 @@ void SrsLattice::place_start(const Problem& problem) {
     throw InputError(source + text);
   }
   Start start;
-  start.q = q;
+  start.row = q;
   start.phi = planes_[0].angle_of(arm_->elbow_axis(q));
+  start.node = arm_->exact ? q : fitted_start(q, start.phi).value_or(q);
   int winding = 0;
   for (int k = 0; k < kDof; ++k) {
     const Images& images = images_[static_cast<std::size_t>(k)];
@@ -197,6 +197,32 @@ void SrsLattice::place_start(const Problem& problem) {
   const int nearest = wrapped_index(std::llround((start.phi + kPi) / kTwoPi * angles_), angles_);
   start.slot = (arm_->branch(q) * windings_ + winding) * angles_ + nearest;
   start_ = start;
+}
+
+std::optional<Config> SrsLattice::fitted_start(const Config& q, double phi) const {
+  if (reach_[0] != ReachStatus::kReachable) return std::nullopt;
+  Config fitted = srs_ik(*arm_, circles_[0], phi, arm_->branch(q));
+  if (singular(fitted)) return std::nullopt;
+  for (int k = 0; k < kDof; ++k) {
+    fitted[k] = q[k] + wrap_angle(fitted[k] - q[k]);
+    if (!(std::abs(fitted[k] - q[k]) <= kMostPolished)) return std::nullopt;
+  }
+  return fitted;
+}
+
+bool SrsLattice::singular(const Config& q) const {
+  return std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine;
+}
+
+std::uint8_t SrsLattice::joints_outside(const Config& row) const {
+  unsigned outside = 0;
+  for (int k = 0; k < kDof; ++k) {
+    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
+    const double margin = limits_.joint_margin - kLimitTolerance;
+    if (!continuous_[static_cast<std::size_t>(k)] && !(row[k] >= limit.lower + margin && row[k] <= limit.upper - margin))
+      outside |= 1u << k;
+  }
+  return static_cast<std::uint8_t>(outside);
 }
 
 double SrsLattice::phi(int layer, int slot) const {
@@ -222,8 +248,7 @@ void LayerNodes::repeat(int from, int to, int count) {
 
 std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
   const Images& images = images_[kElbowJoint];
-  if (!arm_->exact || images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow))
-    return std::nullopt;
+  if (images.count > 1 || continuous_[kElbowJoint] || (layer == 0 && start_) || !elbow_alive(layer, elbow)) return std::nullopt;
   return image_from(circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4, images.base);
 }
 
@@ -254,10 +279,10 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
-    // Exact arms: one array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
+    // One array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
     std::array<std::array<std::size_t, kDof>, 2> track{};
     std::array<std::array<std::size_t, 2>, 2> bar{};  // [sign][triple]
-    if (alive && arm_->exact)
+    if (alive)
       for (std::size_t sign = 0; sign < 2; ++sign) {
         for (std::size_t j = 0; j < kDof; ++j)
           track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
@@ -270,15 +295,13 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
       offsets.bar = {never, free};
       if (!alive) continue;
       const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
-      if (windings_ == 1 && arm_->exact)
+      if (windings_ == 1)
         offsets.bar = {bar[shoulder][0], bar[wrist][1]};
       else
         offsets.bar = {allot(), free};
       for (int j = 0; j < kDof; ++j)
-        offsets.q[static_cast<std::size_t>(j)] = arm_->exact
-                                                     ? track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
-                                                           static_cast<std::size_t>(winding_images(label % windings_, j)) * n
-                                                     : allot();
+        offsets.q[static_cast<std::size_t>(j)] = track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
+                                                 static_cast<std::size_t>(winding_images(label % windings_, j)) * n;
     }
   }
 }
@@ -290,7 +313,7 @@ void SrsLattice::lay_out_start(LayerNodes& out) const {
   std::size_t used = 2 * static_cast<std::size_t>(n);
   for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
     offsets.q[j] = used;
-    std::fill_n(out.data_.data() + used, n, start_->q[static_cast<Eigen::Index>(j)]);
+    std::fill_n(out.data_.data() + used, n, start_->node[static_cast<Eigen::Index>(j)]);
   }
   offsets.bar[0] = used;
   double* const bar = out.data_.data() + used;
@@ -301,13 +324,6 @@ void SrsLattice::lay_out_start(LayerNodes& out) const {
 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
   if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
-  if (arm_->exact)
-    solve_exact(elbow, begin, end, out);
-  else
-    solve_polished(elbow, begin, end, out);
-}
-
-void SrsLattice::solve_exact(int elbow, int begin, int end, LayerNodes& out) const {
   const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
   const int first_label = elbow ? kElbowBit * windings_ : 0;
   double* const data = out.data_.data();
@@ -368,44 +384,6 @@ void SrsLattice::solve_exact(int elbow, int begin, int end, LayerNodes& out) con
   }
 }
 
-void SrsLattice::solve_polished(int elbow, int begin, int end, LayerNodes& out) const {
-  constexpr double kLargestMove = 0.05;  // of polish(): limits further off than this stay violated
-  const auto layer = static_cast<std::size_t>(out.layer_);
-  const int first_branch = elbow ? kElbowBit : 0;
-  for (int label = first_branch * windings_; label < (first_branch + 4) * windings_; ++label) {
-    double* bar = out.data_.data() + out.offsets_[static_cast<std::size_t>(label)].bar[0];
-    std::fill(bar + begin, bar + end, std::numeric_limits<double>::infinity());
-  }
-  for (int k = begin; k < end; ++k) {
-    const double phi_k = -kPi + kTwoPi * ((out.first_ + k) % angles_) / angles_;
-    for (int branch = first_branch; branch < first_branch + 4; ++branch) {
-      const Config seed = srs_ik(*arm_, circles_[layer], phi_k, branch);
-      if (std::abs(std::sin(arm_->shoulder_angle(seed))) < kSingularSine ||
-          std::abs(std::sin(arm_->wrist_angle(seed))) < kSingularSine)
-        continue;
-      bool hopeless = false;
-      for (int j = 0; j < kDof && !hopeless; ++j) {
-        const Images& images = images_[static_cast<std::size_t>(j)];
-        hopeless = image_from(seed[j], images.base - kLargestMove) > images.upper + kLargestMove;
-      }
-      if (hopeless) continue;
-      const auto polished = polish(*chain_, *arm_, planes_[layer], path_->layer(out.layer_).tool, phi_k, seed);
-      if (!polished) continue;
-      for (int winding = 0; winding < windings_; ++winding) {
-        const LayerNodes::Offsets& label = out.offsets_[static_cast<std::size_t>(branch * windings_ + winding)];
-        bool inside = true;
-        for (int j = 0; j < kDof; ++j) {
-          const Images& images = images_[static_cast<std::size_t>(j)];
-          const double q = image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j);
-          inside = inside && q <= images.upper;
-          out.data_[static_cast<Eigen::Index>(label.q[static_cast<std::size_t>(j)]) + k] = q;
-        }
-        if (inside) out.data_[static_cast<Eigen::Index>(label.bar[0]) + k] = 0;
-      }
-    }
-  }
-}
-
 std::optional<Config> SrsLattice::node(int layer, int slot) const {
   LayerNodes nodes;
   solve(layer, angle_of(slot), 1, nodes);
@@ -413,26 +391,38 @@ std::optional<Config> SrsLattice::node(int layer, int slot) const {
   return nodes.config(label_of(slot), 0);
 }
 
+std::optional<Config> SrsLattice::row(int layer, int slot, const Config& q) const {
+  if (arm_->exact) return q;
+  if (layer == 0 && start_) return start_->row;
+  auto row = polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
+  if (row && joints_outside(*row)) row.reset();
+  return row;
+}
+
 Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   NodeFault fault;
   const bool given = layer == 0 && start_;
   if (given && slot != start_->slot) return {NodeStatus::kNoIk};
+  if (given && !arm_->exact) return {singular(start_->row) ? NodeStatus::kSingular : NodeStatus::kValid};
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
   if (reach == ReachStatus::kOutOfReach) return {NodeStatus::kNoIk};
   if (reach == ReachStatus::kSingular) return {NodeStatus::kSingular};
-  Config q = given ? start_->q : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
-  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine)
-    return {NodeStatus::kSingular};
+  Config q = given ? start_->row : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
+  if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
-  const auto polished =
-      polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
-  if (!polished) return {NodeStatus::kNoIk};
-  fault.q = *polished;
+  fault.q = q;
   const int winding = label_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
-    if (image_from((*polished)[j], images.base) + kTwoPi * winding_images(winding, j) > images.upper)
-      fault.joints |= static_cast<std::uint8_t>(1 << j);
+    q[j] = image_from(q[j], images.base) + kTwoPi * winding_images(winding, j);
+    if (q[j] > images.upper) fault.joints |= static_cast<std::uint8_t>(1 << j);
+  }
+  if (!arm_->exact) {
+    const auto polished =
+        polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
+    if (!polished) return {NodeStatus::kNoIk};
+    fault.q = *polished;
+    if (const std::uint8_t outside = joints_outside(*polished)) fault.joints = outside;
   }
   if (fault.joints) fault.status = NodeStatus::kLimit;
   return fault;

@@ -18,8 +18,8 @@ namespace swivel {
 /// it comes to be more, the limit is raised and the sweep repeated. Bounded only where the goal is the last layer.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they
-/// are wanted again, but for polished arms, whose joints are costly, and after the first repair of a lattice of up to a million
-/// nodes: there they are kept, 40 bytes a node of the layers that were visited.
+/// are wanted again, but after the first repair of a lattice of up to a million nodes: there they are kept, 40 bytes a node of the
+/// layers that were visited.
 class GridCostToGo final : public CostToGo {
  public:
   /// Takes over what `retired` had allocated; null is allowed.

@@ -34,7 +34,6 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
   }
   cell_.assign(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0);
   cells_.emplace_back().fill(kUnreachable);
-  if (!lattice.arm().exact) cache_.resize(static_cast<std::size_t>(lattice.layers()));
   const std::size_t marks = mark(lattice.labels(), 0);
   for (auto& block : block_) {
     block = std::make_unique<Block>();

@@ -14,14 +14,15 @@ Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-Json lattice_json(const LatticeInfo& lattice) {
+Json lattice_json(const LatticeInfo& lattice, bool solved) {
   return {{"layers", lattice.layers},
           {"phi", lattice.phi},
           {"branches", lattice.branches},
           {"windings", lattice.windings},
           {"window", lattice.window},
           {"nodes", lattice.nodes},
-          {"merged_waypoints", lattice.merged_waypoints}};
+          {"merged_waypoints", lattice.merged_waypoints},
+          {"cost", solved ? Json(lattice.cost) : Json(nullptr)}};
 }
 
 Json counters_json(const Counters& counters) {
@@ -135,7 +136,7 @@ std::string to_json(const PlanResult& result) {
   json["cost"] = if_known(true, result.cost);
   json["planner"] = result.planner;
   json["threads"] = result.threads;
-  json["lattice"] = lattice_json(result.lattice);
+  json["lattice"] = lattice_json(result.lattice, solved);
   json["counters"] = counters_json(result.counters);
   json["time_ms"] = time_json(result.time_ms);
   json["tool_path_error_mm"] = {{"mean", if_known(evidence.tool_path_error, result.tool_path_error_mm.mean)},

@@ -9,6 +9,7 @@ namespace swivel {
 
 namespace {
 
+constexpr std::size_t kRows = 8192, kSlotsApart = 67;
 constexpr Fault kFaultBodies = Fault{1} << 31;
 Fault fault_of(const BodyPair& pair) {
   return pair.a * kFaultBodies + pair.b;
@@ -36,6 +37,17 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int lane = 0; lane < lanes; ++lane) lanes_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
+  if (lattice.has_own_rows()) rows_.assign(static_cast<std::size_t>(executor.threads()), std::vector<Row>(kRows));
+}
+
+std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {
+  if (!lattice_->has_own_rows()) return q;
+  auto& rows = rows_[static_cast<std::size_t>(worker)];
+  // Neighbours along the path and along the arm angle must not share a place.
+  const auto place = (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) % rows.size();
+  Row& row = rows[place];
+  if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->row(layer, slot, q)};
+  return row.q;
 }
 
 CollisionValidity::Queries CollisionValidity::make_queries() const {
@@ -65,32 +77,33 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   batch.count("nodes", static_cast<std::int64_t>(open_.size()));
   nodes_checked_ += static_cast<std::int64_t>(open_.size());
   const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(lanes_.size()));
-  const auto ask = [&](int index, Queries& queries) {
+  const auto ask = [&](int index, int worker, Queries& queries) {
     Open& open = open_[static_cast<std::size_t>(index)];
-    answers[open.index] = node(questions[open.index], open, queries);
+    answers[open.index] = node(questions[open.index], open, worker, queries);
   };
   if (lanes_.empty())
-    executor_->for_each(count, [&](int index, int worker) { ask(index, workers_[static_cast<std::size_t>(worker)]); });
+    executor_->for_each(count, [&](int index, int worker) { ask(index, worker, workers_[static_cast<std::size_t>(worker)]); });
   else
-    executor_->for_each(runs, [&](int lane, int) {
+    executor_->for_each(runs, [&](int lane, int worker) {
       for (int index = count * lane / runs; index < count * (lane + 1) / runs; ++index)
-        ask(index, lanes_[static_cast<std::size_t>(lane)]);
+        ask(index, worker, lanes_[static_cast<std::size_t>(lane)]);
     });
   if (memory_)
     for (const Open& open : open_) memory_->note_node(questions[open.index], answers[open.index], open.pair);
 }
 
-NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, Queries& queries) const {
+NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
   const Span span("node");
   budget_.poll();
   const auto suspect = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
   open.pair = ClearanceMemory::kNoPair;
-  if (!open.only_changed && !lattice_->manipulable(question.q)) return {};
+  const auto q = row(question.layer, question.slot, question.q, worker);
+  if (!q || (!open.only_changed && !lattice_->manipulable(*q))) return {};
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
-  const auto pair = query.next_below(question.q, Keep::kNode, open.only_changed ? std::nullopt : suspect);
+  const auto pair = query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : suspect);
   if (!pair) return {.valid = true};
   open.pair = *pair;
-  const Sharing sharing = sharing_of(*lattice_, *world_, query, question.q, *pair);
+  const Sharing sharing = sharing_of(*lattice_, *world_, query, *q, *pair);
   return {false, sharing.shared, sharing.groups, fault_of(*pair)};
 }
 
@@ -127,26 +140,42 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   edges_checked_ += static_cast<std::int64_t>(open_.size());
   executor_->for_each(static_cast<int>(open_.size()), [&](int index, int worker) {
     Open& open = open_[static_cast<std::size_t>(index)];
-    answers[open.index] = edge(questions[open.index], open, workers_[static_cast<std::size_t>(worker)]);
+    answers[open.index] = edge(questions[open.index], open, worker, workers_[static_cast<std::size_t>(worker)]);
   });
   if (memory_)
     for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair);
 }
 
-bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, Queries& queries) const {
+bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
   const Span span("edge");
   budget_.poll();
-  if (!open.only_changed && !lattice_->follows_path(x.layer, x.a, x.qa, x.b, x.qb)) return false;
+  const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
+  if (!qa || !qb) return false;
+  const Config move = lattice_->delta(*qa, *qb);
+  if (!open.only_changed && ((lattice_->has_own_rows() && !lattice_->row_step_allowed(x.layer, move)) ||
+                             !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
+    return false;
   if (edge_mode_ == EdgeMode::kNodes) return true;
-  const Config unwrapped = x.qa + lattice_->delta(x.qa, x.qb);
-  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, x.qa, unwrapped, budget_)
-                                         : edge_blocked(queries.whole, rule_, x.qa, unwrapped, budget_);
+  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_)
+                                         : edge_blocked(queries.whole, rule_, *qa, *qa + move, budget_);
   if (blocked) open.pair = *blocked;
   return !blocked;
 }
 
+bool CollisionValidity::edge(const EdgeQuestion& x, int worker) {
+  const Span span("edge");
+  budget_.poll();
+  const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
+  if (!qa || !qb) return false;
+  const Config move = lattice_->delta(*qa, *qb);
+  return (!lattice_->has_own_rows() || lattice_->row_step_allowed(x.layer, move)) &&
+         lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb) &&
+         (lattice_->limits().edges == EdgeMode::kNodes ||
+          !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, *qa, *qa + move, budget_));
+}
+
 bool CollisionValidity::asks_edges() const {
-  return lattice_->asks_path_error() || (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
+  return lattice_->has_own_rows() || lattice_->asks_path_error() || (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 
 CollisionCounters CollisionValidity::counters() const {

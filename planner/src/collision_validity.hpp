@@ -45,8 +45,10 @@ class CollisionValidity final : public Validity {
     BodyPair pair = ClearanceMemory::kNoPair;  ///< of the failure; before: the suspect
   };
   [[nodiscard]] Queries make_queries() const;
-  [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, Queries& queries) const;
-  [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, Queries& queries) const;
+  [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
+  [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
+  /// Lattice::row, remembered by each worker for a while: a path's nodes are asked about, and then its edges.
+  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q, int worker);
 
   const Lattice* lattice_;
   const World* world_;
@@ -61,6 +63,11 @@ class CollisionValidity final : public Validity {
   std::vector<Queries> workers_;  // one each
   std::vector<Queries> lanes_;    // for nodes
   std::vector<Open> open_;
+  struct Row {
+    int layer = -1, slot = -1;
+    std::optional<Config> q;
+  };
+  std::vector<std::vector<Row>> rows_;  // [worker], at a place that layer and slot give; empty where nodes are their own rows
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 

@@ -125,7 +125,9 @@ class Inspector {
     for (int slot = 0; slot < lattice_.width(); ++slot) {
       if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
       budget_.poll();
-      const int blocker = blockers_.first(layer, slot, config(nodes_, slot));
+      const auto q = lattice_.row(layer, slot, config(nodes_, slot));
+      if (!q) continue;
+      const int blocker = blockers_.first(layer, slot, *q);
       ++counts[blocker];
       if (blocker == kFree) left.push_back(slot);
     }
@@ -162,9 +164,11 @@ class Inspector {
         const int label = (hint_label + l) % lattice_.labels(), slot = label * n + j;
         if (!nodes_.valid(label, 0)) continue;
         budget_.poll();
-        const int blocker = blockers_.any(layer, slot, nodes_.config(label, 0));
+        const auto q = lattice_.row(layer, slot, nodes_.config(label, 0));
+        if (!q) continue;
+        const int blocker = blockers_.any(layer, slot, *q);
         if (blocker == kFree) {
-          states_.push_back(nodes_.config(label, 0));
+          states_.push_back(*q);
           free_.push_back(slot);
           if (!check_) break;
           continue;
@@ -222,7 +226,8 @@ class Inspector {
   /// The nodes that closed form and limits take out of the layer.
   void add_missing(int layer, Reasons& reasons) {
     for (int slot = 0; slot < lattice_.width(); ++slot) {
-      if (nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
+      const bool exists = nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot));
+      if (exists && lattice_.row(layer, slot, config(nodes_, slot))) continue;
       if (slot % 64 == 0) budget_.poll();
       const SrsLattice::NodeFault fault = lattice_.fault(layer, slot);
       if (fault.status != NodeStatus::kLimit) ++reasons[status_name(fault)];
@@ -235,8 +240,8 @@ class Inspector {
   Reasons removed_edges(int layer, const std::vector<int>& left) {
     Reasons reasons;
     if (left.empty()) return reasons;
-    std::vector<char> is_left(static_cast<std::size_t>(lattice_.width()), 0);
-    for (const int b : left) is_left[static_cast<std::size_t>(b)] = 1;
+    std::vector<std::optional<Config>> left_rows(static_cast<std::size_t>(lattice_.width()));
+    for (const int b : left) left_rows[static_cast<std::size_t>(b)] = lattice_.row(layer + 1, b, config(nodes_, b));
     LayerNodes before;
     lattice_.solve(layer, before);
     blockers_before_.start();
@@ -245,14 +250,17 @@ class Inspector {
     for (int a = 0; a < lattice_.width() && edges < kMostEdges && affordable(); ++a) {
       if (!before.valid(lattice_.label_of(a), lattice_.angle_of(a))) continue;
       budget_.poll();
-      const Config qa = config(before, a);
-      if (blockers_before_.any(layer, a, qa) != kFree || !check_.states({&qa, 1})[0]) continue;
+      const Config node = config(before, a);
+      const auto row = lattice_.row(layer, a, node);
+      if (!row || blockers_before_.any(layer, a, *row) != kFree || !check_.states({&*row, 1})[0]) continue;
       const SrsLattice::Run run = lattice_.run_after(layer, a);
       for (int label = 0; label < lattice_.labels(); ++label)
         for (int k = 0; k < run.count; ++k) {
           const int b = label * lattice_.angles() + (run.first + k) % lattice_.angles();
-          if (!is_left[static_cast<std::size_t>(b)]) continue;
-          const std::string reason = edge_reason(layer, a, qa, b, config(nodes_, b));
+          const auto& row_b = left_rows[static_cast<std::size_t>(b)];
+          if (!row_b) continue;
+          const bool may_step = lattice_.step_allowed(layer, lattice_.delta(node, config(nodes_, b)));
+          const std::string reason = may_step ? edge_reason(layer, a, *row, b, *row_b) : "joint step";
           if (!reason.empty()) ++reasons[reason];
           edges += reason != "joint step";
         }
@@ -267,7 +275,7 @@ class Inspector {
 
   std::string edge_reason(int layer, int a, const Config& qa, int b, const Config& qb) {
     const Config delta = lattice_.delta(qa, qb);
-    if (!lattice_.step_allowed(layer, delta)) return "joint step";
+    if (!lattice_.row_step_allowed(layer, delta)) return "joint step";
     if (!lattice_.follows_path(layer, a, qa, b, qb)) return "tool-path error";
     if (lattice_.limits().edges == EdgeMode::kContinuous) {
       const auto pair = edge_blocked(query_, rule_, qa, qa + delta, budget_);

@@ -13,7 +13,7 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
   const Span span("check of states");
   states_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k)
-    if (answers[k].valid) states_.push_back(questions[k].q);
+    if (answers[k].valid) states_.push_back(state(questions[k].layer, questions[k].slot, questions[k].q));
   auto allowed = check_.states(states_).begin();
   for (NodeAnswer& answer : answers)
     if (answer.valid) answer.valid = *allowed++;
@@ -28,7 +28,10 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
   const Span span("check of motions");
   motions_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k)
-    if (answers[k]) motions_.push_back({questions[k].qa, questions[k].qa + lattice_->delta(questions[k].qa, questions[k].qb)});
+    if (const EdgeQuestion& x = questions[k]; answers[k]) {
+      const Config from = state(x.layer, x.a, x.qa);
+      motions_.push_back({from, from + lattice_->delta(from, state(x.layer + 1, x.b, x.qb))});
+    }
   auto allowed = check_.motions(motions_).begin();
   for (std::uint8_t& answer : answers)
     if (answer) answer = *allowed++ ? 1 : 0;
@@ -37,7 +40,7 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
 void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<double> costs) {
   const Span span("cost of states");
   states_.clear();
-  for (const NodeQuestion& question : questions) states_.push_back(question.q);
+  for (const NodeQuestion& question : questions) states_.push_back(state(question.layer, question.slot, question.q));
   cost_.costs(states_, costs);
 }
 

@@ -22,6 +22,11 @@ class HookedValidity final : public Validity {
   [[nodiscard]] bool asks_costs() const override { return static_cast<bool>(cost_); }
 
  private:
+  /// What the caller's hooks see of a node: its row (Lattice::row), where it has one.
+  [[nodiscard]] Config state(int layer, int slot, const Config& node) const {
+    return lattice_->has_own_rows() ? lattice_->row(layer, slot, node).value_or(node) : node;
+  }
+
   const Lattice* lattice_;
   Validity* first_;
   AskedCheck check_;

@@ -64,11 +64,21 @@ std::vector<TrajectoryRow> rows_of(const Lattice& lattice, const SlotPath& path)
     row.s = lattice.path().layer(i).s;
     row.phi = lattice.phi(i, slot);
     row.branch = lattice.branch(i, slot);
-    row.q = *lattice.node(i, slot);
+    row.q = *lattice.row(i, slot);
     if (i > 0) row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints
     rows.push_back(row);
   }
   return rows;
+}
+
+/// The cost of a path's rows, where its nodes cost `cost`.
+double cost_of_rows(const Lattice& lattice, const SlotPath& path, const std::vector<TrajectoryRow>& rows, double cost) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const int layer = static_cast<int>(i);
+    const Config nodes = lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i]));
+    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q)) - lattice.edge_cost(nodes);
+  }
+  return cost;
 }
 
 void list_special_pairs(const World& world, PlanResult& result) {
@@ -278,8 +288,9 @@ struct Planner::Impl {
     }
     result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
     if (result.status == PlanStatus::kSolved) {
-      result.cost = found.outcome.cost;
+      result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = rows_of(layout->lattice, path);
+      if (layout->lattice.has_own_rows()) result.cost = cost_of_rows(layout->lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();

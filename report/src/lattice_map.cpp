@@ -66,7 +66,15 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
       node.state = NodeState::kNotLookedAt;
       if (verdict == Verdict::kUnknown && !map.complete) continue;
       budget.poll();
-      const Config q = nodes.config(lattice.label_of(slot), lattice.angle_of(slot));
+      const auto row = lattice.row(layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot)));
+      if (!row) {  // the exact chain does not reach the pose there, or not within its limits
+        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
+        node.state = NodeState::kNoIk;
+        if (fault.status == NodeStatus::kLimit)
+          node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
+        continue;
+      }
+      const Config& q = *row;
       if (!lattice.manipulable(q)) {
         node.state = NodeState::kSingular;
         continue;

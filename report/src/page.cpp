@@ -104,9 +104,7 @@ Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<
   for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
     budget.poll();
     const int slot = slots[layer];
-    LayerNodes nodes;
-    lattice.solve(layer, lattice.angle_of(slot), 1, nodes);
-    Config q = nodes.config(lattice.label_of(slot), 0);
+    Config q = *lattice.row(layer, slot);
     Json error = nullptr;
     if (layer > 0) {
       const Config step = lattice.delta(previous, q);
@@ -161,7 +159,8 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
   if (best < 0) return nullptr;
   const int label = lattice.label_of(best), angle = lattice.angle_of(best);
   const LatticeMap::Node& node = map.at(layer, label, angle);
-  const Config q = nodes.config(label, angle);
+  const Config node_q = nodes.config(label, angle);
+  const Config q = lattice.row(layer, best, node_q).value_or(node_q);
   std::string what = "no valid pose here: " + reason;
   Json pair = nullptr;
   const auto& names = world.body_names();
@@ -177,9 +176,7 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
     if (reason == "joint step") {
-      LayerNodes before;
-      lattice.solve(layer - 1, lattice.angle_of(from), 1, before);
-      const Config step = lattice.delta(before.config(lattice.label_of(from), 0), q);
+      const Config step = lattice.delta(*lattice.row(layer - 1, from), q);
       Eigen::Index joint = 0;
       const double most = step.cwiseAbs().maxCoeff(&joint);
       char text[32];
@@ -247,6 +244,7 @@ Json map_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
             const LatticeMap::Node& node = map.at(layer, label, j);
             if (shown[k][0] < 2 * reach || node != cell || !nodes.valid(label, j)) continue;
             shown[k] = nodes.config(label, j);
+            shown[k] = lattice.row(layer, label * lattice.angles() + j, shown[k]).value_or(shown[k]);
           }
         }
     }

@@ -49,7 +49,7 @@ TEST(Result, KeysInOrder) {
                                       "tool_path_error_mm", "min_clearance", "min_margin", "min_manipulability", "arm_angle",
                                       "diagnosis", "trajectory", "robot_pairs", "warnings", "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
-            (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints"}));
+            (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints", "cost"}));
   EXPECT_EQ(keys_of(json["counters"]),
             (std::vector<std::string>{"ik_nodes", "edges", "nodes_checked", "edges_checked", "fcl_calls", "certified_free",
                                       "certified_colliding", "expansions", "iterations"}));
@@ -64,6 +64,7 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["cost"].get<double>(), result.cost);
   EXPECT_EQ(json["lattice"]["nodes"], 203616);
   EXPECT_EQ(json["lattice"]["merged_waypoints"], 1);
+  EXPECT_EQ(json["lattice"]["cost"].get<double>(), result.lattice.cost);
   EXPECT_EQ(json["counters"]["iterations"], 9);
   EXPECT_EQ(json["time_ms"]["load"], 1.5);
   EXPECT_EQ(json["time_ms"]["prepare"], 0.0);

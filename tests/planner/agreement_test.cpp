@@ -33,6 +33,7 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
   ASSERT_EQ(a.status, b.status) << what;
   ASSERT_EQ(a.trajectory.size(), b.trajectory.size()) << what;
   ASSERT_EQ(a.cost, b.cost) << what;
+  ASSERT_EQ(a.lattice.cost, b.lattice.cost) << what;
   for (std::size_t i = 0; i < a.trajectory.size(); ++i) {
     ASSERT_EQ(a.trajectory[i].q, b.trajectory[i].q) << what << " row " << i;
     ASSERT_EQ(a.trajectory[i].branch, b.trajectory[i].branch) << what;
@@ -100,7 +101,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     obstacles += !problem.scene.empty();
     if (truth.solved) {
       ++solved;
-      ASSERT_EQ(results[0].cost, truth.cost) << what;
+      ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
       const PreparedRobot robot(problem);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
       const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
@@ -197,7 +198,7 @@ TEST(Agreement, FourPlannersAndBruteForceAtWeightsOfAnySize) {
       ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
       continue;
     }
-    ASSERT_EQ(results[0].cost, truth.cost) << what;
+    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
     const PreparedRobot robot(problem);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
     const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
@@ -262,7 +263,7 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
     const auto of_limits = [](const std::string& warning) { return warning.find("turns apart") != std::string::npos; };
     ASSERT_EQ(std::none_of(results[0].warnings.begin(), results[0].warnings.end(), of_limits), trial % 3 != 0) << what;
     if (!truth.solved) continue;
-    ASSERT_EQ(results[0].cost, truth.cost) << what;
+    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
     ASSERT_EQ(results[0].trajectory[0].q, q) << what;
     const CheckResult check = check_trajectory(problem, results[0].trajectory);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);

@@ -38,7 +38,7 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   World::Query query(laid.robot.world());
   std::map<std::string, std::int64_t> reasons;
   for (int slot = 0; slot < laid.lattice.width(); ++slot) {
-    const auto q = laid.lattice.node(layer, slot);
+    const auto q = laid.lattice.row(layer, slot);
     if (!q) continue;
     const auto pair = query.first_below(*q, Keep::kNode);
     const auto& names = laid.robot.world().body_names();
@@ -181,7 +181,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
         }
         const SrsLattice wider(chain, laid.robot.srs(), laid.path, problem);
         for (int slot = 0; slot < wider.width(); ++slot)
-          if (wider.node(empty.layer, slot)) return true;
+          if (wider.row(empty.layer, slot)) return true;
         return false;
       };
       EXPECT_TRUE(exists_with(empty.shortfall->by() + 1e-8)) << empty.layer << " " << empty.reason;

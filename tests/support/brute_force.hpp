@@ -21,7 +21,8 @@ struct Answer {
   std::vector<int> empty;  // layers without a valid node
 };
 
-/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; ties by slot.
+/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; ties by slot. Cost and
+/// ties of the nodes, everything else of the rows.
 /// `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks are asked about one state or motion at a time.
 inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
                           const std::function<bool(int layer, int a, int b)>& in_window, const Hooks& hooks = {}) {
@@ -29,14 +30,20 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
   const Chain& chain = lattice.chain();
   const Limits& limits = lattice.limits();
   const auto layers = static_cast<std::size_t>(lattice.layers());
-  std::vector<std::vector<std::optional<Config>>> nodes(layers);
+  std::vector<std::vector<std::optional<Config>>> nodes(layers), rows(layers);
   for (std::size_t i = 0; i < layers; ++i)
     for (int slot = 0; slot < lattice.slots(static_cast<int>(i)); ++slot) {
       nodes[i].push_back(lattice.node(static_cast<int>(i), slot));
       std::optional<Config>& q = nodes[i].back();
-      if (q && (chain.manipulability(*q) < limits.manipulability || query.first_below(*q, Keep::kNode))) q.reset();
+      if (!q) {
+        rows[i].emplace_back();
+        continue;
+      }
+      rows[i].push_back(lattice.row(static_cast<int>(i), slot, *q));
+      const auto& row = rows[i].back();
+      if (!row || chain.manipulability(*row) < limits.manipulability || query.first_below(*row, Keep::kNode)) q.reset();
       bool allowed = true;
-      if (q && hooks.check) hooks.check->states({&*q, 1}, {&allowed, 1});
+      if (q && hooks.check) hooks.check->states({&*row, 1}, {&allowed, 1});
       if (!allowed) q.reset();
     }
   const auto own_cost = [&](const Config& q) {
@@ -48,16 +55,19 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
     if (!in_window(layer, sa, sb)) return std::nullopt;
     const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
-    Config delta = qb - qa;
+    const Config &row_a = *rows[i][a], &row_b = *rows[i + 1][b];
+    Config delta = qb - qa, row_delta = row_b - row_a;
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-      if (limit.continuous || limit.wide()) delta[j] = std::remainder(delta[j], kTwoPi);
-      if (std::abs(delta[j]) > limits.joint_step) return std::nullopt;
+      for (Config* move : {&delta, &row_delta})
+        if (limit.continuous || limit.wide()) (*move)[j] = std::remainder((*move)[j], kTwoPi);
+      if (std::abs(delta[j]) > limits.joint_step + 2 * lattice.misfit()[j] || std::abs(row_delta[j]) > limits.joint_step)
+        return std::nullopt;
     }
-    if (!lattice.follows_path(layer, sa, qa, sb, qb)) return std::nullopt;
-    if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, qa, qa + delta)) return std::nullopt;
+    if (!lattice.follows_path(layer, sa, row_a, sb, row_b)) return std::nullopt;
+    if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, row_a, row_a + row_delta)) return std::nullopt;
     if (hooks.check && hooks.check->checks_motions()) {
-      const StateCheck::Motion motion{qa, qa + delta};
+      const StateCheck::Motion motion{row_a, row_a + row_delta};
       bool allowed = true;
       hooks.check->motions({&motion, 1}, {&allowed, 1});
       if (!allowed) return std::nullopt;
@@ -74,11 +84,11 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     into[i].resize(nodes[i].size());
   }
   for (std::size_t slot = 0; slot < nodes.back().size(); ++slot)
-    if (nodes.back()[slot]) g.back()[slot] = own_cost(*nodes.back()[slot]);
+    if (nodes.back()[slot]) g.back()[slot] = own_cost(*rows.back()[slot]);
   for (std::size_t i = layers - 1; i-- > 0;)
     for (std::size_t a = 0; a < nodes[i].size(); ++a) {
       if (!nodes[i][a]) continue;
-      const double own = own_cost(*nodes[i][a]);
+      const double own = own_cost(*rows[i][a]);
       for (std::size_t b = 0; b < nodes[i + 1].size(); ++b) {
         if (!nodes[i + 1][b]) continue;
         const auto cost = edge(i, a, b);

@@ -38,16 +38,24 @@ class Lattice {
   [[nodiscard]] virtual std::int64_t nodes() const = 0;
   /// One node; none where it does not exist.
   [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) const = 0;
+  /// The joints that a trajectory has at a node, whose own joints are q: on the exact chain, within the limits. Nodes of arms with
+  /// an exact closed form are rows themselves. Other arms have the nodes of the ideal arm fitted to them, and rows that Newton
+  /// finds near those; none where it does not, or where that row is outside the limits: the node is then invalid.
+  [[nodiscard]] virtual std::optional<Config> row(int layer, int slot, const Config& q) const;
+  /// Of a slot; none where the node does not exist, too.
+  [[nodiscard]] std::optional<Config> row(int layer, int slot) const;
+  /// False where every node is its own row.
+  [[nodiscard]] virtual bool has_own_rows() const { return false; }
   struct Node {
     int slot = 0;
     Config q;
   };
   /// Replaces `out` by all nodes of a layer that exist, in the order of slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
-  /// Manipulability bound alone; everything else that makes a node kinematically valid is in node().
+  /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and row().
   [[nodiscard]] bool manipulable(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
-  /// Why a node is missing: what it fails first, and for limits which joints.
+  /// Why a node, or its row, is missing: what it fails first, and for limits which joints.
   struct NodeFault {
     NodeStatus status = NodeStatus::kValid;
     std::uint8_t joints = 0;    ///< bit k: joint k is outside its limits
@@ -70,7 +78,7 @@ class Lattice {
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
 
-  // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them
+  // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them, where not said otherwise
   /// Slots first ... last - 1.
   struct SlotRun {
     int first = 0, last = 0;
@@ -81,15 +89,20 @@ class Lattice {
   virtual void successors(int layer, int a, std::vector<SlotRun>& out) const = 0;
   /// q1 - q0, on the circle for continuous joints.
   [[nodiscard]] Config delta(const Config& q0, const Config& q1) const;
-  /// Every |delta| within joint_step and the speed limits of the step from `layer`.
+  /// Every |delta| within step_bound().
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
-  /// Largest |delta_j| allowed on the step from `layer`.
+  /// Largest |delta_j| allowed on the step from `layer`: joint_step and speed limits, widened by twice the misfit.
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
+  /// The same of a move between rows, by joint_step and speed limits as they are: part of an edge's validity where has_own_rows().
+  [[nodiscard]] bool row_step_allowed(int layer, const Config& delta) const;
+  /// By how much a row's joints differ from their node's on this arm, as measured (SrsArm::misfit), rad: 0 where every node is its
+  /// own row. Limits and steps of nodes are wider by it, so that few rows are missed.
+  [[nodiscard]] const Config& misfit() const { return misfit_; }
   /// Cost of a move, a multiple of 2^-40 units.
   [[nodiscard]] double edge_cost(const Config& delta) const;
-  /// Tool-path, tool-angle and step-error bounds of the joint-linear move from q0 (slot a) to q1 (slot b).
+  /// Tool-path, tool-angle and step-error bounds of the joint-linear move from row q0 (slot a) to row q1 (slot b).
   [[nodiscard]] bool follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const;
   [[nodiscard]] bool asks_path_error() const { return limits_.tool_path_error || limits_.tool_angle_error || limits_.step_error; }
 
@@ -105,7 +118,7 @@ class Lattice {
  protected:
   Lattice(const Lattice&) = default;  // copied whole, as what it is
   /// Throws InputError where a speed limit or the metric asks for joint speeds that the robot does not state.
-  Lattice(const Chain& chain, const ToolPath& path, const Problem& problem);
+  Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& misfit = Config::Zero());
   /// The larger of the second-order estimates at both ends of an edge is within limits().step_error. Asked only where that is set.
   [[nodiscard]] virtual bool step_error_allowed(int layer, int a, int b) const = 0;
 
@@ -118,7 +131,8 @@ class Lattice {
  private:
   std::array<double, kDof> cost_scale_{};
   double cost_unit_ = 1;
-  std::vector<Config> step_bounds_;  // one for all steps, or one each
+  Config misfit_;
+  std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each
 };
 
 /// Distance of the tool from its straight step, at t = 1/4, 1/2, 3/4 of a joint-linear move, m.

@@ -40,6 +40,7 @@ struct LatticeInfo {
   int layers = 0, phi = 0, branches = 8, windings = 1, window = 0;
   std::int64_t nodes = 0;
   int merged_waypoints = 0;
+  double cost = 0;  ///< what the search minimised and ties are settled by, of solved problems: of the nodes, not of the rows
 };
 
 /// By how much a layer has no closed form within reach and limits, at the node where that is least.
@@ -103,7 +104,7 @@ struct SpecialPair {
 
 struct PlanResult {
   PlanStatus status = PlanStatus::kInfeasible;
-  double cost = 0;
+  double cost = 0;  ///< of the rows
   std::string planner;
   int threads = 1;
   LatticeInfo lattice;

@@ -39,6 +39,10 @@ struct SrsArm {
   EulerTriple shoulder, wrist;
   FitDeviation deviation;
   bool exact = false;  ///< the fitted arm is the chain itself, to rounding
+  /// By how much the fitted arm's joints differ from the chain's at the same pose, arm angle and branch, each joint, rad: 0 where
+  /// exact, else the most over seeded postures within the limits at which no |sin| of shoulder, elbow and wrist is below 0.1 and no
+  /// joint differs by more than polish() may move it.
+  Config misfit = Config::Zero();
 
   /// Angles measured from their singular poses: sin = 0 is singular.
   [[nodiscard]] double shoulder_angle(const Config& q) const { return q[1] + shoulder.shift; }
@@ -83,9 +87,13 @@ enum class ReachStatus { kReachable, kSingular, kOutOfReach };
 /// Closed form of the fitted arm at one arm angle and branch: principal joint angles, limits not applied.
 [[nodiscard]] Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi, int branch);
 
+/// Most that polish() may move a joint, rad.
+inline constexpr double kMostPolished = 0.05;
 /// Newton on seven equations (pose of the exact chain; arm angle of the fitted one), at most 5 steps to 1e-10, moving no joint by
-/// more than 0.05 rad in all; none when it does not get there. Returns the seed unchanged on exact arms.
+/// more than kMostPolished in all; none when it does not get there. Returns the seed unchanged on exact arms.
 [[nodiscard]] std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
                                            double phi, const Config& seed);
+/// SrsArm::misfit of a fitted arm.
+[[nodiscard]] Config measure_misfit(const Chain& chain, const SrsArm& arm);
 
 }  // namespace swivel

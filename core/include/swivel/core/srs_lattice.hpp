@@ -58,6 +58,9 @@ class LayerNodes {
 /// of over 64 turns is treated as a continuous one (JointLimit::wide): its angles begin in the turn about 0, or in the nearest that
 /// leaves 31 turns to both limits.
 ///
+/// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's misfit; rows are
+/// polished.
+///
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
 /// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
 /// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
@@ -87,6 +90,9 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int slots(int) const override { return width(); }
   [[nodiscard]] std::int64_t nodes() const override { return static_cast<std::int64_t>(layers()) * width(); }
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override;
+  using Lattice::row;
+  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q) const override;
+  [[nodiscard]] bool has_own_rows() const override { return !arm_->exact; }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
@@ -95,7 +101,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// The last link and the tool stand where the layer puts them; links 3 and 4 where arm angle and sign of the elbow do; links 1
   /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's. On arms that are not exact only the last link and the tool
-  /// stand alike: polished joints place them to 1e-10 m, the others by the fitted arm's misfit.
+  /// stand alike: rows place them to 1e-10 m, the others by the fitted arm's misfit.
   [[nodiscard]] bool stand_alike(unsigned groups) const override { return arm_->exact || (groups & ~(1u << kDof)) == 0; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
@@ -132,20 +138,23 @@ class SrsLattice final : public Lattice {
     double base = 0, upper = 0;  // image 0 lies in [base, base + 2 pi); valid up to upper
     int count = 1;
   };
-  static Images images_between(double lower, double upper, double start);
+  static Images images_between(double lower, double upper, double start, double misfit);
   struct Start {
     int slot = 0;
     double phi = 0;
-    Config q;
+    Config node, row;  // the fitted arm's solution there, or the given joints where it has none; the given joints
   };
-  void solve_exact(int elbow, int begin, int end, LayerNodes& out) const;
-  void solve_polished(int elbow, int begin, int end, LayerNodes& out) const;
   void lay_out_start(LayerNodes& out) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
-  /// Joint 4 of a layer's nodes by the sign of the elbow, where the arm angle does not move it: exact arms, layers without a start.
+  /// Joint 4 of a layer's nodes by the sign of the elbow, which the arm angle does not move: layers without a start.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
   [[nodiscard]] bool elbow_alive(int layer, int elbow) const { return elbow_alive_[static_cast<std::size_t>(2 * layer + elbow)]; }
   void place_start(const Problem& problem);
+  /// The fitted arm's solution at the start's arm angle and branch, at the images near the start; none where there is none near it.
+  [[nodiscard]] std::optional<Config> fitted_start(const Config& q, double phi) const;
+  [[nodiscard]] bool singular(const Config& q) const;
+  /// Bit k: joint k of a row is outside its limits.
+  [[nodiscard]] std::uint8_t joints_outside(const Config& row) const;
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 

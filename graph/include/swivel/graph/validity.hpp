@@ -36,8 +36,8 @@ struct NodeAnswer {
 
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once. A batch throws
 /// Stopped where the budget of the caller is spent.
-/// Nodes: manipulability, clearance, a user's check. Edges (both ends valid, joint steps allowed): tool-path error, clearance of
-/// the motion, a user's check.
+/// Nodes: that they have a row (Lattice::row), its manipulability, clearance and a user's check. Edges (joint steps of the nodes
+/// allowed): joint steps of the rows, tool-path error, clearance of the motion, a user's check. Questions give joints of nodes.
 class Validity {
  public:
   virtual ~Validity() = default;

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arms whose files are rounded, or that are built a little off: nodes of the ideal arm, rows on the exact chain.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brute_force.hpp"
+#include "inexact_robots.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+
+struct Laid {
+  explicit Laid(const Problem& problem)
+      : robot(problem),
+        path(waypoints_in_base(problem), problem.resolution, problem.source),
+        lattice(robot.arm().chain, robot.srs(), path, problem) {}
+  PreparedRobot robot;
+  ToolPath path;
+  SrsLattice lattice;
+};
+
+Answer truth_of(const Laid& laid) {
+  const double window = laid.lattice.window() * kTwoPi / laid.lattice.angles() + 1e-9;
+  return brute_force(
+      laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()), [&](int layer, int a, int b) {
+        return std::abs(std::remainder(laid.lattice.phi(layer + 1, b) - laid.lattice.phi(layer, a), kTwoPi)) <= window;
+      });
+}
+
+TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
+  const std::uint64_t base = seed("Inexact.Agreement");
+  Random making(base);
+  const std::vector<TestRobot> robots = inexact_robots(making);
+  int solved = 0, infeasible = 0, started = 0, detours = 0, continuous = 0, dearer = 0, without_row = 0, rows = 0;
+  double farthest = 0;
+  const int count = trials(200);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    if (random.coin(0.3)) problem.limits.joint_step = random.uniform(0.1, 0.4);  // where steps decide
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const Laid laid(problem);
+    const SrsLattice& lattice = laid.lattice;
+    ASSERT_TRUE(lattice.has_own_rows()) << what;
+    for (int layer = 0; layer < lattice.layers(); ++layer)
+      for (int slot = 0; slot < lattice.width(); ++slot) without_row += lattice.node(layer, slot) && !lattice.row(layer, slot);
+    const Answer truth = truth_of(laid);
+    std::vector<PlanResult> results;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.evidence = Evidence::all();
+      results.push_back(plan(laid.robot, problem, options));
+      const PlanResult &first = results[0], &other = results.back();
+      ASSERT_EQ(other.status, truth.solved ? PlanStatus::kSolved : PlanStatus::kInfeasible) << what << " " << other.planner;
+      ASSERT_EQ(other.cost, first.cost) << what << " " << other.planner;
+      ASSERT_EQ(other.lattice.cost, first.lattice.cost) << what << " " << other.planner;
+      ASSERT_EQ(other.trajectory.size(), first.trajectory.size()) << what;
+      for (std::size_t i = 0; i < first.trajectory.size(); ++i) {
+        ASSERT_EQ(other.trajectory[i].q, first.trajectory[i].q) << what << " " << other.planner << " row " << i;
+        ASSERT_EQ(other.trajectory[i].phi, first.trajectory[i].phi) << what;
+      }
+      ASSERT_EQ(other.diagnosis.reason, first.diagnosis.reason) << what << " " << other.planner;
+      ASSERT_EQ(other.diagnosis.removed, first.diagnosis.removed) << what << " " << other.planner;
+    }
+    started += problem.start.has_value();
+    continuous += problem.limits.edges == EdgeMode::kContinuous;
+    detours += results[2].counters.iterations > 1;
+    if (!truth.solved) {
+      ++infeasible;
+      ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+      std::vector<int> empty;
+      for (const EmptyLayer& layer : results[0].diagnosis.empty_layers) empty.push_back(layer.layer);
+      ASSERT_EQ(empty, truth.empty) << what;
+      continue;
+    }
+    ++solved;
+    const PlanResult& result = results[0];
+    ASSERT_EQ(result.lattice.cost, truth.cost) << what;
+    dearer += result.cost != result.lattice.cost;
+    for (int i = 0; i < lattice.layers(); ++i) {
+      const TrajectoryRow& row = result.trajectory[static_cast<std::size_t>(i)];
+      ASSERT_EQ(row.phi, lattice.phi(i, truth.slots[static_cast<std::size_t>(i)])) << what;
+      const Pose reached = lattice.chain().tool(row.q), &asked = laid.path.layer(i).tool;
+      farthest = std::max({farthest, (reached.translation() - asked.translation()).norm(),
+                           Eigen::AngleAxisd(reached.linear().transpose() * asked.linear()).angle()});
+      ++rows;
+    }
+    if (problem.start) {
+      ASSERT_EQ(result.trajectory[0].q, *problem.start) << what;
+    }
+    const CheckResult check = check_trajectory(laid.robot, problem, result.trajectory);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    ASSERT_NEAR(check.cost, result.cost, 1e-9) << what;
+  }
+  std::printf(
+      "%d problems: %d solved (%d of another cost than their nodes), %d infeasible, %d continuous, %d with a start, %d after "
+      "failures; %d nodes without a row; %d rows within %.1e m and rad\n",
+      count, solved, dearer, infeasible, continuous, started, detours, without_row, rows, farthest);
+  EXPECT_LE(farthest, 1e-9);
+  EXPECT_GE(solved, count / 4);
+  EXPECT_EQ(dearer, solved);
+  EXPECT_GE(infeasible, count / 20);
+  EXPECT_GE(continuous, count / 5);
+  EXPECT_GE(started, count / 10);
+  EXPECT_GE(detours, count / 20);
+  EXPECT_GT(without_row, 100);
+}
+
+/// A row that keeps to the limits is not missed because the fitted arm's joints lie beyond them: away from singular poses every
+/// posture within the limits has a node, whose row it is.
+TEST(Inexact, PosturesAtTheLimitsAreRows) {
+  const std::uint64_t base = seed("Inexact.Limits");
+  Random random(base);
+  int tried = 0, beyond = 0;
+  for (const TestRobot& robot : inexact_robots(random)) {
+    const Chain chain = arm_of(robot).chain;
+    const SrsArm arm = fit_srs(chain, robot.name);
+    EXPECT_FALSE(arm.exact);
+    std::printf("%s: off by %.2g mm and %.2g mrad, misfit up to %.2g rad\n", robot.name.c_str(), 1e3 * arm.deviation.offset,
+                1e3 * arm.deviation.angle, arm.misfit.maxCoeff());
+    EXPECT_GT(arm.misfit.minCoeff(), 0);
+    for (int trial = 0; trial < 40; ++trial) {
+      Config q = random_config(chain, random);
+      const int joint = random.below(kDof);
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(joint)];
+      if (!limit.continuous) q[joint] = random.coin() ? limit.lower : limit.upper;
+      const double sine = std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
+                                    std::abs(std::sin(arm.wrist_angle(q)))});
+      if (sine < 0.15) continue;
+      Problem problem = problem_for(robot);
+      const Pose tool = chain.tool(q);
+      Pose next = tool;
+      next.translation().z() += 0.01;
+      problem.waypoints = {waypoint_of(tool), waypoint_of(next)};
+      problem.resolution = {.ds = 0.02, .dphi = kTwoPi / 3, .dalpha = 0.1};
+      // With the posture as the start its arm angle is on the lattice; without, the closest node shows that the labels are right.
+      problem.start = q;
+      const Laid laid(problem);
+      const int slot = laid.lattice.start_slot();
+      const auto node = laid.lattice.node(0, slot);
+      ASSERT_TRUE(node) << robot.name;
+      ASSERT_EQ(laid.lattice.row(0, slot), q);
+      ASSERT_LE((*node - q).cwiseAbs().maxCoeff(), kMostPolished);
+      const ArmPlane& plane = laid.lattice.plane(0);
+      const double phi = plane.angle_of(arm.elbow_axis(q));
+      const auto polished = polish(chain, arm, plane, tool, phi, *node);
+      ASSERT_TRUE(polished) << robot.name;
+      ASSERT_LE((*polished - q).cwiseAbs().maxCoeff(), 1e-7) << robot.name;
+      for (int j = 0; j < kDof; ++j) {
+        EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.misfit()[j] + 1e-9) << robot.name << " joint " << j;
+        const JointLimit& bound = chain.limit[static_cast<std::size_t>(j)];
+        beyond += !bound.continuous && ((*node)[j] < bound.lower || (*node)[j] > bound.upper);
+      }
+      ++tried;
+    }
+  }
+  std::printf("%d postures, %d joints of nodes beyond a limit\n", tried, beyond);
+  EXPECT_GT(tried, 100);
+  EXPECT_GT(beyond, 20);
+}
+
+/// A start keeps its joints wherever the fitted arm has none: stretched further than that can reach, or singular for it.
+TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
+  const std::uint64_t base = seed("Inexact.Start");
+  Random random(base);
+  int own = 0, fitted = 0, solved = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    const TestRobot robot = perturbed(trial % 2 ? continuous_robot() : data_robot("iiwa14"), 1, random);
+    const Chain chain = arm_of(robot).chain;
+    const SrsArm arm = fit_srs(chain, robot.name);
+    Config q = 0.3 * random_config(chain, random);
+    q[1] = random.uniform(0.4, 0.8), q[5] = random.uniform(0.4, 0.8);
+    q[3] = -arm.elbow_shift + (trial % 3 == 0 ? random.uniform(-0.002, 0.002) : 0.3);
+    Problem problem = problem_for(robot);
+    Pose tool = chain.tool(q), next = tool;
+    next.translation() -= 0.03 * (tool.translation() - arm.S).normalized();
+    problem.waypoints = {waypoint_of(tool), waypoint_of(next)};
+    problem.resolution = {.ds = 0.02, .dphi = 0.6, .dalpha = 0.2};
+    problem.limits.joint_step = 1.0;
+    problem.limits.tool_path_error = std::nullopt;
+    problem.start = q;
+    const Laid laid(problem);  // no bad input
+    const auto node = laid.lattice.node(0, laid.lattice.start_slot());
+    ASSERT_TRUE(node);
+    ASSERT_EQ(laid.lattice.row(0, laid.lattice.start_slot()), q);
+    (*node == q ? own : fitted) += 1;
+    const Answer truth = truth_of(laid);
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      const PlanResult result = plan(laid.robot, problem, options);
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << trial;
+      if (!truth.solved) continue;
+      ASSERT_EQ(result.lattice.cost, truth.cost) << trial;
+      ASSERT_EQ(result.trajectory[0].q, q);
+    }
+    solved += truth.solved;
+  }
+  std::printf("%d starts with their own joints, %d with the fitted arm's, %d solved\n", own, fitted, solved);
+  EXPECT_GE(own, 3);
+  EXPECT_GE(fitted, 15);
+  EXPECT_GE(solved, 15);
+}
+
+}  // namespace
+}  // namespace swivel
