@@ -34,20 +34,19 @@ swivel::RobotModel make_arm() {
 }
 
 int main() {
-  swivel::Problem problem;
-  problem.model = std::make_shared<const swivel::RobotModel>(make_arm());
-  problem.base_link = "base", problem.tip_link = "tool";
+  swivel::Robot robot;
+  robot.model = std::make_shared<const swivel::RobotModel>(make_arm());
+  robot.base_link = "base", robot.tip_link = "tool";
 
-  swivel::SceneObject& box = problem.scene.emplace_back();
-  box.name = "box";
-  box.shape = swivel::Box{{0.1, 0.1, 0.1}};
-  box.pose.translation() = Vector3d(0.2, 0.1, 0.75);
-
+  swivel::Task task;
   const swivel::Quaterniond down(0, 1, 0, 0);  // w, x, y, z
-  problem.waypoints = {{{0.5, -0.3, 0.4}, down}, {{0.5, 0.3, 0.4}, down}};
-  problem.limits.clearance = 0.02;
+  task.waypoints = {{{0.5, -0.3, 0.4}, down}, {{0.5, 0.3, 0.4}, down}};
+  task.limits.clearance = 0.02;
 
-  const swivel::PlanResult result = swivel::plan(problem);
+  swivel::Planner planner(robot);
+  planner.add({"box", swivel::Box{{0.1, 0.1, 0.1}}, swivel::Pose(Eigen::Translation3d(0.2, 0.1, 0.75))});
+  planner.set_task(task);
+  const swivel::PlanResult result = planner.plan();
   std::cout << to_string(result.status) << ", " << result.trajectory.size() << " rows, cost " << result.cost << '\n';
   return result.status == swivel::PlanStatus::kSolved ? 0 : 1;
 }
