@@ -2,24 +2,32 @@
 #include "swivel/core/self_motion.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
+#include "pose_newton.hpp"
 #include "swivel/core/angle.hpp"
 
 namespace swivel {
 
 namespace {
 
-constexpr int kSeeds = 32;           // lock values, evenly over a turn
-constexpr double kStep = 0.1;        // rad, Euclidean
-constexpr double kLeastStep = 1e-4;  // rad: below this a curve is singular
-constexpr double kReached = 1e-11;   // m, rad
-constexpr double kOnCurve = 0.02;    // rad from a chord: a seed there is known
-constexpr double kFarSlack = 1;      // relative discriminant of complex roots that give seeds
-constexpr int kMostPoints = 20000;
+using Point = PoseNewton::Point;
+
+constexpr int kSeeds = 32;             // lock values, evenly over a turn
+constexpr double kStep = 0.2;          // rad, Euclidean: longest step of tracing
+constexpr double kLeastStep = 1e-7;    // rad: below this a curve is singular
+constexpr double kLongChord = 0.7;     // rad: joined directly; longer ones are traced
+constexpr double kNear = 0.02;         // rad from a chord: a seed there is known
+constexpr double kFarSlack = 1;        // relative discriminant of complex roots that give seeds
+constexpr int kMostPoints = 4000;      // of one curve
+constexpr double kSingular = 1e-6;     // rad from alignment of a triple
+constexpr double kMeets = 1e-4;        // m, rad: axes this near a common point or direction make a triple
+constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
+constexpr double kLeastWeight = 1e-2;  // of the largest
+constexpr int kImageSteps = 6;         // Newton steps from a node to its image
+const Config kPlain = Config::Ones();
 
 Config difference(const Config& a, const Config& b) {
   Config d;
@@ -27,315 +35,720 @@ Config difference(const Config& a, const Config& b) {
   return d;
 }
 
-using Jacobian = Eigen::Matrix<double, 6, kDof>;
-
-Config6 error_of(const Pose& tool, const Pose& reached) {
-  const Matrix3d left = tool.linear() * reached.linear().transpose();
-  Config6 error;
-  error << tool.translation() - reached.translation(), (left(2, 1) - left(1, 2)) / 2, (left(0, 2) - left(2, 0)) / 2,
-      (left(1, 0) - left(0, 1)) / 2;
-  return error;
-}
-
-/// Minimum-norm Newton onto the curve; joint `held` stays (-1: none).
-std::optional<Config> on_curve(const Chain& chain, const Pose& tool, Config q, int held = -1) {
-  for (int step = 0; step < 8; ++step) {
-    const Config6 error = error_of(tool, chain.tool(q));
-    if (error.lpNorm<Eigen::Infinity>() < kReached) return q;
-    Jacobian J = chain.jacobian(q);
-    if (held >= 0) J.col(held).setZero();
-    Matrix6 JJt = J * J.transpose();
-    JJt.diagonal().array() += 1e-2 * error.squaredNorm() + 1e-18;
-    const Config move = J.transpose() * JJt.partialPivLu().solve(error);
-    if (!(move.norm() < 1)) return std::nullopt;
-    q += move;
-  }
-  return std::nullopt;
-}
-
-/// Unit null vector of the Jacobian.
-Config tangent(const Chain& chain, const Config& q) {
-  const Eigen::Matrix<double, kDof, 6> Jt = chain.jacobian(q).transpose();
-  const Eigen::HouseholderQR<Eigen::Matrix<double, kDof, 6>> qr(Jt);
-  return qr.householderQ() * Config::Unit(kDof - 1);
-}
-
-struct Point {
-  Config q, t;  // on the curve, and its tangent
+/// Where the outer axes of a triple are one line, so that they swing against each other while the middle one stands. A curve comes
+/// near, swings, and leaves on the same side; a long step would pass over the swing.
+struct Alignment {
+  int joint;
+  double angle;
 };
 
-/// One step of at most kStep along p.t, shorter where the curve bends.
-std::optional<Point> advance(const Chain& chain, const Pose& tool, const Point& p, double& step) {
-  for (step = std::min(kStep, 2 * step); step >= kLeastStep; step /= 2) {
-    const auto q = on_curve(chain, tool, p.q + step * p.t);
-    if (!q || (*q - p.q).norm() > kStep || (*q - p.q - step * p.t).norm() > 0.25 * step) continue;
-    Config t = tangent(chain, *q);
-    if (t.dot(p.t) < 0) t = -t;
-    if (t.dot(p.t) < 0.95) continue;
-    return Point{*q, t};
+/// The cubic with the tangents of its ends, as long as its chord: relative to its first point, at + u (b + u (c + u d)).
+struct Cubic {
+  Config d, m0, m1;  // chord, and tangents times its length
+  Cubic(const Point& a, const Point& b, double sign_b) : d(difference(b.q, a.q)) {
+    const double length = d.norm();
+    m0 = length * a.tangent;
+    m1 = (length * sign_b) * b.tangent;
   }
-  return std::nullopt;
-}
-
-/// Whether the chord from a to b, both on the torus, passes near q.
-bool near_chord(const Config& a, const Config& b, const Config& q) {
-  const Config d = difference(q, a);
-  if (d.lpNorm<Eigen::Infinity>() > 2 * kStep) return false;
-  const Config c = difference(b, a);
-  const double along = std::clamp(d.dot(c) / std::max(c.squaredNorm(), 1e-30), 0.0, 1.0);
-  return (d - along * c).norm() < kOnCurve;
-}
-
-struct Curve {
-  std::vector<Point> points;
-  bool closed = false;
-  [[nodiscard]] bool passes(const Point& p) const {
-    for (std::size_t k = 0; k + (closed ? 0 : 1) < points.size(); ++k) {
-      const Point& a = points[k];
-      if (near_chord(a.q, points[(k + 1) % points.size()].q, p.q) && std::abs(a.t.dot(p.t)) > 0.9) return true;
-    }
-    return false;
+  [[nodiscard]] Config at(double u) const { return u * m0 + (u * u) * (3 * d - 2 * m0 - m1) + (u * u * u) * (m0 + m1 - 2 * d); }
+  [[nodiscard]] double at(int j, double u) const {
+    return u * (m0[j] + u * (3 * d[j] - 2 * m0[j] - m1[j] + u * (m0[j] + m1[j] - 2 * d[j])));
   }
 };
 
-Curve trace(const Chain& chain, const Pose& tool, const Point& seed) {
-  Curve curve;
-  curve.points.push_back(seed);
-  double step = kStep;
-  const auto follow = [&](Point p) {
-    while (static_cast<int>(curve.points.size()) < kMostPoints) {
-      const auto next = advance(chain, tool, p, step);
-      if (!next) return;
-      // Closed where this step passes the seed.
-      const Config to_seed = difference(seed.q, p.q), way = next->q - p.q;
-      const double along = to_seed.dot(way) / way.squaredNorm();
-      if (curve.points.size() > 3 && along > 0 && along <= 1 && (to_seed - along * way).norm() < 0.1 * way.norm() &&
-          next->t.dot(seed.t) > 0.9) {
-        curve.closed = true;
-        return;
-      }
-      curve.points.push_back(*next);
-      p = *next;
-    }
-  };
-  follow(seed);
-  if (curve.closed) return curve;
-  std::reverse(curve.points.begin(), curve.points.end());
-  for (Point& p : curve.points) p.t = -p.t;
-  step = kStep;
-  follow({seed.q, -seed.t});
-  return curve;
-}
+/// Points of curves and their neighbours. Side 0 of a point lies behind it along its tangent, side 1 ahead.
+struct Vertex : Point {
+  int group = -1;                   // of the lock value, -1: traced
+  std::array<int, 2> next{-1, -1};  // 2 * neighbour + the neighbour's side; -1: open
+};
 
-std::vector<Curve> trace_all(const Chain& chain, const Pose& tool, int lock,
-                             const std::vector<std::pair<double, ClosedForm>>& forms) {
-  std::vector<Curve> curves;
-  const auto add_seed = [&](const Config& q) {
-    const Point seed{q, tangent(chain, q)};
-    if (std::none_of(curves.begin(), curves.end(), [&](const Curve& curve) { return curve.passes(seed); }))
-      curves.push_back(trace(chain, tool, seed));
-  };
-  const auto add = [&](const ClosedForm::Solutions& solutions, double value) {
-    for (const Config6& six : solutions) add_seed(with_joint(six, lock, value));
-  };
-  std::vector<ClosedForm::Solutions> solutions;
-  for (const auto& [value, form] : forms) {
-    solutions.push_back(form.solve(tool));
-    add(solutions.back(), value);
-  }
-  // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
-  for (std::size_t k = 0; k < forms.size(); ++k) {
-    if (solutions[k].count >= 8) continue;
-    for (const Config6& six : forms[k].second.starts(tool, kFarSlack)) {
-      const Config start = with_joint(six, lock, forms[k].first);
-      const auto q = on_curve(chain, tool, start);
-      if (q) add_seed(*q);
-    }
-  }
-  // Curves that turn round between two lock values: where the number of roots changes, and half-way there.
-  for (std::size_t k = 0; k < forms.size(); ++k) {
-    const std::size_t next = (k + 1) % forms.size();
-    if (solutions[k].count == solutions[next].count) continue;
-    double low = forms[k].first, high = low + kTwoPi / kSeeds;
-    for (int halving = 0; halving < 6; ++halving) {
-      const double middle = (low + high) / 2;
-      const auto form = ClosedForm::of(lock_joint(chain, lock, middle));
-      if (!form) break;
-      const auto found = form->solve(tool);
-      add(found, middle);
-      (found.count == solutions[k].count ? low : high) = middle;
-    }
-  }
-  return curves;
+double turned_away(const Config& direction, const Config& chord, double length) {
+  return 1 - direction.dot(chord) / length;
 }
 
 }  // namespace
 
-SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin) : chain_(chain), lock_(method.best) {
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    lower_[j] = limit.lower + margin;
-    upper_[j] = limit.upper - margin;
-    bounded_[j] = !limit.continuous && limit.upper - limit.lower < kTwoPi;
-  }
-  // Half a cell from 0, so that no value is a multiple of 90 degrees.
-  for (int k = 0; k < kSeeds; ++k) {
-    const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
-    if (auto form = ClosedForm::of(lock_joint(chain, lock_, value))) forms_.emplace_back(value, *form);
-  }
-}
+struct SelfMotionData {
+  explicit SelfMotionData(const Chain& chain) : newton(chain) {}
+  PoseNewton newton;
+  int lock = -1;
+  std::array<double, kDof> lower{}, upper{};
+  std::array<bool, kDof> circle{};
+  Config scale, scale2;
+  std::vector<Alignment> alignments;
+  std::vector<std::pair<double, ClosedForm>> forms;  // by lock value
 
-std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
-  std::vector<SelfMotionArc> result;
-  for (const Curve& curve : trace_all(chain_, tool, lock_, forms_)) {
-    SelfMotionArc arc;
-    arc.closed = curve.closed;
-    for (const Point& p : curve.points) arc.q.push_back(p.q);
-    result.push_back(std::move(arc));
-  }
-  return result;
-}
-
-std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool) const {
-  // Value of a joint in the turn about the middle of its range; a joint of a turn or more is a circle.
-  const auto image = [&](double angle, std::size_t j) {
-    if (!bounded_[j]) return wrap_angle(angle);
-    const double middle = (lower_[j] + upper_[j]) / 2;
+  [[nodiscard]] double image(double angle, std::size_t j) const {
+    if (circle[j]) return wrap_angle(angle);
+    if (angle >= lower[j] && angle <= upper[j]) return angle;  // ends stand on limits bit for bit
+    const double middle = (lower[j] + upper[j]) / 2;
     return middle + wrap_angle(angle - middle);
+  }
+  [[nodiscard]] bool inside(const Config& q) const {
+    for (std::size_t j = 0; j < kDof; ++j) {
+      if (circle[j]) continue;
+      const double value = image(q[static_cast<Eigen::Index>(j)], j);
+      if (!(value >= lower[j] && value <= upper[j])) return false;
+    }
+    return true;
+  }
+  [[nodiscard]] bool aligned(const Config& q) const {
+    return std::any_of(alignments.begin(), alignments.end(),
+                       [&](const Alignment& a) { return std::abs(wrap_angle(q[a.joint] - a.angle)) < kSingular; });
+  }
+  /// Whether the move passes over an alignment.
+  [[nodiscard]] bool passes_alignment(const Config& q, const Config& move) const {
+    return std::any_of(alignments.begin(), alignments.end(), [&](const Alignment& a) {
+      const double before = wrap_angle(q[a.joint] - a.angle), after = before + move[a.joint];
+      return (before > 0) != (after > 0) || std::abs(after) < kSingular;
+    });
+  }
+};
+
+namespace {
+
+/// All curves of one pose.
+class Curves {
+ public:
+  Curves(const SelfMotionData& data, const Pose& tool) : data_(data), tool_(tool) {}
+  void find(std::span<const Config> known);
+  /// Visits curve by curve: the points in order, tangents along it.
+  template <class Visit>
+  void visit(const Visit& visit) const;
+
+ private:
+  [[nodiscard]] Config outward(int half) const {
+    const Vertex& v = vertices_[static_cast<std::size_t>(half / 2)];
+    return half % 2 == 1 ? v.tangent : Config(-v.tangent);
+  }
+  Vertex& at(int half) { return vertices_[static_cast<std::size_t>(half / 2)]; }
+  [[nodiscard]] const Vertex& at(int half) const { return vertices_[static_cast<std::size_t>(half / 2)]; }
+  [[nodiscard]] bool open(int half) const { return at(half).next[static_cast<std::size_t>(half % 2)] < 0; }
+  void link(int half, int other) {
+    at(half).next[static_cast<std::size_t>(half % 2)] = other;
+    at(other).next[static_cast<std::size_t>(other % 2)] = half;
+  }
+  int add(const Point& p, int group) {
+    Vertex v;
+    v.q = p.q;
+    v.tangent = p.tangent;
+    v.group = group;
+    vertices_.push_back(v);
+    return static_cast<int>(vertices_.size()) - 1;
+  }
+  void add_seeds();
+  void join_neighbours();
+  /// How badly a smooth curve fits the move from a half-edge to another; none where it does not.
+  [[nodiscard]] std::optional<double> misfit(int half, int other) const;
+  /// Links two half-edges, with points between where the chord bends.
+  bool join(int half, int other, int depth);
+  [[nodiscard]] std::optional<Point> advance(const Point& p, const Config* before, double& step) const;
+  void trace(int half);
+  [[nodiscard]] bool known(const Config& q, const Config& tangent) const;
+  void add_hidden(const Config& q);
+
+  const SelfMotionData& data_;
+  const Pose& tool_;
+  std::vector<Vertex> vertices_;
+  std::vector<int> first_;  // vertex of each lock value, and the end
+  std::vector<char> few_;   // lock values with fewer solutions than there may be
+  std::vector<int> open_;   // half-edges of seeds that tracing may meet
+};
+
+void Curves::add_seeds() {
+  vertices_.reserve(1024);
+  for (std::size_t k = 0; k < data_.forms.size(); ++k) {
+    const auto& [value, form] = data_.forms[k];
+    first_.push_back(static_cast<int>(vertices_.size()));
+    // Newton on the exact chain is left to seven joints.
+    const bool exact = form.fit().exact;
+    const auto solutions = exact ? form.solve(tool_) : form.starts(tool_, 1e-2);
+    int count = 0;
+    for (const Config6& six : solutions) {
+      Config q = with_joint(six, data_.lock, value);
+      Point p;
+      if (exact) {
+        PoseNewton::Linear at;
+        if (data_.aligned(q) || !data_.newton.linear(q, tool_, at)) continue;
+        p = {q, at.null / at.null.norm()};
+      } else {
+        auto found = data_.newton.with_joint_at(q, tool_, data_.lock, value);
+        if (!found || data_.aligned(found->q)) continue;
+        p = *found;
+        bool twice = false;
+        for (std::size_t other = static_cast<std::size_t>(first_.back()); other < vertices_.size(); ++other)
+          twice = twice || difference(vertices_[other].q, p.q).squaredNorm() < 1e-12;
+        if (twice) continue;
+      }
+      if (p.tangent[data_.lock] < 0) p.tangent = -p.tangent;
+      add(p, static_cast<int>(k));
+      ++count;
+    }
+    few_.push_back(count < 8);
+  }
+  first_.push_back(static_cast<int>(vertices_.size()));
+}
+
+std::optional<double> Curves::misfit(int half, int other) const {
+  constexpr double kBend = 0.06;    // 1 - cosine of tangent and chord: 0.35 rad
+  constexpr double kUneven = 0.02;  // part of the chord by which a parabola with the tangents may miss it
+  const Config chord = difference(at(other).q, at(half).q);
+  const double length2 = chord.squaredNorm();
+  if (!(length2 > 0 && length2 < kLongChord * kLongChord)) return std::nullopt;
+  const double length = std::sqrt(length2);
+  const Config t0 = outward(half), t1 = -outward(other);
+  if (turned_away(t0, chord, length) > kBend || turned_away(t1, chord, length) > kBend) return std::nullopt;
+  const double miss = (chord - (length / 2) * (t0 + t1)).norm();
+  if (miss > kUneven * length || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
+  return miss;
+}
+
+bool Curves::join(int half, int other, int depth) {
+  constexpr double kStraight = 0.02;  // 1 - cosine between the ends: 0.2 rad
+  constexpr double kLong = 0.3;       // rad
+  const Config t0 = outward(half), t1 = -outward(other);
+  const Config chord = difference(at(other).q, at(half).q);
+  if (depth == 0 || (chord.norm() < kLong && t0.dot(t1) > 1 - kStraight)) {
+    link(half, other);
+    return true;
+  }
+  const Cubic cubic({at(half).q, t0}, {at(other).q, t1}, 1);
+  const Config guess = at(half).q + cubic.at(0.5);
+  const auto middle = data_.newton.nearest(guess, tool_, kPlain, 4);
+  if (!middle || (middle->q - guess).norm() > 0.1 * chord.norm() || data_.aligned(middle->q)) return false;
+  Point p = *middle;
+  if (p.tangent.dot(chord) < 0) p.tangent = -p.tangent;
+  const int v = add(p, -1);
+  if (misfit(half, 2 * v) && misfit(2 * v + 1, other) && join(half, 2 * v, depth - 1)) {
+    if (join(2 * v + 1, other, depth - 1)) return true;
+    open_.push_back(2 * v + 1);  // tracing goes on from here
+    return true;
+  }
+  return false;
+}
+
+void Curves::join_neighbours() {
+  const std::size_t count = data_.forms.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t next = (k + 1) % count;
+    for (int a = first_[k]; a < first_[k + 1]; ++a) {
+      int best = -1;
+      double least = 0;
+      for (int b = first_[next]; b < first_[next + 1]; ++b) {
+        if (!open(2 * b)) continue;
+        const auto miss = misfit(2 * a + 1, 2 * b);
+        if (miss && (best < 0 || *miss < least)) {
+          best = b;
+          least = *miss;
+        }
+      }
+      if (best >= 0) join(2 * a + 1, 2 * best, 3);
+    }
+  }
+}
+
+std::optional<Point> Curves::advance(const Point& p, const Config* before, double& step) const {
+  step = std::min(kStep, 2 * step);
+  for (const Alignment& a : data_.alignments) {
+    const double apart = std::abs(wrap_angle(p.q[a.joint] - a.angle)), rate = std::abs(p.tangent[a.joint]);
+    if (rate * step > 0.7 * apart) step = std::max(kLeastStep, 0.7 * apart / rate);
+  }
+  // Curvature from the point before.
+  Config bend = Config::Zero();
+  if (before != nullptr) bend = *before;
+  for (; step >= kLeastStep; step /= 2) {
+    const Config guess = p.q + step * p.tangent + (step * step / 2) * bend;
+    auto next = data_.newton.nearest(guess, tool_, kPlain, 4);
+    if (!next) continue;
+    const Config move = next->q - p.q;
+    const double length = move.norm();
+    if (length > 1.3 * step || (next->q - guess).norm() > 0.1 * step) continue;
+    if (next->tangent.dot(p.tangent) < 0) next->tangent = -next->tangent;
+    if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03) continue;
+    if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length) continue;
+    if (data_.passes_alignment(p.q, move)) continue;
+    return next;
+  }
+  return std::nullopt;
+}
+
+void Curves::trace(int half) {
+  double step = kStep / 4;
+  Config bend;
+  bool bent = false;
+  int here = half;
+  for (int count = 0; count < kMostPoints; ++count) {
+    const Point p{at(here).q, outward(here)};
+    const auto next = advance(p, bent ? &bend : nullptr, step);
+    if (!next) return;
+    const Config move = next->q - p.q;
+    const double length2 = move.squaredNorm();
+    // An open half-edge that this step passes is the continuation.
+    int met = -1;
+    double first = 2;
+    for (const int other : open_) {
+      if (!open(other) || other == here || (other == half && count < 4)) continue;
+      const Vertex& v = at(other);
+      const Config way = difference(v.q, p.q);
+      const double along = way.dot(move) / length2;
+      if (!(along > 1e-6 && along <= 1.05) || along >= first) continue;
+      const Config inward = -outward(other);
+      if (inward.dot(p.tangent) < 0.9) continue;
+      // Off the chord by its sagitta at most, and some.
+      if ((way - along * move).squaredNorm() > 0.01 * length2) continue;
+      met = other;
+      first = along;
+    }
+    if (met >= 0) {
+      link(here, met);
+      return;
+    }
+    bend = (next->tangent - p.tangent) / std::sqrt(length2);
+    bent = true;
+    const int v = add(*next, -1);
+    link(here, 2 * v);
+    here = 2 * v + 1;
+  }
+}
+
+bool Curves::known(const Config& q, const Config& tangent) const {
+  for (const Vertex& v : vertices_) {
+    for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+      const int next = v.next[side];
+      if (next < 0) continue;
+      // Each chord once, from the point with the smaller number.
+      const Vertex& w = at(next);
+      if (&w < &v) continue;
+      const Config chord = difference(w.q, v.q);
+      const double length = chord.norm();
+      const Config way = difference(q, v.q);
+      const double along = way.dot(chord) / (length * length);
+      if (!(along > -0.1 && along < 1.1)) continue;
+      if (std::abs(tangent.dot(chord)) < 0.8 * length) continue;
+      if ((way - along * chord).norm() < kNear + 0.1 * length) return true;
+    }
+  }
+  return false;
+}
+
+void Curves::add_hidden(const Config& q) {
+  PoseNewton::Linear linear;
+  if (data_.aligned(q) || !data_.newton.linear(q, tool_, linear)) return;
+  const Config tangent = linear.null / linear.null.norm();
+  if (known(q, tangent)) return;
+  const int v = add({q, tangent}, -1);
+  open_ = {2 * v, 2 * v + 1};
+  trace(2 * v + 1);
+  if (open(2 * v)) trace(2 * v);
+}
+
+void Curves::find(std::span<const Config> known_points) {
+  add_seeds();
+  join_neighbours();
+  for (int v = 0; v < static_cast<int>(vertices_.size()); ++v)
+    for (const int half : {2 * v, 2 * v + 1})
+      if (open(half) && at(half).group >= 0) open_.push_back(half);
+  const std::vector<int> ends = open_;
+  for (const int half : ends)
+    if (open(half)) trace(half);
+  for (const Config& q : known_points) add_hidden(q);
+  // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
+  for (std::size_t k = 0; k < data_.forms.size(); ++k) {
+    if (few_[k] == 0) continue;
+    const auto& [value, form] = data_.forms[k];
+    for (const Config6& six : form.starts(tool_, kFarSlack)) {
+      const auto p = data_.newton.nearest(with_joint(six, data_.lock, value), tool_, kPlain, 8);
+      if (p) add_hidden(p->q);
+    }
+  }
+}
+
+template <class Visit>
+void Curves::visit(const Visit& visit) const {
+  std::vector<char> seen(vertices_.size(), 0);
+  std::vector<Point> points;
+  const auto walk = [&](int v, int side) {
+    points.clear();
+    bool closed = false;
+    for (int half = 2 * v + side;;) {
+      const auto index = static_cast<std::size_t>(half / 2);
+      seen[index] = 1;
+      points.push_back({vertices_[index].q, outward(half)});
+      const int next = vertices_[index].next[static_cast<std::size_t>(half % 2)];
+      if (next < 0) break;
+      if (next / 2 == v) {
+        closed = true;
+        break;
+      }
+      half = next ^ 1;  // in by one side, out by the other
+    }
+    visit(points, closed);
   };
-  // How far outside, and which joint is worst.
-  const auto outside = [&](const Config& q, int& worst) {
-    double most = -1e9;
+  for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
+    const auto& vertex = vertices_[static_cast<std::size_t>(v)];
+    if (seen[static_cast<std::size_t>(v)] || (vertex.next[0] >= 0 && vertex.next[1] >= 0)) continue;
+    if (vertex.next[0] < 0 && vertex.next[1] < 0) continue;
+    walk(v, vertex.next[0] < 0 ? 1 : 0);
+  }
+  for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
+    const auto& vertex = vertices_[static_cast<std::size_t>(v)];
+    if (!seen[static_cast<std::size_t>(v)] && vertex.next[0] >= 0 && vertex.next[1] >= 0) walk(v, 1);
+  }
+}
+
+/// A joint comes to a limit.
+struct Crossing {
+  int chord;
+  double u;
+  int joint;
+  bool at_upper, rising;
+  [[nodiscard]] bool leaves() const { return at_upper == rising; }
+};
+
+/// Where start + cubic equals `value`, in [0, 1), appended with whether it rises there.
+template <class Add>
+void cubic_crossings(const Cubic& cubic, int j, double start, double value, const Add& add) {
+  const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j], d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
+  const auto f = [&](double u) { return start - value + u * (b + u * (c + u * d)); };
+  // Monotone between the roots of b + 2 c u + 3 d u^2.
+  std::array<double, 4> knots{0, 1, 1, 1};
+  std::size_t count = 1;
+  const double square = c * c - 3 * d * b;
+  if (square > 0) {
+    const double far = -(c + std::copysign(std::sqrt(square), c));
+    std::array<double, 2> turning{far == 0 ? -1 : b / far, d == 0 ? -1 : far / (3 * d)};
+    if (turning[1] < turning[0]) std::swap(turning[0], turning[1]);
+    for (const double u : turning)
+      if (u > 0 && u < 1) knots[count++] = u;
+  }
+  knots[count] = 1;
+  for (std::size_t k = 0; k < count; ++k) {
+    double low = knots[k], high = knots[k + 1];
+    const double at_low = f(low), at_high = f(high);
+    if ((at_low <= 0) == (at_high <= 0)) continue;
+    for (int step = 0; step < 40 && high - low > 1e-12; ++step) {
+      const double middle = (low + high) / 2;
+      ((f(middle) <= 0) == (at_low <= 0) ? low : high) = middle;
+    }
+    add(high, at_low <= 0);
+  }
+}
+
+bool less(const Config& a, const Config& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// Cuts one curve at the limits.
+class Cutter {
+ public:
+  Cutter(const SelfMotionData& data, const Pose& tool, std::vector<SelfMotionArc>& out) : data_(data), tool_(tool), out_(out) {}
+  void cut(const std::vector<Point>& points, bool closed);
+
+ private:
+  void find_crossings(const std::vector<Point>& points, int chords);
+  /// The point of a chord at which the crossing's joint stands on its limit, exactly; another joint's where that is passed first.
+  bool solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end, int& joint) const;
+  void finish(SelfMotionArc&& arc);
+
+  const SelfMotionData& data_;
+  const Pose& tool_;
+  std::vector<SelfMotionArc>& out_;
+  std::vector<Crossing> crossings_;
+};
+
+void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
+  crossings_.clear();
+  const auto size = points.size();
+  for (int k = 0; k < chords; ++k) {
+    const Point &a = points[static_cast<std::size_t>(k)], &b = points[(static_cast<std::size_t>(k) + 1) % size];
+    std::optional<Cubic> cubic;
+    const std::size_t before = crossings_.size();
     for (int j = 0; j < kDof; ++j) {
       const auto at = static_cast<std::size_t>(j);
-      if (!bounded_[at]) continue;
-      const double value = image(q[j], at), excess = std::max(lower_[at] - value, value - upper_[at]);
+      if (data_.circle[at]) continue;
+      if (!cubic) cubic.emplace(a, b, 1.0);
+      const double middle = (data_.lower[at] + data_.upper[at]) / 2, start = middle + wrap_angle(a.q[j] - middle);
+      // A cubic leaves the range of its ends by 4/27 of the misfit of its tangents at most.
+      const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
+      const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
+      for (const bool upper : {true, false})
+        for (const double turn : {-kTwoPi, 0.0, kTwoPi}) {
+          const double value = (upper ? data_.upper[at] : data_.lower[at]) + turn;
+          if (value < least || value > most) continue;
+          cubic_crossings(*cubic, j, start, value, [&](double u, bool rising) { crossings_.push_back({k, u, j, upper, rising}); });
+        }
+    }
+    const auto here = crossings_.begin() + static_cast<std::ptrdiff_t>(before);
+    std::stable_sort(here, crossings_.end(), [](const Crossing& x, const Crossing& y) { return x.u < y.u; });
+    // Of a range of a whole turn both limits are met at once: out by one, then in by the other.
+    for (auto next = here; next != crossings_.end() && next + 1 != crossings_.end(); ++next)
+      if (next[0].joint == next[1].joint && next[1].u - next[0].u < 1e-9 && next[1].leaves() && !next[0].leaves())
+        std::swap(next[0], next[1]);
+  }
+}
+
+bool Cutter::solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end, int& joint) const {
+  const Point &a = points[static_cast<std::size_t>(crossing.chord)],
+              &b = points[(static_cast<std::size_t>(crossing.chord) + 1) % points.size()];
+  const Cubic cubic(a, b, 1.0);
+  Config guess = a.q + cubic.at(crossing.u);
+  joint = crossing.joint;
+  bool at_upper = crossing.at_upper;
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    const auto at = static_cast<std::size_t>(joint);
+    const double value = at_upper ? data_.upper[at] : data_.lower[at];
+    Config start = guess;
+    start[joint] = value;
+    const auto found = data_.newton.with_joint_at(start, tool_, joint, value);
+    if (!found || difference(found->q, guess).norm() > 0.1) return false;
+    end = *found;
+    for (int j = 0; j < kDof; ++j)
+      if (j != joint) end.q[j] = data_.image(end.q[j], static_cast<std::size_t>(j));
+    if (end.tangent.dot(cubic.d) < 0) end.tangent = -end.tangent;
+    // Where another joint has just passed its own limit, that one ends the arc.
+    int worst = -1;
+    double most = 0;
+    for (int j = 0; j < kDof; ++j) {
+      const auto other = static_cast<std::size_t>(j);
+      if (data_.circle[other] || j == joint) continue;
+      const double excess = std::max(data_.lower[other] - end.q[j], end.q[j] - data_.upper[other]);
       if (excess > most) {
         most = excess;
         worst = j;
       }
     }
-    return most;
-  };
-  std::vector<SelfMotionArc> result;
-  for (Curve& curve : trace_all(chain_, tool, lock_, forms_)) {
-    // Extrema of bounded joints near their limits become points, so that no short piece hides between two points.
-    std::vector<Point> points;
-    const std::size_t count = curve.points.size(), chords = curve.closed ? count : count - 1;
-    for (std::size_t k = 0; k < count; ++k) {
-      points.push_back(curve.points[k]);
-      if (k >= chords) break;
-      const Point &a = curve.points[k], &b = curve.points[(k + 1) % count];
-      const Config way = difference(b.q, a.q);
-      std::vector<std::pair<double, Point>> extrema;
-      for (int j = 0; j < kDof; ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        if (!bounded_[at] || (a.t[j] > 0) == (b.t[j] > 0)) continue;
-        const double value = image(a.q[j], at);
-        if (std::min(std::abs(value - lower_[at]), std::abs(value - upper_[at])) > kStep) continue;
-        double low = 0, high = 1;
-        std::optional<Point> extremum;
-        for (int halving = 0; halving < 20; ++halving) {
-          const double middle = (low + high) / 2;
-          const auto q = on_curve(chain_, tool, a.q + middle * way);
-          if (!q) break;
-          Point p{*q, tangent(chain_, *q)};
-          if (p.t.dot(way) < 0) p.t = -p.t;
-          extremum = p;
-          ((p.t[j] > 0) == (a.t[j] > 0) ? low : high) = middle;
-        }
-        if (extremum) extrema.emplace_back(low, *extremum);
-      }
-      // One joint may come inside its limit just before another leaves: the least excess on a chord between two outside points.
-      int worst = -1;
-      const double at_a = outside(a.q, worst), at_b = outside(b.q, worst);
-      if (at_a > 0 && at_b > 0 && std::max(at_a, at_b) < kStep) {
-        double low = 0, high = 1;
-        for (int third = 0; third < 12; ++third) {
-          const double left = low + (high - low) / 3, right = high - (high - low) / 3;
-          const auto p = on_curve(chain_, tool, a.q + left * way), q = on_curve(chain_, tool, a.q + right * way);
-          if (!p || !q) break;
-          const double at_p = outside(*p, worst), at_q = outside(*q, worst);
-          if (at_p <= 0 || at_q <= 0) {
-            extrema.emplace_back(at_p <= 0 ? left : right, Point{at_p <= 0 ? *p : *q, way.normalized()});
-            break;
-          }
-          (at_p < at_q ? high : low) = at_p < at_q ? right : left;
-        }
-      }
-      std::stable_sort(extrema.begin(), extrema.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
-      for (const auto& [along, p] : extrema) points.push_back(p);
-    }
-    const auto inside = [&](const Config& q) {
-      int worst = -1;
-      return outside(q, worst) <= 0;
-    };
-    std::vector<char> in;
-    for (const Point& p : points) in.push_back(inside(p.q));
-    const std::size_t size = points.size();
-    // From an inside point to an outside one: where the limit is met, with its joint exactly on it.
-    const auto cut = [&](const Config& from, const Config& to, int& joint) {
-      Config low = from, high = low + difference(to, from);
-      for (int halving = 0; halving < 30; ++halving) {
-        const auto middle = on_curve(chain_, tool, (low + high) / 2);
-        if (!middle) break;
-        (inside(*middle) ? low : high) = *middle;
-      }
-      outside(high, joint);
-      const auto at = static_cast<std::size_t>(joint);
-      const double value = image(high[joint], at);
-      Config end = low;
-      end[joint] = std::abs(value - lower_[at]) < std::abs(value - upper_[at]) ? lower_[at] : upper_[at];
-      if (const auto exact = on_curve(chain_, tool, end, joint)) return *exact;
-      joint = -1;
-      return low;
-    };
-    const auto finish = [&](SelfMotionArc arc) {
-      for (Config& q : arc.q)
-        for (int j = 0; j < kDof; ++j) {
-          const auto at = static_cast<std::size_t>(j);
-          // Not through the image: ends stand on limits bit for bit.
-          if (!bounded_[at] || q[j] < lower_[at] || q[j] > upper_[at]) q[j] = image(q[j], at);
-        }
-      const auto less = [](const Config& a, const Config& b) {
-        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-      };
-      if (arc.closed) {
-        std::rotate(arc.q.begin(), std::min_element(arc.q.begin(), arc.q.end(), less), arc.q.end());
-        if (less(arc.q.back(), arc.q[1])) std::reverse(arc.q.begin() + 1, arc.q.end());
-      } else if (less(arc.q.back(), arc.q.front())) {
-        std::reverse(arc.q.begin(), arc.q.end());
-        std::swap(arc.first_limit, arc.last_limit);
-      }
-      result.push_back(std::move(arc));
-    };
-    const auto first_out = static_cast<std::size_t>(std::find(in.begin(), in.end(), 0) - in.begin());
-    if (first_out == size) {
-      SelfMotionArc arc;
-      arc.closed = curve.closed;
-      for (const Point& p : points) arc.q.push_back(p.q);
-      finish(std::move(arc));
-      continue;
-    }
-    // Pieces, from an outside point round a closed curve, or from end to end of an open one.
-    const std::size_t origin = curve.closed ? first_out : 0;
-    for (std::size_t k = 0; k < size;) {
-      const auto at = [&](std::size_t n) { return (origin + n) % size; };
-      if (!in[at(k)]) {
-        ++k;
-        continue;
-      }
-      SelfMotionArc arc;
-      if (k > 0) arc.q.push_back(cut(points[at(k)].q, points[at(k - 1)].q, arc.first_limit));
-      for (; k < size && in[at(k)]; ++k) arc.q.push_back(points[at(k)].q);
-      if (k < size || curve.closed) arc.q.push_back(cut(arc.q.back(), points[at(k)].q, arc.last_limit));
-      finish(std::move(arc));
-    }
+    if (worst < 0) return true;
+    at_upper = end.q[worst] > data_.upper[static_cast<std::size_t>(worst)];
+    joint = worst;
+    guess = end.q;
   }
-  std::stable_sort(result.begin(), result.end(), [](const SelfMotionArc& a, const SelfMotionArc& b) {
-    return std::lexicographical_compare(a.q[0].begin(), a.q[0].end(), b.q[0].begin(), b.q[0].end());
+  return false;
+}
+
+void Cutter::finish(SelfMotionArc&& arc) {
+  const auto reverse = [&] {
+    std::reverse(arc.q.begin(), arc.q.end());
+    std::reverse(arc.tangent.begin(), arc.tangent.end());
+    for (Config& t : arc.tangent) t = -t;
+    std::swap(arc.limit[0], arc.limit[1]);
+  };
+  for (Config& q : arc.q)
+    for (int j = 0; j < kDof; ++j) q[j] = data_.image(q[j], static_cast<std::size_t>(j));
+  if (arc.closed) {
+    const auto by_lock = [&](const Config& a, const Config& b) {
+      return a[data_.lock] != b[data_.lock] ? a[data_.lock] < b[data_.lock] : less(a, b);
+    };
+    const auto first = std::min_element(arc.q.begin(), arc.q.end(), by_lock) - arc.q.begin();
+    std::rotate(arc.q.begin(), arc.q.begin() + first, arc.q.end());
+    std::rotate(arc.tangent.begin(), arc.tangent.begin() + first, arc.tangent.end());
+    if (arc.tangent[0][data_.lock] < 0) {
+      reverse();
+      std::rotate(arc.q.begin(), arc.q.end() - 1, arc.q.end());
+      std::rotate(arc.tangent.begin(), arc.tangent.end() - 1, arc.tangent.end());
+    }
+  } else if (less(arc.q.back(), arc.q.front())) {
+    reverse();
+  }
+  // Simpson's rule on the cubics.
+  double length = 0;
+  arc.length.assign(1, 0);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(arc.chords()); ++k) {
+    const std::size_t next = (k + 1) % arc.q.size();
+    const Cubic cubic({arc.q[k], arc.tangent[k]}, {arc.q[next], arc.tangent[next]}, 1);
+    const Config middle = 1.5 * cubic.d - 0.25 * (cubic.m0 + cubic.m1);
+    length += (data_.scale.cwiseProduct(cubic.m0).norm() + 4 * data_.scale.cwiseProduct(middle).norm() +
+               data_.scale.cwiseProduct(cubic.m1).norm()) /
+              6;
+    arc.length.push_back(length);
+  }
+  out_.push_back(std::move(arc));
+}
+
+void Cutter::cut(const std::vector<Point>& points, bool closed) {
+  const int size = static_cast<int>(points.size()), chords = closed ? size : size - 1;
+  if (chords < 1) return;
+  find_crossings(points, chords);
+  const auto at = [&](int k) -> const Point& { return points[static_cast<std::size_t>(k % size)]; };
+  if (crossings_.empty()) {
+    if (!data_.inside(points[0].q)) return;
+    SelfMotionArc arc;
+    arc.closed = closed;
+    for (const Point& p : points) {
+      arc.q.push_back(p.q);
+      arc.tangent.push_back(p.tangent);
+    }
+    finish(std::move(arc));
+    return;
+  }
+  // Between two crossings, one after the other; an open curve has a piece before the first and one after the last.
+  const int count = static_cast<int>(crossings_.size());
+  for (int k = closed ? 0 : -1; k < count; ++k) {
+    const Crossing* from = k >= 0 ? &crossings_[static_cast<std::size_t>(k)] : nullptr;
+    const bool last = k + 1 == count;
+    const Crossing* to = !last ? &crossings_[static_cast<std::size_t>(k + 1)] : closed ? &crossings_[0] : nullptr;
+    if (from != nullptr && from->leaves()) continue;
+    if (to != nullptr && !to->leaves()) continue;
+    // Points from `first` to `end` - 1, counted on over the wrap.
+    const int first = from != nullptr ? from->chord + 1 : 0;
+    const int end = (to != nullptr ? to->chord + 1 : size) + (closed && last ? size : 0);
+    bool within = false;
+    if (first < end) {
+      within = data_.inside(at(first).q);
+    } else {
+      const Cubic cubic(at(from->chord), at(from->chord + 1), 1.0);
+      within = data_.inside(at(from->chord).q + cubic.at((from->u + to->u) / 2));
+    }
+    if (!within) continue;
+    SelfMotionArc arc;
+    Point p;
+    if (from != nullptr) {
+      if (!solve_end(points, *from, p, arc.limit[0])) continue;
+      arc.q.push_back(p.q);
+      arc.tangent.push_back(p.tangent);
+    }
+    for (int n = first; n < end; ++n) {
+      // A point that its neighbour on the limit has come to is that neighbour.
+      if (from != nullptr && n == first && difference(at(n).q, arc.q[0]).squaredNorm() < 1e-16) continue;
+      arc.q.push_back(at(n).q);
+      arc.tangent.push_back(at(n).tangent);
+    }
+    if (to != nullptr) {
+      if (!solve_end(points, *to, p, arc.limit[1])) continue;
+      if (arc.q.size() > 1 && difference(arc.q.back(), p.q).squaredNorm() < 1e-16) {
+        arc.q.pop_back();
+        arc.tangent.pop_back();
+      }
+      arc.q.push_back(p.q);
+      arc.tangent.push_back(p.tangent);
+    }
+    if (arc.q.size() > 1) finish(std::move(arc));
+  }
+}
+
+/// Values of the middle joint of a triple at which the axes on both sides of it are one line, or one direction where three
+/// parallel axes go before.
+void add_alignments(const Chain& chain, int first, std::vector<Alignment>& out) {
+  const auto f = static_cast<std::size_t>(first);
+  const Vector3d &a = chain.axis[f], &b = chain.axis[f + 1], &c = chain.axis[f + 2];
+  const Vector3d along = b.dot(c) * b, across = c - along, aside = b.cross(c);
+  // det(a, b, c) vanishes where across and aside together lie in the plane of a and b.
+  const Vector3d normal = a.cross(b);
+  const double angle = std::atan2(-normal.dot(across), normal.dot(aside));
+  for (const double x : {angle, angle + kPi}) {
+    const Vector3d turned = along + std::cos(x) * across + std::sin(x) * aside;
+    if (a.cross(turned).norm() < kMeets) out.push_back({first + 1, wrap_angle(x)});
+  }
+}
+
+std::vector<Alignment> alignments_of(const Chain& chain) {
+  std::vector<Alignment> result;
+  const auto distance = [&](std::size_t i, const Vector3d& p) {
+    const Vector3d d = p - chain.point[i];
+    return (d - chain.axis[i].dot(d) * chain.axis[i]).norm();
+  };
+  for (std::size_t k = 0; k + 2 < kDof; ++k) {
+    // Where axes k and k + 1 come nearest; do all three meet there?
+    const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1];
+    const double sine2 = a.cross(b).squaredNorm();
+    if (sine2 < 1e-6) continue;
+    const Vector3d d = chain.point[k + 1] - chain.point[k];
+    const Vector3d meet = chain.point[k] + (d.cross(b).dot(a.cross(b)) / sine2) * a;
+    if (distance(k + 1, meet) < kMeets && distance(k + 2, meet) < kMeets) add_alignments(chain, static_cast<int>(k), result);
+  }
+  for (std::size_t k = 0; k + 2 < kDof; ++k) {
+    if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets || chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets) continue;
+    // A fourth axis parallel to these three, beyond one joint.
+    if (k + 4 < kDof) add_alignments(chain, static_cast<int>(k) + 2, result);
+    if (k >= 2) add_alignments(chain, static_cast<int>(k) - 2, result);
+  }
+  return result;
+}
+
+}  // namespace
+
+SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
+  auto data = std::make_unique<SelfMotionData>(chain);
+  data->lock = method.best;
+  const double largest = *std::max_element(weights.begin(), weights.end());
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    data->lower[j] = limit.lower + margin;
+    data->upper[j] = limit.upper - margin;
+    const double range = data->upper[j] - data->lower[j];
+    data->circle[j] = limit.continuous || range > kTwoPi + kSliver;
+    if (range > kTwoPi) data->upper[j] = data->lower[j] + kTwoPi;
+    const double weight = largest > 0 ? std::max(kLeastWeight, weights[j] / largest) : 1;
+    data->scale[static_cast<Eigen::Index>(j)] = weight;
+    data->scale2[static_cast<Eigen::Index>(j)] = weight * weight;
+  }
+  data->alignments = alignments_of(chain);
+  // Half a cell from 0, so that no value is a multiple of 90 degrees.
+  for (int k = 0; k < kSeeds; ++k) {
+    const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
+    if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
+  }
+  data_ = std::move(data);
+}
+
+SelfMotion::~SelfMotion() = default;
+
+std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
+  std::vector<SelfMotionArc> result;
+  Curves curves(*data_, tool);
+  curves.find({});
+  curves.visit([&](const std::vector<Point>& points, bool closed) {
+    SelfMotionArc& arc = result.emplace_back();
+    arc.closed = closed;
+    for (const Point& p : points) {
+      arc.q.push_back(p.q);
+      arc.tangent.push_back(p.tangent);
+    }
   });
   return result;
+}
+
+std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known) const {
+  std::vector<SelfMotionArc> result;
+  Curves curves(*data_, tool);
+  curves.find(known);
+  Cutter cutter(*data_, tool, result);
+  curves.visit([&](const std::vector<Point>& points, bool closed) { cutter.cut(points, closed); });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const SelfMotionArc& a, const SelfMotionArc& b) { return less(a.q[0], b.q[0]); });
+  return result;
+}
+
+std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const {
+  const auto p = data_->newton.nearest(q, tool, data_->scale2, kImageSteps);
+  if (!p) return std::nullopt;
+  return p->q;
+}
+
+std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const {
+  const auto p = data_->newton.nearest(arc.at(chord, u), tool, kPlain, kImageSteps);
+  if (!p) return std::nullopt;
+  Config q = p->q;
+  if (!canonical(q)) return std::nullopt;
+  return q;
+}
+
+bool SelfMotion::canonical(Config& q) const {
+  bool inside = true;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    double& value = q[static_cast<Eigen::Index>(j)];
+    value = data_->image(value, j);
+    inside = inside && (data_->circle[j] || (value >= data_->lower[j] && value <= data_->upper[j]));
+  }
+  return inside;
+}
+
+const std::array<bool, kDof>& SelfMotion::circles() const {
+  return data_->circle;
+}
+
+Config SelfMotionArc::at(int chord, double u) const {
+  const auto k = static_cast<std::size_t>(chord), next = (k + 1) % q.size();
+  return q[k] + Cubic({q[k], tangent[k]}, {q[next], tangent[next]}, 1).at(u);
 }
 
 }  // namespace swivel

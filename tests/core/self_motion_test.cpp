@@ -38,22 +38,22 @@ bool solve(const Chain& chain, const Pose& tool, Config& q) {
   return false;
 }
 
+/// Of q from the arc, by chords between four points of each cubic.
 double distance_to(const SelfMotionArc& arc, const Config& q) {
   double least = 1e9;
-  for (std::size_t k = 0; k < arc.q.size(); ++k) {
-    if (k + 1 == arc.q.size() && !arc.closed) {
-      Config d;
-      for (int j = 0; j < kDof; ++j) d[j] = turn(q[j] - arc.q[k][j]);
-      least = std::min(least, d.norm());
-      break;
-    }
-    const Config &a = arc.q[k], &b = arc.q[(k + 1) % arc.q.size()];
+  const auto between = [&](const Config& from, const Config& to) {
     Config d, c;
     for (int j = 0; j < kDof; ++j) {
-      d[j] = turn(q[j] - a[j]);
-      c[j] = turn(b[j] - a[j]);
+      d[j] = turn(q[j] - from[j]);
+      c[j] = turn(to[j] - from[j]);
     }
     least = std::min(least, (d - std::clamp(d.dot(c) / std::max(c.squaredNorm(), 1e-30), 0.0, 1.0) * c).norm());
+  };
+  for (int chord = 0; chord < arc.chords(); ++chord) {
+    Config d;
+    for (int j = 0; j < kDof; ++j) d[j] = turn(q[j] - arc.q[static_cast<std::size_t>(chord)][j]);
+    if (d.norm() > 1) continue;
+    for (int part = 0; part < 4; ++part) between(arc.at(chord, part / 4.0), arc.at(chord, (part + 1) / 4.0));
   }
   return least;
 }
@@ -71,59 +71,129 @@ bool inside(const Chain& chain, Config& q) {
   return true;
 }
 
+struct Coverage {
+  int poses = 0, arcs = 0, seeds = 0, missed = 0, ends = 0;
+  double length = 0, residual = 0, farthest = 0;
+};
+
+/// Arcs of one pose against random seeds, `own` among them.
+void compare(const Chain& chain, const Pose& tool, const std::vector<SelfMotionArc>& arcs, const Config* own, int seeds,
+             Random& random, Coverage& coverage) {
+  ++coverage.poses;
+  coverage.arcs += static_cast<int>(arcs.size());
+  for (const SelfMotionArc& arc : arcs) {
+    ASSERT_EQ(arc.q.size(), arc.tangent.size());
+    ASSERT_EQ(arc.length.size(), arc.q.size() + (arc.closed ? 1 : 0));
+    coverage.length += arc.whole();
+    for (std::size_t k = 0; k < arc.q.size(); ++k) {
+      coverage.residual = std::max(coverage.residual, pose_distance(chain.tool(arc.q[k]), tool));
+      Config copy = arc.q[k];
+      EXPECT_TRUE(inside(chain, copy));
+      EXPECT_EQ(copy, arc.q[k]) << "not in the winding of its limits";
+      EXPECT_LT((chain.jacobian(copy) * arc.tangent[k]).norm(), 1e-4);
+    }
+    for (const std::size_t end : {std::size_t{0}, std::size_t{1}}) {
+      if (arc.limit[end] < 0) continue;
+      ++coverage.ends;
+      const double value = (end == 0 ? arc.q.front() : arc.q.back())[arc.limit[end]];
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(arc.limit[end])];
+      EXPECT_TRUE(value == limit.lower || value == limit.upper);
+    }
+  }
+  for (int k = 0; k < seeds; ++k) {
+    Config x;
+    for (int j = 0; j < kDof; ++j) x[j] = random.uniform(-kPi, kPi);
+    if (k == 0 && own != nullptr) x = *own;
+    if (!solve(chain, tool, x) || !inside(chain, x)) continue;
+    ++coverage.seeds;
+    double nearest = 1e9;
+    for (const SelfMotionArc& arc : arcs) nearest = std::min(nearest, distance_to(arc, x));
+    coverage.missed += nearest > 0.02;
+    coverage.farthest = std::max(coverage.farthest, nearest);
+  }
+}
+
+void print(const std::string& name, const Coverage& c) {
+  std::printf(
+      "  %s: %d poses, %.1f arcs a pose, mean length %.2f, %d ends on limits, residual %.1e; %d seeds, off every arc %d, farthest "
+      "%.3f\n",
+      name.c_str(), c.poses, static_cast<double>(c.arcs) / c.poses, c.length / std::max(1, c.arcs), c.ends, c.residual, c.seeds,
+      c.missed, c.farthest);
+}
+
+std::vector<ArmTable> arms() {
+  return {arms_7r()[0], arms_7r()[1], arms_7r()[3], arms_7r()[6], arms_7r()[7],
+          arms_6r()[0], arms_6r()[3], arms_6r()[4], arms_6r()[5]};
+}
+
+Config random_configuration(const Chain& chain, Random& random) {
+  Config q;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    q[j] = limit.continuous ? random.uniform(-kPi, kPi) : random.uniform(limit.lower, limit.upper);
+  }
+  return q;
+}
+
 TEST(SelfMotion, MissesNoArcThatRandomSeedsFind) {
   Random random(seed("SelfMotion.MissesNoArcThatRandomSeedsFind"));
-  int seeds = 0, poses = 0;
-  for (ArmTable table : {arms_7r()[0], arms_7r()[1], arms_7r()[3], arms_6r()[0], arms_6r()[4]}) {
+  for (const ArmTable& table : arms()) {
     const Chain chain = chain_of(table);
     const SelfMotion motion(chain, lock_method(chain), 0);
-    int missed = 0, arcs_in_all = 0;
-    double worst = 0, length = 0;
-    for (int trial = 0; trial < trials(8); ++trial) {
-      Config q;
-      for (int j = 0; j < kDof; ++j) {
-        const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-        q[j] = limit.continuous ? random.uniform(-kPi, kPi) : random.uniform(limit.lower, limit.upper);
-      }
+    Coverage coverage;
+    for (int trial = 0; trial < trials(4); ++trial) {
+      const Config q = random_configuration(chain, random);
       const Pose tool = chain.tool(q);
-      const auto arcs = motion.arcs(tool);
-      ++poses;
-      arcs_in_all += static_cast<int>(arcs.size());
-      for (const SelfMotionArc& arc : arcs) {
-        for (std::size_t k = 0; k < arc.q.size(); ++k) {
-          worst = std::max(worst, pose_distance(chain.tool(arc.q[k]), tool));
-          Config copy = arc.q[k];
-          EXPECT_TRUE(inside(chain, copy));
-          if (k > 0) {
-            double step = 0;
-            for (int j = 0; j < kDof; ++j) step += turn(arc.q[k][j] - arc.q[k - 1][j]) * turn(arc.q[k][j] - arc.q[k - 1][j]);
-            EXPECT_LE(std::sqrt(step), 0.1 + 1e-9);
-            length += std::sqrt(step);
-          }
-        }
-        if (arc.first_limit >= 0) {
-          const JointLimit& limit = chain.limit[static_cast<std::size_t>(arc.first_limit)];
-          EXPECT_TRUE(arc.q[0][arc.first_limit] == limit.lower || arc.q[0][arc.first_limit] == limit.upper);
-        }
-      }
-      for (int k = 0; k < 500; ++k) {
-        Config x;
-        for (int j = 0; j < kDof; ++j) x[j] = random.uniform(-kPi, kPi);
-        if (k == 0) x = q;
-        if (!solve(chain, tool, x) || !inside(chain, x)) continue;
-        ++seeds;
-        double nearest = 1e9;
-        for (const SelfMotionArc& arc : arcs) nearest = std::min(nearest, distance_to(arc, x));
-        missed += nearest > 0.02;
+      compare(chain, tool, motion.arcs(tool), &q, 150, random, coverage);
+    }
+    print(table.name, coverage);
+    EXPECT_EQ(coverage.poses, trials(4));
+    EXPECT_GT(coverage.seeds, 20 * coverage.poses);
+    EXPECT_LE(coverage.residual, 1e-9);
+    EXPECT_EQ(coverage.missed, 0) << table.name;
+  }
+}
+
+TEST(SelfMotion, MissesNoArcNearAlignment) {
+  Random random(seed("SelfMotion.MissesNoArcNearAlignment"));
+  for (const auto& [table, joint] :
+       {std::pair(arms_7r()[0], 1), std::pair(arms_7r()[3], 5), std::pair(arms_6r()[0], 4), std::pair(arms_6r()[3], 4)}) {
+    const Chain chain = chain_of(table);
+    const SelfMotion motion(chain, lock_method(chain), 0);
+    Coverage coverage;
+    for (int trial = 0; trial < trials(4); ++trial) {
+      Config q = random_configuration(chain, random);
+      q[joint] = (random.coin() ? 1 : -1) * std::pow(10.0, random.uniform(-5, -1));
+      const Pose tool = chain.tool(q);
+      compare(chain, tool, motion.arcs(tool), &q, 150, random, coverage);
+    }
+    print(table.name + " near alignment", coverage);
+    EXPECT_EQ(coverage.poses, trials(4));
+    EXPECT_EQ(coverage.missed, 0) << table.name;
+  }
+}
+
+TEST(SelfMotion, MissesNoArcAlongPaths) {
+  Random random(seed("SelfMotion.MissesNoArcAlongPaths"));
+  for (const ArmTable& table : arms()) {
+    const Chain chain = chain_of(table);
+    const SelfMotion motion(chain, lock_method(chain), 0);
+    Coverage coverage;
+    for (int trial = 0; trial < trials(1); ++trial) {
+      const Config q = random_configuration(chain, random);
+      Pose tool = chain.tool(q);
+      const Vector3d way = 0.02 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+      const Eigen::AngleAxisd turning(random.uniform(0, 0.03), way.normalized());
+      for (int layer = 0; layer < 8; ++layer) {
+        compare(chain, tool, motion.arcs(tool), nullptr, 60, random, coverage);
+        tool.translation() += way;
+        tool.rotate(turning);
       }
     }
-    std::printf("  %s: %.1f arcs a pose, mean length %.2f, residual %.1e, seeds off every arc %d\n", table.name.c_str(),
-                static_cast<double>(arcs_in_all) / trials(8), length / std::max(1, arcs_in_all), worst, missed);
-    EXPECT_LE(worst, 1e-9);
-    EXPECT_EQ(missed, 0) << table.name;
+    print(table.name + " along paths", coverage);
+    EXPECT_EQ(coverage.poses, 8 * trials(1));
+    EXPECT_EQ(coverage.missed, 0) << table.name;
   }
-  EXPECT_GT(seeds, 20 * poses);
-  EXPECT_EQ(poses, 5 * trials(8));
 }
 
 }  // namespace

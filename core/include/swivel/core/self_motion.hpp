@@ -1,39 +1,63 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <memory>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "swivel/core/closed_form.hpp"
 
 namespace swivel {
 
-/// A connected piece of a self-motion curve inside the joint limits: points along it, neighbours at most 0.1 rad apart (Euclidean),
-/// values inside the limits where a joint's range is below a turn, in (-pi, pi] elsewhere. Each point reaches the pose within 1e-9.
+/// A connected piece of a self-motion curve inside the joint limits, as points with unit tangents; between two points it is the
+/// cubic with their tangents, to some 1e-4 rad. Each point reaches the pose within 1e-10. Values lie inside the limits; of joints
+/// that are circles, in [-pi, pi].
 struct SelfMotionArc {
-  std::vector<Config>
-      q;  ///< from the lexicographically smaller end; a closed arc from its least point, towards the smaller neighbour
-  bool closed = false;  ///< the first point follows the last
-  int first_limit = -1,
-      last_limit = -1;  ///< joint (0-based) that stands on its limit there, exactly; -1: none (closed or singular)
+  std::vector<Config> q;        ///< from the lexicographically smaller end; a closed arc from its least point, by lock and joints
+  std::vector<Config> tangent;  ///< dq per rad of arc length (Euclidean, unweighted), in the order of the points
+  std::vector<double> length;   ///< weighted length from the first point, rad; of a closed arc also that of the first, once round
+  bool closed = false;          ///< the first point follows the last
+  std::array<int, 2> limit{-1, -1};  ///< joint (0-based) that stands on its limit at the first and last point, exactly; -1: none
+
+  [[nodiscard]] int chords() const { return static_cast<int>(q.size()) - (closed ? 0 : 1); }
+  [[nodiscard]] double whole() const { return length.back(); }
+  /// The point of chord k at u in [0, 1], to the accuracy of the cubic; values may pass +-pi.
+  [[nodiscard]] Config at(int chord, double u) const;
 };
 
-/// Curves along which a seven-joint chain moves while the tool stays, by tracing from the closed form at values of the lock, inside
-/// and outside the limits: in-limit seeds alone miss arcs. A six-joint arm with a free tool axis is such a chain, its last joint
-/// the turn of the tool.
+struct SelfMotionData;
+
+/// Curves along which a seven-joint chain moves while the tool stays. A six-joint arm with a free tool axis is such a chain, its
+/// last joint the turn of the tool.
+/// The closed form at 32 values of the locked joint gives points inside and outside the limits (in-limit points alone miss arcs);
+/// neighbouring values are joined by their tangents; folds between them are traced. Curves between two lock values are found from
+/// complex roots. Pieces end where a joint meets its limit, and where a triple is within 1e-6 rad of alignment. A bounded joint
+/// with a range of more than a turn is a circle here.
 class SelfMotion {
  public:
-  /// `method` must have a lock. Limits are kept with `margin` (rad).
-  SelfMotion(const Chain& chain, const LockMethod& method, double margin);
-  /// Arcs in the order of their first points; deterministic.
-  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool) const;
-  /// The whole curves, limits ignored, as points in no given winding; for tests and drawings.
+  /// `method` must have a lock. Limits are kept with `margin` (rad). Lengths and images are weighted by `weights`, in proportion;
+  /// a weight below a hundredth of the largest counts as that.
+  SelfMotion(const Chain& chain, const LockMethod& method, double margin,
+             const std::array<double, kDof>& weights = {1, 1, 1, 1, 1, 1, 1});
+  ~SelfMotion();
+
+  /// Arcs in the order of their first points; deterministic. `known`: configurations at this pose that may lie on curves of which
+  /// the closed form shows nothing.
+  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool, std::span<const Config> known = {}) const;
+  /// The whole curves, limits ignored; joints in no given winding.
   [[nodiscard]] std::vector<SelfMotionArc> curves(const Pose& tool) const;
 
+  /// The configuration at the pose to which at most six Newton steps of least weighted norm lead from q.
+  [[nodiscard]] std::optional<Config> image(const Config& q, const Pose& tool) const;
+  /// The point of the pose's arc at chord k and u, exactly on the curve and within the limits. None where Newton fails.
+  [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const;
+  /// q with every joint in the winding that arcs have; whether it is inside the limits.
+  [[nodiscard]] bool canonical(Config& q) const;
+  /// Joints that are circles here: continuous, or a range of more than a turn.
+  [[nodiscard]] const std::array<bool, kDof>& circles() const;
+
  private:
-  Chain chain_;
-  int lock_;
-  std::array<double, kDof> lower_{}, upper_{};
-  std::array<bool, kDof> bounded_{};
-  std::vector<std::pair<double, ClosedForm>> forms_;  // by lock value
+  std::unique_ptr<const SelfMotionData> data_;
 };
 
 }  // namespace swivel
