@@ -274,11 +274,12 @@ class ProblemReader {
   }
 
   void read_resolution(const YamlValue& value) {
-    const YamlSection section = value.section({"ds", "dphi", "dalpha"});
+    const YamlSection section = value.section({"ds", "dphi", "dalpha", "arc"});
     Resolution& resolution = problem_.resolution;
     set(section, "ds", Range::kLength, resolution.ds);
     set(section, "dphi", Range::kPositive, resolution.dphi);
     set(section, "dalpha", Range::kPositive, resolution.dalpha);
+    set(section, "arc", Range::kPositive, resolution.arc);
     if (resolution.dphi > kTwoPi) section.find("dphi")->fail("is more than a turn", "a finite number > 0, at most 2*pi");
   }
 

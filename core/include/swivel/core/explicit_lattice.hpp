@@ -8,7 +8,7 @@ namespace swivel {
 
 /// A lattice whose nodes are listed, any number a layer: of arms whose self-motion is no circle of arm angles. Any node may follow
 /// any node of the layer before, as far as the joints' steps allow.
-class ExplicitLattice final : public Lattice {
+class ExplicitLattice : public Lattice {
  public:
   struct Point {
     Config q;
@@ -19,7 +19,9 @@ class ExplicitLattice final : public Lattice {
   };
   /// Nodes by layer, in the order that settles ties; all must reach the layer's tool pose within the limits. Throws InputError for
   /// limits.step_error, which needs a closed form, and std::invalid_argument where the layers are not those of the path.
-  ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem, std::vector<std::vector<Point>> layers);
+  /// `circles`: joints whose moves are taken on the circle besides the continuous ones.
+  ExplicitLattice(const Chain& chain, const ToolPath& path, const Problem& problem, std::vector<std::vector<Point>> layers,
+                  const std::array<bool, kDof>& circles = {});
 
   [[nodiscard]] const Point& point(int layer, int slot) const {
     return points_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];

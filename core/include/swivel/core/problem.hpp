@@ -65,6 +65,7 @@ struct Resolution {
   double ds = 0.005;    ///< m
   double dphi = 0.05;   ///< rad
   double dalpha = 0.1;  ///< rad of tool rotation
+  double arc = 0.2;     ///< rad of self-motion between nodes, of arms that have no arm angle
   bool operator==(const Resolution&) const = default;
 };
 

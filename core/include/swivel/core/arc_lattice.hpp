@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <variant>
+#include <vector>
+
+#include "swivel/core/budget.hpp"
+#include "swivel/core/explicit_lattice.hpp"
+#include "swivel/core/self_motion.hpp"
+
+namespace swivel {
+
+/// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs of self-motion (self_motion.hpp).
+/// Transported nodes. Layer 0: the ends of arcs, and points between them at most 1.5 `resolution.arc` apart. Every other layer: the
+/// ends; the images of the nodes of the layer before, by Newton steps of least weighted norm, unless nearer than half of
+/// `resolution.arc` to a node kept before or to the end; gaps of more than 1.5 `resolution.arc` are filled evenly. So a motion that
+/// drifts along with the arm meets nodes, which a grid of any coordinate does not give. The nodes depend on geometry, weights and
+/// limits of the joints alone: obstacles never change them.
+/// A bounded joint with a range of more than a turn is a circle here: unwrap() finds the values.
+class ArcLattice final : public ExplicitLattice {
+ public:
+  /// `method` must have a lock. Throws Stopped.
+  ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, const Budget& budget = {});
+
+  /// Two bits, for reports: sign of the determinant of the triple (0 where there is none), and of that of the other three joints.
+  [[nodiscard]] int branch(int layer, int slot) const override;
+  /// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on axis 2 nearest axis 1 to the
+  /// foot on axis 6 nearest axis 7, measured from the base's vertical.
+  [[nodiscard]] double phi(int layer, int slot) const override;
+
+  /// Arcs of all layers.
+  [[nodiscard]] std::int64_t arcs() const { return layers_.arcs; }
+  /// Joints taken as circles although they are bounded.
+  [[nodiscard]] const std::array<bool, kDof>& circles() const { return layers_.circles; }
+
+  using Rows = std::vector<Config>;
+  using Joints = std::array<bool, kDof>;
+  /// The rows of a path in the first winding, joint by joint, that keeps all of them inside the limits; or the joints that have
+  /// none.
+  [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
+  /// The same nodes with each value of these joints that lies within the limits as a node of its own: they are circles no more.
+  [[nodiscard]] ArcLattice with_windings(const Joints& joints) const;
+
+ private:
+  struct Layers {
+    std::vector<std::vector<Point>> points;
+    std::array<bool, kDof> circles{};
+    std::int64_t arcs = 0;
+  };
+  static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
+                      const Budget& budget);
+  ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, Layers&& layers);
+
+  LockMethod method_;
+  Problem problem_;  // for with_windings
+  Layers layers_;    // without the points, which the base has
+};
+
+}  // namespace swivel

@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/arc_lattice.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Point = ExplicitLattice::Point;
+
+constexpr double kCatch = 0.025;   // rad, Euclidean: an image this near an arc belongs to it
+constexpr double kOnArc = 1e-3;    // rad: on the arc where it was looked for first
+constexpr double kFill = 1.5;      // spacings: wider gaps are filled
+constexpr double kCrowded = 0.5;   // spacings: nearer images are dropped
+
+/// Where on the arcs of a layer.
+struct Place {
+  int arc = -1, chord = 0;
+  double u = 0;       // of the chord
+  double length = 0;  // weighted, from the first point of the arc
+  double away = 0;    // rad
+};
+
+double difference(double a, double b) {
+  return wrap_angle(a - b);
+}
+
+Config difference(const Config& a, const Config& b) {
+  Config d;
+  for (int j = 0; j < kDof; ++j) d[j] = difference(a[j], b[j]);
+  return d;
+}
+
+double length_at(const SelfMotionArc& arc, int chord, double u) {
+  const auto k = static_cast<std::size_t>(chord);
+  return arc.length[k] + u * (arc.length[k + 1] - arc.length[k]);
+}
+
+/// The nearest point of a chord's cubic; none beyond `within`.
+std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord, const Config& q, double within) {
+  const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
+  const Config line = difference(arc.q[next], arc.q[k]), way = difference(q, arc.q[k]);
+  const double length2 = line.squaredNorm();
+  const double along = way.dot(line) / length2;
+  if (along < -0.5 || along > 1.5) {
+    if (way.squaredNorm() > within * within && (way - line).squaredNorm() > within * within) return std::nullopt;
+  }
+  double u = std::clamp(along, 0.0, 1.0);
+  Config off = difference(q, arc.at(chord, u));
+  if (off.squaredNorm() > 0.04 * length2 + within * within) return std::nullopt;
+  // Two steps along the chord: the cubic runs nearly at its speed.
+  for (int step = 0; step < 2; ++step) {
+    const double more = std::clamp(u + off.dot(line) / length2, 0.0, 1.0);
+    if (more == u) break;
+    u = more;
+    off = difference(q, arc.at(chord, u));
+  }
+  const double away = off.norm();
+  if (away > within) return std::nullopt;
+  return Place{number, chord, u, length_at(arc, chord, u), away};
+}
+
+/// Finds the nearest points of a layer's arcs.
+class Finder {
+ public:
+  explicit Finder(const std::vector<SelfMotionArc>& arcs) : arcs_(arcs) {}
+  /// Near where the last question was answered first: nodes are asked about in the order of their arcs.
+  [[nodiscard]] std::optional<Place> find(const Config& q) {
+    if (last_.arc >= 0) {
+      const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(last_.arc)];
+      for (int ahead = 0; ahead < 4; ++ahead) {
+        int chord = last_.chord + ahead;
+        if (chord >= arc.chords()) {
+          if (!arc.closed) break;
+          chord %= arc.chords();
+        }
+        if (const auto place = nearest_on(arc, last_.arc, chord, q, kOnArc); place && inner(*place)) return last_ = *place;
+      }
+    }
+    std::optional<Place> best;
+    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number) {
+      const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(number)];
+      for (int chord = 0; chord < arc.chords(); ++chord) {
+        const auto place = nearest_on(arc, number, chord, q, best ? best->away : kCatch);
+        if (place && (!best || place->away < best->away)) best = place;
+      }
+    }
+    if (best) last_ = *best;
+    return best;
+  }
+
+ private:
+  static bool inner(const Place& place) { return place.u > 0 && place.u < 1; }
+  const std::vector<SelfMotionArc>& arcs_;
+  Place last_;
+};
+
+struct Image {
+  Place place;
+  Config q;
+  int source = -1;  // slot of the layer before
+};
+
+/// Fills a layer.
+class Layer {
+ public:
+  Layer(const SelfMotion& motion, const Pose& tool, double spacing) : motion_(motion), tool_(tool), spacing_(spacing) {}
+  /// `images` of one arc, in the order of their lengths.
+  void place(const SelfMotionArc& arc, const std::vector<Image>& images);
+  std::vector<Point> points;
+  std::vector<std::pair<int, int>> continued;  // slot of the layer before, and the slot here that continues it
+
+ private:
+  void add(const Config& q, double length) {
+    Point point;
+    point.q = q;
+    points.push_back(point);
+    lengths_.push_back(length);
+  }
+  void fill(const SelfMotionArc& arc, double from, double to);
+
+  const SelfMotion& motion_;
+  const Pose& tool_;
+  double spacing_;
+  std::vector<double> lengths_;
+};
+
+/// Points between two lengths, at most kFill spacings apart.
+void Layer::fill(const SelfMotionArc& arc, double from, double to) {
+  const int parts = static_cast<int>(std::ceil((to - from) / (kFill * spacing_) - 1e-9));
+  for (int part = 1; part < parts; ++part) {
+    double length = from + part * ((to - from) / parts);
+    if (length >= arc.whole()) length -= arc.whole();  // of closed arcs
+    const auto above = std::upper_bound(arc.length.begin(), arc.length.end(), length);
+    const int chord = std::clamp(static_cast<int>(above - arc.length.begin()) - 1, 0, arc.chords() - 1);
+    const auto k = static_cast<std::size_t>(chord);
+    const double u = (length - arc.length[k]) / (arc.length[k + 1] - arc.length[k]);
+    if (const auto q = motion_.point(arc, chord, u, tool_)) add(*q, length);
+  }
+}
+
+void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
+  const std::size_t first = points.size();
+  const double whole = arc.whole(), least = kCrowded * spacing_;
+  std::vector<const Image*> kept;
+  for (const Image& image : images) {
+    const double at = image.place.length;
+    if (arc.closed) {
+      if (!kept.empty() && (at - kept.back()->place.length < least || kept.front()->place.length + whole - at < least)) continue;
+    } else if (at - (kept.empty() ? 0 : kept.back()->place.length) < least || whole - at < least) {
+      continue;
+    }
+    kept.push_back(&image);
+  }
+  if (!arc.closed) {
+    add(arc.q.front(), 0);
+    double before = 0;
+    for (const Image* image : kept) {
+      fill(arc, before, image->place.length);
+      add(image->q, image->place.length);
+      before = image->place.length;
+    }
+    fill(arc, before, whole);
+    add(arc.q.back(), whole);
+  } else if (kept.empty()) {
+    add(arc.q.front(), 0);
+    fill(arc, 0, whole);
+  } else {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      const double at = kept[k]->place.length, next = k + 1 < kept.size() ? kept[k + 1]->place.length : kept[0]->place.length + whole;
+      add(kept[k]->q, at);
+      fill(arc, at, next);
+    }
+    // What was filled across the wrap goes to the front.
+    const auto wrapped = std::find_if(lengths_.begin() + static_cast<std::ptrdiff_t>(first) + 1, lengths_.end(),
+                                      [&](double x) { return x < kept[0]->place.length; });
+    const auto by = wrapped - lengths_.begin();
+    std::rotate(points.begin() + static_cast<std::ptrdiff_t>(first), points.begin() + by, points.end());
+    std::rotate(lengths_.begin() + static_cast<std::ptrdiff_t>(first), wrapped, lengths_.end());
+  }
+  const std::size_t end = points.size();
+  for (std::size_t k = first; k < end; ++k) {
+    if (k > first || (arc.closed && end > first + 1)) points[k].beside[0] = static_cast<int>(k > first ? k - 1 : end - 1);
+    if (k + 1 < end || (arc.closed && end > first + 1)) points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
+  }
+  for (const Image& image : images) {
+    // The node that continues the source: its image, or what stands in its way.
+    std::size_t nearest = first;
+    double least_gap = -1;
+    for (std::size_t k = first; k < end; ++k) {
+      double gap = std::abs(lengths_[k] - image.place.length);
+      if (arc.closed) gap = std::min(gap, whole - gap);
+      if (least_gap < 0 || gap < least_gap) {
+        least_gap = gap;
+        nearest = k;
+      }
+    }
+    if (points[nearest].along[0] < 0 || least_gap == 0) points[nearest].along[0] = image.source;
+    continued.emplace_back(image.source, static_cast<int>(nearest));
+  }
+}
+
+std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
+  std::array<double, kDof> weights = cost.weights;
+  for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
+    weights[j] = chain.limit[j].velocity > 0 ? 1 / chain.limit[j].velocity : 1;
+  return weights;
+}
+
+/// Foot on `axis` nearest `other`, of neighbouring joints, at a displacement of the former.
+Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
+  const Vector3d &a = chain.axis[axis], &b = chain.axis[other], n = a.cross(b), d = chain.point[other] - chain.point[axis];
+  const double sine2 = n.squaredNorm();
+  if (sine2 < 1e-12) return chain.point[axis];
+  return chain.point[axis] + (d.cross(b).dot(n) / sine2) * a;
+}
+
+}  // namespace
+
+ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
+                                     const Budget& budget) {
+  const Span span("arcs");
+  const SelfMotion motion(chain, method, problem.limits.joint_margin, weights_of(chain, problem.cost));
+  Layers result;
+  for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
+  std::vector<Point> before;
+  for (int i = 0; i < path.size(); ++i) {
+    budget.poll();
+    const Pose& tool = path.layer(i).tool;
+    std::vector<SelfMotionArc> arcs = motion.arcs(tool);
+    std::vector<std::vector<Image>> images;
+    std::vector<Config> strays;
+    const auto place_images = [&] {
+      images.assign(arcs.size(), {});
+      strays.clear();
+      Finder finder(arcs);
+      for (std::size_t slot = 0; slot < before.size(); ++slot) {
+        auto q = motion.image(before[slot].q, tool);
+        if (!q) continue;
+        const bool inside = motion.canonical(*q);
+        const auto place = finder.find(*q);
+        if (!place) {
+          if (inside) strays.push_back(*q);
+          continue;
+        }
+        if (!inside) {
+          q = motion.point(arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u, tool);
+          if (!q) continue;
+        }
+        images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, static_cast<int>(slot)});
+      }
+    };
+    place_images();
+    if (!strays.empty()) {  // they lie on arcs of which the closed form shows nothing
+      arcs = motion.arcs(tool, strays);
+      place_images();
+    }
+    Layer layer(motion, tool, problem.resolution.arc);
+    for (std::size_t k = 0; k < arcs.size(); ++k) {
+      std::stable_sort(images[k].begin(), images[k].end(),
+                       [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
+      layer.place(arcs[k], images[k]);
+    }
+    result.arcs += static_cast<std::int64_t>(arcs.size());
+    if (i > 0) {
+      auto& last = result.points.back();
+      for (const auto& [source, slot] : layer.continued)
+        if (source < static_cast<int>(last.size())) last[static_cast<std::size_t>(source)].along[1] = slot;
+    }
+    if (i == 0 && problem.start) {
+      // The start is the only node of layer 0; the others are transported as if there were none.
+      Point start;
+      start.q = *problem.start;
+      (void)motion.canonical(start.q);  // its winding; the start's limits are asked where the problem is validated
+      before = std::move(layer.points);
+      before.push_back(start);
+      result.points.push_back({start});
+      continue;
+    }
+    if (i == 1 && problem.start) {
+      for (Point& point : layer.points) point.along[0] = point.along[0] == static_cast<int>(before.size()) - 1 ? 0 : -1;
+      for (const auto& [source, slot] : layer.continued)
+        if (source == static_cast<int>(before.size()) - 1) result.points[0][0].along[1] = slot;
+    }
+    before = layer.points;
+    result.points.push_back(std::move(layer.points));
+  }
+  return result;
+}
+
+ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
+                       const Budget& budget)
+    : ArcLattice(chain, method, path, problem, build(chain, method, path, problem, budget)) {}
+
+ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, Layers&& layers)
+    : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
+      method_(method),
+      problem_(problem),
+      layers_{{}, layers.circles, layers.arcs} {}
+
+int ArcLattice::branch(int layer, int slot) const {
+  const Config& q = point(layer, slot).q;
+  const auto J = chain().jacobian(q);
+  Matrix6 rest;
+  rest << J.leftCols(method_.best), J.rightCols(kSix - method_.best);
+  const bool whole = rest.determinant() < 0;
+  const ClosedFormFit& fit = *method_.by_joint[static_cast<std::size_t>(method_.best)];
+  // The triple, or the last of three parallel axes and the two behind it.
+  const int first = fit.structure == Structure::kParallel ? (fit.first == 1 ? 3 : 0) : fit.first;
+  const auto axis = [&](int k) -> Vector3d { return rest.block<3, 1>(3, std::min(first + k, kSix - 1)); };
+  const bool triple = axis(0).dot(axis(1).cross(axis(2))) < 0;
+  return (triple ? 1 : 0) | (whole != triple ? 2 : 0);
+}
+
+double ArcLattice::phi(int layer, int slot) const {
+  const auto G = chain().displacements(point(layer, slot).q);
+  const Vector3d S = G[1] * foot(chain(), 1, 0), E = G[3] * foot(chain(), 3, 2), W = G[5] * foot(chain(), 5, 6);
+  const Vector3d u = (W - S).normalized();
+  Vector3d r = u.cross(Vector3d::UnitZ());
+  if (r.norm() < 1e-3) r = u.cross(Vector3d::UnitX());
+  const Vector3d up = r.cross(u), elbow = E - S;
+  return std::atan2(u.dot(up.cross(elbow)), up.dot(elbow));
+}
+
+std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std::vector<int>& slots) const {
+  Rows rows;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const Config& q = point(static_cast<int>(i), slots[i]).q;
+    rows.push_back(i == 0 ? q : Config(rows.back() + delta(rows.back(), q)));
+  }
+  if (problem_.start) {
+    const Config turns = *problem_.start - rows.front();
+    for (Config& q : rows) q += turns;
+    rows.front() = *problem_.start;
+  }
+  Joints failed{};
+  for (std::size_t j = 0; j < kDof; ++j) {
+    if (!circles()[j]) continue;
+    const auto at = static_cast<Eigen::Index>(j);
+    double least = rows[0][at], most = least;
+    for (const Config& q : rows) {
+      least = std::min(least, q[at]);
+      most = std::max(most, q[at]);
+    }
+    const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
+    const double turn = problem_.start ? 0 : kTwoPi * std::ceil((lower - least) / kTwoPi);
+    if (least + turn < lower || most + turn > upper)
+      failed[j] = true;
+    else
+      for (Config& q : rows) q[at] += turn;
+  }
+  if (std::find(failed.begin(), failed.end(), true) != failed.end()) return failed;
+  return rows;
+}
+
+ArcLattice ArcLattice::with_windings(const Joints& joints) const {
+  Layers wound;
+  wound.arcs = layers_.arcs;
+  wound.circles = circles();
+  for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
+  for (int i = 0; i < layers(); ++i) {
+    auto& points = wound.points.emplace_back();
+    for (int slot = 0; slot < slots(i); ++slot) {
+      std::vector<Config> images{point(i, slot).q};
+      if (i == 0 && problem_.start) images[0] = *problem_.start;
+      for (std::size_t j = 0; j < kDof && !(i == 0 && problem_.start); ++j) {
+        if (!joints[j] || !circles()[j]) continue;
+        const auto at = static_cast<Eigen::Index>(j);
+        const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
+        std::vector<Config> more;
+        for (const Config& q : images) {
+          Config image = q;
+          for (image[at] += kTwoPi * std::ceil((lower - q[at]) / kTwoPi); image[at] <= upper; image[at] += kTwoPi)
+            more.push_back(image);
+        }
+        images.swap(more);
+      }
+      for (const Config& q : images) {
+        Point image;
+        image.q = q;
+        points.push_back(image);
+      }
+    }
+  }
+  return {chain(), method_, path(), problem_, std::move(wound)};
+}
+
+}  // namespace swivel

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/arm_class.hpp"
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+ArmClass classify(const Chain& chain, const std::string& source) {
+  ArmClass result;
+  result.lock = lock_method(chain);
+  try {
+    result.srs = fit_srs(chain, source);
+    result.kind = ArmKind::kSrs;
+  } catch (const InputError& error) {
+    result.not_srs = error.what();
+    if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
+  }
+  return result;
+}
+
+std::string ArmClass::method() const {
+  switch (kind) {
+    case ArmKind::kSrs:
+      return srs->exact ? "closed form: spherical shoulder and wrist; arm angle"
+                        : "closed form of the nearest arm with spherical shoulder and wrist, polished; arm angle";
+    case ArmKind::kArcs:
+      return lock.words() + "; arcs of self-motion";
+    case ArmKind::kSampled:
+      break;
+  }
+  return lock.words();
+}
+
+}  // namespace swivel

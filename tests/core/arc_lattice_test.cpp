@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/arc_lattice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <limits>
+
+#include "arms.hpp"
+#include "seed.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+Config random_configuration(const Chain& chain, Random& random) {
+  Config q;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    q[j] = limit.continuous ? random.uniform(-kPi, kPi) : random.uniform(limit.lower, limit.upper);
+  }
+  return q;
+}
+
+Waypoint waypoint_of(const Pose& pose) {
+  return {pose.translation(), Quaterniond(pose.linear()).normalized()};
+}
+
+/// Straight, curved or turning, from a random configuration.
+Problem random_path(const Chain& chain, double length, double ds, Random& random) {
+  Problem problem;
+  problem.source = "random path";
+  problem.resolution.ds = ds;
+  problem.limits.tool_path_error.reset();
+  Pose tool = chain.tool(random_configuration(chain, random));
+  problem.waypoints.push_back(waypoint_of(tool));
+  const int waypoints = 1 + random.below(3);
+  for (int k = 0; k < waypoints; ++k) {
+    const auto any = [&] { return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)); };
+    tool.translation() += length / waypoints * any().normalized();
+    if (random.coin()) tool.rotate(Eigen::AngleAxisd(random.uniform(0, 0.6), any().normalized()));
+    problem.waypoints.push_back(waypoint_of(tool));
+  }
+  return problem;
+}
+
+struct Found {
+  double cost = kNone;
+  std::vector<int> slots;
+};
+
+/// Plain dynamic program over all pairs.
+Found cheapest(const Lattice& lattice) {
+  const auto layers = static_cast<std::size_t>(lattice.layers());
+  std::vector<std::vector<double>> g(layers);
+  std::vector<std::vector<int>> next(layers);
+  std::vector<Lattice::Node> here, after;
+  for (std::size_t i = layers; i-- > 0;) {
+    lattice.layer_nodes(static_cast<int>(i), here);
+    g[i].assign(here.size(), i + 1 == layers ? 0 : kNone);
+    next[i].assign(here.size(), -1);
+    for (std::size_t a = 0; i + 1 < layers && a < here.size(); ++a)
+      for (std::size_t b = 0; b < after.size(); ++b) {
+        if (g[i + 1][b] == kNone) continue;
+        const Config delta = lattice.delta(here[a].q, after[b].q);
+        if (!lattice.step_allowed(static_cast<int>(i), delta)) continue;
+        const double cost = lattice.edge_cost(delta) + g[i + 1][b];
+        if (cost < g[i][a]) {
+          g[i][a] = cost;
+          next[i][a] = static_cast<int>(b);
+        }
+      }
+    here.swap(after);
+  }
+  Found found;
+  const auto best = std::min_element(g[0].begin(), g[0].end());
+  if (best == g[0].end() || *best == kNone) return found;
+  found.cost = *best;
+  for (int slot = static_cast<int>(best - g[0].begin()), i = 0; i < lattice.layers(); ++i) {
+    found.slots.push_back(slot);
+    slot = next[static_cast<std::size_t>(i)][static_cast<std::size_t>(slot)];
+  }
+  return found;
+}
+
+/// Cost of rows moved along their curves of self-motion, inside the limits, until no move of 1e-3 gains 1e-6.
+double relaxed(const ArcLattice& lattice, const SelfMotion& motion, const Found& found) {
+  std::vector<Config> rows;
+  for (int i = 0; i < lattice.layers(); ++i) rows.push_back(lattice.point(i, found.slots[static_cast<std::size_t>(i)]).q);
+  const auto around = [&](std::size_t i, const Config& q) {
+    double cost = 0;
+    for (const std::size_t other : {i - 1, i + 1}) {
+      if (other >= rows.size()) continue;  // also of 0 - 1
+      const Config delta = lattice.delta(rows[other], q);
+      if (!lattice.step_allowed(0, delta)) return kNone;
+      cost += lattice.edge_cost(delta);
+    }
+    return cost;
+  };
+  for (double step = 0.1; step > 5e-4; step /= 3)
+    for (int sweep = 0; sweep < 300; ++sweep) {
+      double gain = 0;
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto J = lattice.chain().jacobian(rows[i]);
+        const Eigen::HouseholderQR<Eigen::Matrix<double, kDof, 6>> qr(J.transpose());
+        const Config null = qr.householderQ() * Config::Unit(kDof - 1);
+        const double before = around(i, rows[i]);
+        for (const double sign : {1.0, -1.0}) {
+          auto q = motion.image(rows[i] + sign * step * null, lattice.path().layer(static_cast<int>(i)).tool);
+          if (!q || !motion.canonical(*q)) continue;
+          const double after = around(i, *q);
+          if (after < before - 1e-9) {
+            gain += before - after;
+            rows[i] = *q;
+            break;
+          }
+        }
+      }
+      if (gain < 1e-6) break;
+    }
+  double cost = 0;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) cost += lattice.edge_cost(lattice.delta(rows[i], rows[i + 1]));
+  return cost;
+}
+
+std::vector<ArmTable> arms() {
+  return {arms_7r()[0], arms_7r()[1], arms_7r()[3], arms_7r()[6], arms_6r()[0], arms_6r()[3]};
+}
+
+TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
+  Random random(seed("ArcLattice.NodesReachTheirPosesAndLieCloseTogether"));
+  int ends = 0, transported = 0, filled = 0;
+  for (const ArmTable& table : arms()) {
+    const Chain chain = chain_of(table);
+    const LockMethod method = lock_method(chain);
+    for (int trial = 0; trial < trials(2); ++trial) {
+      Problem problem = random_path(chain, 0.2, 0.02, random);
+      problem.limits.joint_margin = random.coin() ? 0.05 : 0;
+      problem.resolution.arc = random.uniform(0.1, 0.3);
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+      const ArcLattice lattice(chain, method, path, problem), again(chain, method, path, problem);
+      const SelfMotion motion(chain, method, problem.limits.joint_margin);
+      std::int64_t nodes = 0;
+      for (int i = 0; i < lattice.layers(); ++i) {
+        const Pose& tool = path.layer(i).tool;
+        nodes += lattice.slots(i);
+        std::vector<int> on_limit;
+        for (int slot = 0; slot < lattice.slots(i); ++slot) {
+          const auto& point = lattice.point(i, slot);
+          ASSERT_EQ(point.q, again.point(i, slot).q);
+          const Pose reached = chain.tool(point.q);
+          EXPECT_LT((reached.matrix() - tool.matrix()).norm(), 1e-9);
+          bool at_limit = false;
+          for (std::size_t j = 0; j < kDof; ++j) {
+            const double q = point.q[static_cast<Eigen::Index>(j)];
+            if (lattice.continuous()[j]) {
+              EXPECT_LE(std::abs(q), kPi);
+              continue;
+            }
+            const double lower = chain.limit[j].lower + problem.limits.joint_margin,
+                         upper = chain.limit[j].upper - problem.limits.joint_margin;
+            EXPECT_TRUE(q >= lower && q <= upper);
+            at_limit = at_limit || q == lower || q == upper;
+          }
+          ends += at_limit;
+          (point.along[0] >= 0 ? transported : filled) += 1;
+          // Neighbours along the arc are no farther than a gap that would be filled.
+          if (point.beside[1] >= 0) {
+            const auto& next = lattice.point(i, point.beside[1]);
+            EXPECT_EQ(next.beside[0], slot);
+            double chord = 0;
+            for (int j = 0; j < kDof; ++j) chord += std::pow(std::remainder(next.q[j] - point.q[j], kTwoPi), 2);
+            EXPECT_LE(std::sqrt(chord), 1.5 * problem.resolution.arc + 1e-2);
+          } else {
+            on_limit.push_back(slot);
+          }
+        }
+        // Every end of an arc is a node, bit for bit.
+        const auto arcs = motion.arcs(tool);
+        for (const SelfMotionArc& arc : arcs) {
+          if (arc.closed) continue;
+          for (const Config& end : {arc.q.front(), arc.q.back()}) {
+            double nearest = 1e9;
+            for (int slot = 0; slot < lattice.slots(i); ++slot) nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
+            EXPECT_LE(nearest, 1e-9);
+          }
+        }
+      }
+      EXPECT_EQ(nodes, lattice.nodes());
+    }
+  }
+  std::printf("  %d nodes on limits, %d transported, %d filled\n", ends, transported, filled);
+  EXPECT_GT(ends, 300 * trials(2) / 2);
+  EXPECT_GT(transported, 3 * filled);
+}
+
+TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
+  Random random(seed("ArcLattice.PathsCostLittleMoreThanTheBestKnown"));
+  std::vector<double> all;
+  for (const ArmTable& table : arms()) {
+    const Chain chain = chain_of(table);
+    const LockMethod method = lock_method(chain);
+    const SelfMotion motion(chain, method, 0);
+    std::vector<double> ratio;
+    int unsolved = 0;
+    double nodes = 0;
+    for (int trial = 0; trial < trials(3); ++trial) {
+      Problem problem = random_path(chain, 0.3, 0.02, random);
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+      const ArcLattice lattice(chain, method, path, problem);
+      nodes += static_cast<double>(lattice.nodes()) / lattice.layers();
+      Problem fine = problem;
+      fine.resolution.arc = 0.08;
+      const ArcLattice reference(chain, method, path, fine);
+      const Found found = cheapest(lattice), best = cheapest(reference);
+      EXPECT_EQ(found.cost == kNone, best.cost == kNone);
+      if (found.cost == kNone) {
+        ++unsolved;
+        continue;
+      }
+      const double least = std::min({best.cost, relaxed(reference, motion, best), relaxed(lattice, motion, found)});
+      ratio.push_back(found.cost / least);
+      all.push_back(ratio.back());
+    }
+    std::sort(ratio.begin(), ratio.end());
+    if (ratio.empty()) continue;
+    std::printf("  %s: %zu paths (%d without one), %.0f nodes a layer, cost over the best known: median %.4f, 95 %% %.4f, most %.4f\n",
+                table.name.c_str(), ratio.size(), unsolved, nodes / trials(3), ratio[ratio.size() / 2],
+                ratio[ratio.size() * 19 / 20], ratio.back());
+  }
+  std::sort(all.begin(), all.end());
+  ASSERT_GT(all.size(), static_cast<std::size_t>(2 * trials(3)));
+  EXPECT_LE(all[all.size() / 2], 1.01);
+  EXPECT_LE(all[all.size() * 19 / 20], 1.1);
+}
+
+TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
+  Random random(seed("ArcLattice.UnwrapsByValueOrNamesTheJoints"));
+  int unwrapped = 0, wound = 0;
+  for (int trial = 0; trial < trials(12); ++trial) {
+    // A circle with little room beyond a turn, so that some paths do not fit.
+    ArmTable table = trial % 2 == 0 ? arms_7r()[1] : arms_6r()[3];
+    for (JointRow& joint : table.joints)
+      if (joint.upper - joint.lower > 6.5) {
+        joint.lower = -random.uniform(3.2, 4.5);
+        joint.upper = random.uniform(3.2, 4.5);
+      }
+    const Chain chain = chain_of(table);
+    Problem problem = random_path(chain, 0.4, 0.02, random);
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+    const ArcLattice lattice(chain, lock_method(chain), path, problem);
+    // Any path will do: follow a random node along its images.
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      std::vector<int> slots;
+      for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1; i < lattice.layers() && slot >= 0; ++i) {
+        slots.push_back(slot);
+        slot = lattice.along(i, slot, 1);
+      }
+      if (static_cast<int>(slots.size()) != lattice.layers()) continue;
+      const auto result = lattice.unwrap(slots);
+      // All images of the first row, brute force.
+      std::array<bool, kDof> fits{};
+      for (std::size_t j = 0; j < kDof; ++j) {
+        if (!lattice.circles()[j]) continue;
+        const auto at = static_cast<Eigen::Index>(j);
+        for (int turn = -2; turn <= 2; ++turn) {
+          double q = lattice.point(0, slots[0]).q[at] + turn * kTwoPi;
+          bool inside = true;
+          for (std::size_t i = 0; i < slots.size(); ++i) {
+            if (i > 0)
+              q += std::remainder(lattice.point(static_cast<int>(i), slots[i]).q[at] -
+                                      lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
+                                  kTwoPi);
+            inside = inside && q >= chain.limit[j].lower && q <= chain.limit[j].upper;
+          }
+          fits[j] = fits[j] || inside;
+        }
+      }
+      if (const auto* rows = std::get_if<ArcLattice::Rows>(&result)) {
+        ++unwrapped;
+        for (std::size_t i = 0; i < rows->size(); ++i) {
+          EXPECT_LT((chain.tool((*rows)[i]).matrix() - path.layer(static_cast<int>(i)).tool.matrix()).norm(), 1e-9);
+          for (std::size_t j = 0; j < kDof; ++j) {
+            const double q = (*rows)[i][static_cast<Eigen::Index>(j)];
+            EXPECT_TRUE(chain.limit[j].continuous || (q >= chain.limit[j].lower && q <= chain.limit[j].upper));
+          }
+        }
+      } else {
+        ++wound;
+        const auto& joints = std::get<ArcLattice::Joints>(result);
+        for (std::size_t j = 0; j < kDof; ++j)
+          EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
+        const ArcLattice explicit_lattice = lattice.with_windings(joints);
+        for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(explicit_lattice.circles()[j], lattice.circles()[j] && !joints[j]);
+        EXPECT_GE(explicit_lattice.nodes(), lattice.nodes());
+        const Found found = cheapest(explicit_lattice);
+        EXPECT_GE(found.cost, cheapest(lattice).cost);  // also where there is none
+      }
+    }
+  }
+  std::printf("  %d paths unwrapped, %d did not fit\n", unwrapped, wound);
+  EXPECT_GT(unwrapped, trials(12));
+  EXPECT_GT(wound, 0);
+}
+
+TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
+  Random random(seed("ArcLattice.AStartIsTheOnlyFirstNodeAndIsTransported"));
+  int tried = 0, reached = 0;
+  for (const ArmTable& table : arms()) {
+    const Chain chain = chain_of(table);
+    const LockMethod method = lock_method(chain);
+    for (int trial = 0; trial < trials(2); ++trial) {
+      Problem problem = random_path(chain, 0.1, 0.02, random);
+      const Config start = random_configuration(chain, random);
+      Pose tool = chain.tool(start);
+      problem.waypoints = {waypoint_of(tool)};
+      tool.translation().z() -= 0.1;
+      problem.waypoints.push_back(waypoint_of(tool));
+      problem.start = start;
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+      const ArcLattice lattice(chain, method, path, problem);
+      ASSERT_EQ(lattice.slots(0), 1);
+      ++tried;
+      const Found found = cheapest(lattice);
+      if (found.cost == kNone) continue;
+      ++reached;
+      const auto result = lattice.unwrap(found.slots);
+      const auto* rows = std::get_if<ArcLattice::Rows>(&result);
+      EXPECT_TRUE(rows == nullptr || rows->front() == start);
+    }
+  }
+  std::printf("  %d of %d\n", reached, tried);
+  EXPECT_GT(reached, tried / 3);
+}
+
+}  // namespace
+}  // namespace swivel

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/arm_class.hpp"
+
+#include <gtest/gtest.h>
+
+#include "arms.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+TEST(ArmClass, NamesKindMethodAndCompleteness) {
+  int srs = 0, arcs = 0, sampled = 0;
+  const auto count = [&](const ArmTable& table, ArmKind expected) {
+    const ArmClass arm = classify(chain_of(table), table.name);
+    EXPECT_EQ(arm.kind, expected) << table.name << ": " << arm.method();
+    EXPECT_EQ(arm.srs.has_value(), expected == ArmKind::kSrs) << table.name;
+    EXPECT_EQ(arm.not_srs.empty(), expected == ArmKind::kSrs) << table.name;
+    EXPECT_EQ(arm.complete(), expected != ArmKind::kSampled) << table.name;
+    EXPECT_EQ(arm.lock.best >= 0, expected != ArmKind::kSampled) << table.name;
+    (expected == ArmKind::kSrs ? srs : expected == ArmKind::kArcs ? arcs : sampled) += 1;
+  };
+  for (const ArmTable& table : arms_7r()) count(table, table.name == "iiwa7" ? ArmKind::kSrs : ArmKind::kArcs);
+  for (const ArmTable& table : arms_6r()) count(table, ArmKind::kArcs);
+  // An arm like Sawyer: every triple is 1 cm and more from a point.
+  ArmTable none = arms_7r()[0];
+  for (JointRow& joint : none.joints) joint.xyz += Vector3d(0.02, 0.03, 0.05);
+  count(none, ArmKind::kSampled);
+  EXPECT_EQ(srs, 1);
+  EXPECT_EQ(arcs, static_cast<int>(arms_7r().size() + arms_6r().size()) - 1);
+  EXPECT_EQ(sampled, 1);
+  EXPECT_EQ(classify(chain_of(arms_7r()[0]), "panda").method(),
+            "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7); arcs of self-motion");
+  EXPECT_EQ(classify(chain_of(none), "none").completeness(), std::string("sampled"));
+}
+
+}  // namespace
+}  // namespace swivel
