@@ -14,10 +14,10 @@ namespace {
 
 using Point = ExplicitLattice::Point;
 
-constexpr double kCatch = 0.025;   // rad, Euclidean: an image this near an arc belongs to it
-constexpr double kOnArc = 1e-3;    // rad: on the arc where it was looked for first
-constexpr double kFill = 1.5;      // spacings: wider gaps are filled
-constexpr double kCrowded = 0.5;   // spacings: nearer images are dropped
+constexpr double kCatch = 0.025;  // rad, Euclidean: an image this near an arc belongs to it
+constexpr double kOnArc = 1e-3;   // rad: on the arc where it was looked for first
+constexpr double kFill = 1.5;     // spacings: wider gaps are filled
+constexpr double kCrowded = 0.5;  // spacings: nearer images are dropped
 
 /// Where on the arcs of a layer.
 struct Place {
@@ -173,7 +173,8 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     fill(arc, 0, whole);
   } else {
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      const double at = kept[k]->place.length, next = k + 1 < kept.size() ? kept[k + 1]->place.length : kept[0]->place.length + whole;
+      const double at = kept[k]->place.length,
+                   next = k + 1 < kept.size() ? kept[k + 1]->place.length : kept[0]->place.length + whole;
       add(kept[k]->q, at);
       fill(arc, at, next);
     }

@@ -185,7 +185,8 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
           if (arc.closed) continue;
           for (const Config& end : {arc.q.front(), arc.q.back()}) {
             double nearest = 1e9;
-            for (int slot = 0; slot < lattice.slots(i); ++slot) nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
+            for (int slot = 0; slot < lattice.slots(i); ++slot)
+              nearest = std::min(nearest, (lattice.point(i, slot).q - end).norm());
             EXPECT_LE(nearest, 1e-9);
           }
         }
@@ -194,7 +195,7 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
     }
   }
   std::printf("  %d nodes on limits, %d transported, %d filled\n", ends, transported, filled);
-  EXPECT_GT(ends, 300 * trials(2) / 2);
+  EXPECT_GE(ends, at_least(300));
   EXPECT_GT(transported, 3 * filled);
 }
 
@@ -228,12 +229,14 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
     }
     std::sort(ratio.begin(), ratio.end());
     if (ratio.empty()) continue;
-    std::printf("  %s: %zu paths (%d without one), %.0f nodes a layer, cost over the best known: median %.4f, 95 %% %.4f, most %.4f\n",
-                table.name.c_str(), ratio.size(), unsolved, nodes / trials(3), ratio[ratio.size() / 2],
-                ratio[ratio.size() * 19 / 20], ratio.back());
+    std::printf(
+        "  %s: %zu paths (%d without one), %.0f nodes a layer, cost over the best known: median %.4f, 95 %% %.4f, most %.4f\n",
+        table.name.c_str(), ratio.size(), unsolved, nodes / trials(3), ratio[ratio.size() / 2], ratio[ratio.size() * 19 / 20],
+        ratio.back());
   }
   std::sort(all.begin(), all.end());
-  ASSERT_GT(all.size(), static_cast<std::size_t>(2 * trials(3)));
+  ASSERT_GE(all.size(), static_cast<std::size_t>(at_least(6)));
+  if (all.empty()) return;
   EXPECT_LE(all[all.size() / 2], 1.01);
   EXPECT_LE(all[all.size() * 19 / 20], 1.1);
 }
@@ -246,8 +249,8 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
     ArmTable table = trial % 2 == 0 ? arms_7r()[1] : arms_6r()[3];
     for (JointRow& joint : table.joints)
       if (joint.upper - joint.lower > 6.5) {
-        joint.lower = -random.uniform(3.2, 4.5);
-        joint.upper = random.uniform(3.2, 4.5);
+        joint.lower = -random.uniform(3.2, 3.8);
+        joint.upper = random.uniform(3.2, 3.8);
       }
     const Chain chain = chain_of(table);
     Problem problem = random_path(chain, 0.4, 0.02, random);
@@ -272,9 +275,9 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
           bool inside = true;
           for (std::size_t i = 0; i < slots.size(); ++i) {
             if (i > 0)
-              q += std::remainder(lattice.point(static_cast<int>(i), slots[i]).q[at] -
-                                      lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
-                                  kTwoPi);
+              q += std::remainder(
+                  lattice.point(static_cast<int>(i), slots[i]).q[at] - lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q[at],
+                  kTwoPi);
             inside = inside && q >= chain.limit[j].lower && q <= chain.limit[j].upper;
           }
           fits[j] = fits[j] || inside;
@@ -292,8 +295,7 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
       } else {
         ++wound;
         const auto& joints = std::get<ArcLattice::Joints>(result);
-        for (std::size_t j = 0; j < kDof; ++j)
-          EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
+        for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(joints[j], lattice.circles()[j] && !fits[j]);
         const ArcLattice explicit_lattice = lattice.with_windings(joints);
         for (std::size_t j = 0; j < kDof; ++j) EXPECT_EQ(explicit_lattice.circles()[j], lattice.circles()[j] && !joints[j]);
         EXPECT_GE(explicit_lattice.nodes(), lattice.nodes());
@@ -303,8 +305,8 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
     }
   }
   std::printf("  %d paths unwrapped, %d did not fit\n", unwrapped, wound);
-  EXPECT_GT(unwrapped, trials(12));
-  EXPECT_GT(wound, 0);
+  EXPECT_GE(unwrapped, at_least(12));
+  EXPECT_GE(wound, at_least(1));
 }
 
 TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
@@ -334,7 +336,7 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
     }
   }
   std::printf("  %d of %d\n", reached, tried);
-  EXPECT_GT(reached, tried / 3);
+  EXPECT_GE(reached, at_least(tried / 3));
 }
 
 }  // namespace

@@ -9,13 +9,13 @@
 
 namespace swivel {
 
-/// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs of self-motion (self_motion.hpp).
-/// Transported nodes. Layer 0: the ends of arcs, and points between them at most 1.5 `resolution.arc` apart. Every other layer: the
-/// ends; the images of the nodes of the layer before, by Newton steps of least weighted norm, unless nearer than half of
-/// `resolution.arc` to a node kept before or to the end; gaps of more than 1.5 `resolution.arc` are filled evenly. So a motion that
-/// drifts along with the arm meets nodes, which a grid of any coordinate does not give. The nodes depend on geometry, weights and
-/// limits of the joints alone: obstacles never change them.
-/// A bounded joint with a range of more than a turn is a circle here: unwrap() finds the values.
+/// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs of self-motion
+/// (self_motion.hpp). Transported nodes. Layer 0: the ends of arcs, and points between them at most 1.5 `resolution.arc` apart.
+/// Every other layer: the ends; the images of the nodes of the layer before, by Newton steps of least weighted norm, unless nearer
+/// than half of `resolution.arc` to a node kept before or to the end; gaps of more than 1.5 `resolution.arc` are filled evenly. So
+/// a motion that drifts along with the arm meets nodes, which a grid of any coordinate does not give. The nodes depend on geometry,
+/// weights and limits of the joints alone: obstacles never change them. A bounded joint with a range of more than a turn is a
+/// circle here: unwrap() finds the values.
 class ArcLattice final : public ExplicitLattice {
  public:
   /// `method` must have a lock. Throws Stopped.
