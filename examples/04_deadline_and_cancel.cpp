@@ -2,9 +2,9 @@
 // A plan ends when its time is over, and when another thread says so.
 #include <chrono>
 #include <iostream>
+#include <stop_token>
 #include <swivel/io/io.hpp>
 #include <swivel/planner/planner.hpp>
-#include <stop_token>
 #include <thread>
 
 int main(int argc, char** argv) {

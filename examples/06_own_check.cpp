@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A rule of one's own: a hose allows joints 5 and 7 together so much twist and no more. All planners honour it as they do collision.
+// A rule of one's own: a hose allows joints 5 and 7 together so much twist and no more. All planners honour it as they do
+// collision.
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -29,7 +30,7 @@ int main(int argc, char** argv) {
     const swivel::PlanResult result = swivel::plan(problem, options);
     double twist = 0;
     for (const swivel::TrajectoryRow& row : result.trajectory) twist = std::max(twist, std::abs(row.q[4] + row.q[6]));
-    std::cout << "at most " << most_twist << ": " << to_string(result.status) << ", largest twist " << twist << " rad, " << hose->asked
-              << " states asked\n";
+    std::cout << "at most " << most_twist << ": " << to_string(result.status) << ", largest twist " << twist << " rad, "
+              << hose->asked << " states asked\n";
   }
 }

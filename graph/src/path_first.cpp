@@ -297,7 +297,7 @@ int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptio
     if (optimistic < 0) return -1;
     const std::int64_t removed = togo.verdicts().removed();
     togo.sweep(optimistic);
-    if (!Search(togo, validity, options, false).run(counters).path.empty()) return optimistic;  // at whatever cost
+    if (!Search(togo, validity, options, false).run(counters, {}).path.empty()) return optimistic;  // at whatever cost
     if (togo.verdicts().removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }

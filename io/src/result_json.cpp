@@ -147,6 +147,7 @@ std::string to_json(const PlanResult& result) {
   json["arm_angle"] = result.arm_angle;
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
+  json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};
   json["warnings"] = result.warnings;
   json["joint_names"] = result.joint_names;

@@ -162,20 +162,9 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
   return !blocked;
 }
 
-bool CollisionValidity::edge(const EdgeQuestion& x, int worker) {
-  const Span span("edge");
-  budget_.poll();
-  const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
-  if (!qa || !qb) return false;
-  const Config move = lattice_->delta(*qa, *qb);
-  return (!lattice_->has_own_rows() || lattice_->row_step_allowed(x.layer, move)) &&
-         lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb) &&
-         (lattice_->limits().edges == EdgeMode::kNodes ||
-          !edge_blocked(queries_[static_cast<std::size_t>(worker)], rule_, *qa, *qa + move, budget_));
-}
-
 bool CollisionValidity::asks_edges() const {
-  return lattice_->has_own_rows() || lattice_->asks_path_error() || (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
+  return lattice_->has_own_rows() || lattice_->asks_path_error() ||
+         (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 
 CollisionCounters CollisionValidity::counters() const {

@@ -124,8 +124,7 @@ struct Planner::Impl {
   /// Of the task and the pose of the path's frame.
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
-        : path(problem_path(problem, robot.arm().chain, budget)),
-          lattice(robot.arm().chain, robot.srs(), path, problem, budget) {}
+        : path(problem_path(problem, robot.arm().chain, budget)), lattice(robot.arm().chain, robot.srs(), path, problem, budget) {}
     ToolPath path;
     SrsLattice lattice;
     std::unique_ptr<CostToGo> cost_to_go;

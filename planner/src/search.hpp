@@ -22,8 +22,8 @@ struct Found {
 };
 
 /// The planners eager and eager_dp.
-[[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options,
-                                   const Budget& budget, Counters& counters);
+[[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
+                                   Counters& counters);
 /// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals.
 [[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const Suspects& suspects,
                                   const PlanOptions& options, Counters& counters, std::map<std::string, double>& time_ms);

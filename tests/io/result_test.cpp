@@ -47,7 +47,7 @@ TEST(Result, KeysInOrder) {
   EXPECT_EQ(keys_of(json),
             (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
                                       "tool_path_error_mm", "min_clearance", "min_margin", "min_manipulability", "arm_angle",
-                                      "diagnosis", "trajectory", "robot_pairs", "warnings", "joint_names"}));
+                                      "diagnosis", "trajectory", "partial", "robot_pairs", "warnings", "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
             (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints", "cost"}));
   EXPECT_EQ(keys_of(json["counters"]),

@@ -86,7 +86,7 @@ class Verdicts {
 
   std::vector<std::size_t> first_;  // of each layer
   std::vector<Verdict> node_;
-  std::vector<std::size_t> known_;  // indices of nodes, as they came to be known
+  std::vector<std::size_t> known_;          // indices of nodes, as they came to be known
   std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
   std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
