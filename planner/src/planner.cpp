@@ -153,14 +153,14 @@ struct Planner::Impl {
     world_is_old = true;
     viewable = false;
   }
-  void robot_changed() {
+  void all_changed() {
     path_changed();
     scene_changed();
   }
   void attached_changed() {
     if (robot) last_robot = std::exchange(robot, nullptr);
     world.reset();
-    robot_changed();
+    all_changed();
   }
   void moved(std::size_t object) {
     scene_changed();
@@ -181,7 +181,7 @@ struct Planner::Impl {
     if (!std::equal(scene.begin(), scene.end(), problem.scene.begin(), problem.scene.end(), same_body)) {
       problem.scene = std::move(scene);
       met.assign(problem.scene.size(), 1);
-      robot_changed();
+      all_changed();
       return;
     }
     for (std::size_t k = 0; k < scene.size(); ++k) {
@@ -191,9 +191,18 @@ struct Planner::Impl {
     }
   }
   void set_task(const Task& task) {
-    if (task == problem) return;
-    static_cast<Task&>(problem) = task;
-    robot_changed();
+    Task& own = problem;
+    if (task == own) return;
+    Task same_kinematics = own;
+    same_kinematics.limits = Lattice::with_clearances(own.limits, task.limits);
+    own = task;
+    if (layout && task == same_kinematics) {
+      layout->lattice.take_clearances(task.limits);
+      memory = {};
+      scene_changed();
+    } else {
+      all_changed();
+    }
   }
 
   // --- plans

@@ -277,7 +277,7 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
       ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
     };
     for (const int search : {0, 1, 2}) {
-      CollisionValidity collision(lattice, world, rule, Certificates::kOff, executor, 0, never, {});
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
       HookedValidity validity(lattice, collision, hooks, never);
       EagerOutcome found;
       if (search == 2)
@@ -287,7 +287,8 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity collision(lattice, world, rule, Certificates::kOn, executor, batch == 1 ? 1 : 4, never, {});
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, batch == 1 ? 1 : 4,
+                                  never);
       HookedValidity validity(lattice, collision, hooks, never);
       const auto togo = make_cost_to_go(lattice);
       togo->sweep(lattice.layers() - 1);

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <memory>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 #include "random_problem.hpp"
 #include "swivel/planner/planner.hpp"
@@ -104,6 +107,53 @@ TEST_P(Backends, KeptClearancesCountTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
                          [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
+
+/// Every thread has a clone of one planner, moves its objects about and plans; answers are those of fresh plans made before.
+TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {
+  constexpr int kThreads = 8;
+  const std::uint64_t base = seed("Planner.Clones");
+  Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  problem.resolution = {.ds = 0.02, .dphi = 0.2};
+  const int each = std::max(1, trials(800) / kThreads), kinds = std::min(each, 100);
+  struct Step {
+    Problem problem;
+    PlanResult answer;
+  };
+  std::vector<Step> steps;
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  Random random(base);
+  for (int k = 0; k < kinds; ++k) {
+    Problem moved = k % 4 == 0 ? episode_problem(problem, 1, static_cast<std::uint64_t>(k)) : problem;
+    for (SceneObject& object : moved.scene)
+      if (object.name != "door" && random.coin()) object.pose.translation().z() += random.uniform(-0.05, 0.05);
+    if (k % 7 == 0) moved.limits.clearance = random.uniform(0, 0.02);
+    steps.push_back({moved, plan(moved, options)});
+  }
+  const Planner planner(problem);
+  std::atomic<int> equal{0}, solved{0};
+  std::vector<std::jthread> threads;
+  for (int thread = 0; thread < kThreads; ++thread)
+    threads.emplace_back([&, thread, mine = std::make_shared<Planner>(planner.clone())] {
+      Random own(base + static_cast<std::uint64_t>(thread) + 1);
+      for (int k = 0; k < each; ++k) {
+        const Step& step = steps[static_cast<std::size_t>(own.below(kinds))];
+        mine->set_problem(step.problem);
+        const PlanResult result = mine->plan(options);
+        bool same = result.status == step.answer.status && result.cost == step.answer.cost &&
+                    result.trajectory.size() == step.answer.trajectory.size() &&
+                    result.diagnosis.reached_layer == step.answer.diagnosis.reached_layer;
+        for (std::size_t i = 0; same && i < result.trajectory.size(); ++i)
+          same = result.trajectory[i].q == step.answer.trajectory[i].q;
+        equal += same;
+        solved += result.status == PlanStatus::kSolved;
+      }
+    });
+  threads.clear();
+  std::printf("%d plans in %d threads, %d solved\n", kThreads * each, kThreads, solved.load());
+  EXPECT_EQ(equal, kThreads * each);
+  EXPECT_GT(solved, 0);
+}
 
 TEST(Stopping, DeadlineAndCancelEndEveryPlanner) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");

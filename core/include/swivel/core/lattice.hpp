@@ -28,6 +28,17 @@ class Lattice {
   [[nodiscard]] const Chain& chain() const { return *chain_; }
   [[nodiscard]] const ToolPath& path() const { return *path_; }
   [[nodiscard]] const Limits& limits() const { return limits_; }
+  /// Takes over clearances and edge mode of other limits, on which no node and no edge of the lattice depends.
+  void take_clearances(const Limits& limits) { limits_ = with_clearances(limits_, limits); }
+  /// `kinematics` but for these.
+  [[nodiscard]] static Limits with_clearances(Limits kinematics, const Limits& clearances) {
+    kinematics.clearance = clearances.clearance;
+    kinematics.self_clearance = clearances.self_clearance;
+    kinematics.edges = clearances.edges;
+    kinematics.edge_clearance = clearances.edge_clearance;
+    kinematics.edge_tolerance = clearances.edge_tolerance;
+    return kinematics;
+  }
   [[nodiscard]] const Cost& cost() const { return cost_; }
   [[nodiscard]] int layers() const { return path_->size(); }
 
