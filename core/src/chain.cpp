@@ -218,7 +218,8 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     chain.axis[k] = (frame.linear() * joint.axis).normalized();
     chain.point[k] = frame.translation();
     chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
-    chain.limit[k] = {joint.lower, joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous};
+    chain.limit[k] = {joint.lower,        joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous,
+                      joint.acceleration, joint.jerk};
   }
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
   return model;

@@ -31,7 +31,7 @@ Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
 }  // namespace
 
 ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
-                   const Budget& budget) {
+                   const Budget& budget, const std::optional<PathSmoothing>& smooth) {
   constexpr double kSame = 1e-9;
   constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
   const auto pose = [](const Vector3d& p, const Quaterniond& q) {
@@ -61,6 +61,9 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) +
                        " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
+    const double begun = layers_.back().travel, travel = std::max(length, angle * resolution.ds / resolution.dalpha);
+    segments_.push_back({static_cast<int>(layers_.size()) - 1, begun, layers_.back().tool, (to.position - from.position) / travel,
+                         rotation / travel, 0});
     for (int step = 1; step <= steps; ++step) {
       if (layers_.size() % 1024 == 0) budget.poll();
       PathLayer& previous = layers_.back();
@@ -74,11 +77,73 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
         layers_.push_back({s + t * length,
                            pose(from.position + t * (to.position - from.position), turned(from.orientation, rotation, t)), -1, 0, 0,
                            Vector3d::Zero()});
+      layers_.back().travel = begun + t * travel;
     }
     s += length;
     from = to;
   }
   if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
+  find_corners(smooth.value_or(PathSmoothing{0, 0}));
+}
+
+void ToolPath::find_corners(const PathSmoothing& smooth) {
+  constexpr double kStraight = 1e-9;      // change of velocity that is none: m and rad per metre
+  constexpr double kShortest = 0.05e-3;   // m; a corner rounded over less is one that the tool stops at
+  constexpr double kDeviation = 3. / 16;  // of reach |b - a|: the integral of the velocity's change up to the corner
+  for (std::size_t k = 1; k < segments_.size(); ++k) {
+    const Segment& before = segments_[k - 1];
+    Segment& after = segments_[k];
+    const double end = k + 1 < segments_.size() ? segments_[k + 1].travel : layers_.back().travel;
+    const double bend = (after.velocity - before.velocity).norm(), twist = (after.rotation - before.rotation).norm();
+    if (bend <= kStraight && twist <= kStraight) continue;
+    double reach = 0.5 * std::min(after.travel - before.travel, end - after.travel);
+    if (bend > kStraight) reach = std::min(reach, smooth.position / (kDeviation * bend));
+    if (twist > kStraight) reach = std::min(reach, smooth.angle / (kDeviation * twist));
+    if (reach < kShortest) reach = 0;
+    after.reach = reach;
+    rounded_ = rounded_ || reach > 0;
+    corners_.push_back({after.layer, reach, kDeviation * reach * bend, kDeviation * reach * twist});
+  }
+  if (!rounded_) return;
+  for (std::size_t k = 0; k < segments_.size(); ++k)
+    for (int i = segments_[k].layer; i < (k + 1 < segments_.size() ? segments_[k + 1].layer : size()); ++i)
+      layers_[static_cast<std::size_t>(i)].tool = on_curve(k, layer(i).travel);
+}
+
+std::size_t ToolPath::segment_of(int step) const {
+  const auto after = std::upper_bound(segments_.begin(), segments_.end(), step,
+                                      [](int layer, const Segment& segment) { return layer < segment.layer; });
+  return static_cast<std::size_t>(after - segments_.begin()) - 1;
+}
+
+int ToolPath::step_at(double travel) const {
+  const auto after = std::upper_bound(layers_.begin() + 1, layers_.end() - 1, travel,
+                                      [](double value, const PathLayer& layer) { return value < layer.travel; });
+  return static_cast<int>(after - layers_.begin()) - 1;
+}
+
+Pose ToolPath::at_travel(double travel) const {
+  return on_curve(segment_of(step_at(travel)), travel);
+}
+
+Pose ToolPath::on_curve(std::size_t k, double travel) const {
+  const Segment* base = &segments_[k];
+  if (k + 1 < segments_.size() && segments_[k + 1].travel - travel < segments_[k + 1].reach) base = &segments_[++k];
+  const double x = travel - base->travel;
+  Vector3d way = x * base->velocity, turn = x * base->rotation;
+  if (base->reach > 0 && x < base->reach) {
+    const Segment& before = segments_[k - 1];
+    const double z = std::max(0.0, (x + base->reach) / (2 * base->reach));
+    const double part = 2 * base->reach * z * z * z * (1 - z / 2);
+    way = x * before.velocity + part * (base->velocity - before.velocity);
+    turn = x * before.rotation + part * (base->rotation - before.rotation);
+  }
+  Pose X;
+  X.translation() = base->start.translation() + way;
+  X.linear() = base->start.linear();
+  const double angle = turn.norm();
+  if (angle > 0) X.linear() = base->start.linear() * Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  return X;
 }
 
 void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double tolerance, const std::string& source) {
@@ -127,16 +192,21 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
     }
     start.tool = aside ? tool : at(first, t);
     const PathLayer& next = layer(first + 1);
+    start.travel += t * (next.travel - start.travel);
+    begins_aside_ = aside;
     start.step_length = (next.tool.translation() - start.tool.translation()).norm();
     start.step_rotation = short_arc(Quaterniond(start.tool.linear()), Quaterniond(next.tool.linear()));
     start.step_angle = start.step_rotation.norm();
     layers_[static_cast<std::size_t>(first)] = start;
   }
   layers_.erase(layers_.begin(), layers_.begin() + first);
+  for (Segment& segment : segments_) segment.layer -= first;
+  for (Corner& corner : corners_) corner.layer -= first;
+  std::erase_if(corners_, [](const Corner& corner) { return corner.layer <= 0; });
 }
 
 ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget) {
-  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget);
+  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget, problem.smooth);
   if (problem.start) {
     const Pose tool = chain.tool(*problem.start);
     path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
@@ -147,6 +217,7 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
 Pose ToolPath::at(int i, double t) const {
   const PathLayer& from = layer(i);
   const PathLayer& to = layer(i + 1);
+  if (rounded_ && !(begins_aside_ && i == 0)) return on_curve(segment_of(i), from.travel + t * (to.travel - from.travel));
   Pose X;
   X.translation() = from.tool.translation() + t * (to.tool.translation() - from.tool.translation());
   X.linear() = from.tool.linear();

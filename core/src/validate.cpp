@@ -187,6 +187,16 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(field("tool_turn_speed"), limits.tool_turn_speed, kPositive);
   number(field("edge_clearance"), limits.edge_clearance, kNonNegative);
   number(field("edge_tolerance"), limits.edge_tolerance, kPositive);
+  const auto rates = [&](const char* name, const std::optional<std::array<double, kDof>>& values) {
+    for (std::size_t k = 0; values && k < kDof; ++k) number(field(name, k), (*values)[k], kPositive);
+  };
+  rates("joint_speed", limits.joint_speed);
+  rates("joint_acceleration", limits.joint_acceleration);
+  rates("joint_jerk", limits.joint_jerk);
+  if (problem.smooth) {
+    number(root("smooth")("position"), problem.smooth->position, kNonNegative);
+    number(root("smooth")("angle"), problem.smooth->angle, kNonNegative);
+  }
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
   if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "a number beside a start");
   number(root("start_at"), problem.start_at, kNonNegative);
@@ -213,6 +223,8 @@ void validate_joint(const Field& field, const Joint& joint, const RobotModel& ro
   if (!(std::abs(joint.axis.norm() - 1) <= 1e-6))
     fail(field("axis"), "is no unit vector", "a finite vector of length 1 within 1e-6");
   if (!(joint.velocity >= 0)) fail(field("velocity"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (!(joint.acceleration >= 0)) fail(field("acceleration"), "is negative or not a number", "a number >= 0, 0 for none");
+  if (!(joint.jerk >= 0)) fail(field("jerk"), "is negative or not a number", "a number >= 0, 0 for none");
   if (joint.type != Joint::Type::kContinuous && !(joint.lower <= joint.upper))
     fail(field("lower"), "is not a number up to `upper`", "lower <= upper");
   if (!joint.mimic) return;

@@ -18,6 +18,7 @@ struct JointLimit {
   double lower = -kPi, upper = kPi;  ///< rad
   double velocity = 0;               ///< rad/s, 0 where the file gives none
   bool continuous = false;
+  double acceleration = 0, jerk = 0;  ///< rad/s^2 and rad/s^3, 0 where the file gives none
   /// Bounds that mean "unlimited": over 64 turns. Such a joint is planned as a continuous one.
   [[nodiscard]] bool wide() const { return !continuous && upper - lower > kMostTurns * kTwoPi; }
 };

@@ -39,6 +39,13 @@ struct AttachedBody {
 enum class EdgeMode { kContinuous, kNodes };
 enum class CostMetric { kL2, kMax, kTime };
 
+/// How far the curve that the tool follows may leave the polyline of the waypoints, so that corners are rounded. Zero: not at all.
+struct PathSmoothing {
+  double position = 0.1e-3;  ///< m
+  double angle = 1e-3;       ///< rad
+  bool operator==(const PathSmoothing&) const = default;
+};
+
 /// docs/model.md. Unset optionals mean "no such limit".
 struct Limits {
   double clearance = 0.005;                       ///< d_safe, m
@@ -55,6 +62,8 @@ struct Limits {
   EdgeMode edges = EdgeMode::kContinuous;
   std::optional<double> edge_clearance;  ///< d_edge, m; default clearance / 2
   double edge_tolerance = 0.0005;        ///< h, m
+  // What motions in time keep, instead of what the robot model states: rad/s, rad/s^2, rad/s^3, base to tip.
+  std::optional<std::array<double, kDof>> joint_speed, joint_acceleration, joint_jerk;
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
   [[nodiscard]] double d_self() const { return self_clearance.value_or(clearance); }
   [[nodiscard]] double d_self_edge() const { return edge_clearance.value_or(d_self() / 2); }
@@ -93,8 +102,9 @@ struct Robot {
 
 /// What the tool is to do, and within which limits.
 struct Task {
-  std::string path_frame;           ///< base_link (also empty) or the name of a scene object
-  std::vector<Waypoint> waypoints;  ///< in path_frame
+  std::string path_frame;               ///< base_link (also empty) or the name of a scene object
+  std::vector<Waypoint> waypoints;      ///< in path_frame
+  std::optional<PathSmoothing> smooth;  ///< unset: the polyline as it is
   Resolution resolution;
   Limits limits;
   std::optional<Config> start;  ///< joints to begin with, rad

@@ -30,6 +30,8 @@ struct Joint {
   Vector3d axis = Vector3d::UnitX();  ///< unit, in the joint frame
   double lower = 0, upper = 0;        ///< rad or m; unused for continuous joints
   double velocity = 0;                ///< rad/s or m/s; 0 where the file gives none
+  double acceleration = 0;            ///< rad/s^2 or m/s^2, of speeding up and slowing down; 0 where the file gives none
+  double jerk = 0;                    ///< rad/s^3 or m/s^3; 0 where the file gives none
   std::optional<Mimic> mimic;
   [[nodiscard]] bool movable() const { return type != Type::kFixed; }
 };

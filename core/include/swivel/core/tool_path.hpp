@@ -20,16 +20,22 @@ struct PathLayer {
   double step_length = 0;                     ///< m to the next layer
   double step_angle = 0;                      ///< rad to the next layer
   Vector3d step_rotation = Vector3d::Zero();  ///< axis * angle of that step, in the tool frame of this layer
+  double travel = 0;  ///< m, like s, but going on where the path turns: a segment counts max(length, angle ds / dalpha)
 };
 
 /// Waypoints cut into layers: position linear, orientation slerp on the short arc; every waypoint is a layer, so corners are never
 /// cut. docs/model.md "Tool path"; paper Eq. (1)-(4).
+///
+/// With smoothing the tool follows a curve instead, twice continuously differentiable in `travel`: about each corner the velocity
+/// (of position and of rotation, per metre of travel) goes from the one, a, to the other, b, by a + (b - a) (3 z^2 - 2 z^3), z from
+/// 0 to 1 over `reach` on both sides. That leaves the polyline by at most 3/16 reach |b - a|. s, layers and steps are those of the
+/// polyline; only the poses differ.
 class ToolPath {
  public:
   /// Throws InputError: fewer than two distinct waypoints, a turn of 180 deg between neighbours, more layers than fit in memory.
   /// Throws Stopped.
   ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
-           const Budget& budget = {});
+           const Budget& budget = {}, const std::optional<PathSmoothing>& smooth = {});
 
   [[nodiscard]] int size() const { return static_cast<int>(layers_.size()); }
   [[nodiscard]] const PathLayer& layer(int i) const { return layers_[static_cast<std::size_t>(i)]; }
@@ -47,11 +53,39 @@ class ToolPath {
   [[nodiscard]] const std::vector<Pose>& before() const { return before_; }
   /// False where layer 0 is none of the whole path's.
   [[nodiscard]] bool begins_on_layer() const { return begins_on_layer_; }
+  /// Where velocities jump: the tool must stop there unless the curve rounds the corner.
+  struct Corner {
+    int layer = 0;
+    double reach = 0;                ///< m of travel on both sides over which it is rounded; 0: it is not
+    double position = 0, angle = 0;  ///< m and rad, how far the curve leaves the polyline
+  };
+  /// In the order of the path.
+  [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
+  /// The step on which a travel lies: its layer; the first or last one for what is beyond the ends.
+  [[nodiscard]] int step_at(double travel) const;
+  /// Tool pose at a travel.
+  [[nodiscard]] Pose at_travel(double travel) const;
 
  private:
+  /// From a waypoint to the next.
+  struct Segment {
+    int layer = 0;  // the first
+    double travel = 0;
+    Pose start = Pose::Identity();
+    Vector3d velocity = Vector3d::Zero(), rotation = Vector3d::Zero();  // per metre of travel; rotation in the tool's frame
+    double reach = 0;                                                   // of the corner at its start
+  };
+  void find_corners(const PathSmoothing& smooth);
+  [[nodiscard]] Pose on_curve(std::size_t segment, double travel) const;
+  [[nodiscard]] std::size_t segment_of(int step) const;
+
   std::vector<PathLayer> layers_;
   std::vector<Pose> before_;
   bool begins_on_layer_ = true;
+  bool begins_aside_ = false;  // layer 0 is off the curve
+  std::vector<Segment> segments_;
+  std::vector<Corner> corners_;
+  bool rounded_ = false;
   int merged_ = 0;
 };
 

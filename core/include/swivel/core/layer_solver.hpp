@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+
+#include "swivel/core/types.hpp"
+
+namespace swivel {
+
+/// The joints of a path as a function of one coordinate in each layer: what smooth optimisation knows of an arm.
+class LayerSolver {
+ public:
+  virtual ~LayerSolver() = default;
+  /// Layers, numbered from 0.
+  [[nodiscard]] virtual int layers() const = 0;
+  /// Joints at a coordinate of a layer, continuous in it; none where there are none. rad.
+  [[nodiscard]] virtual std::optional<Config> joints(int layer, double coordinate) const = 0;
+  /// Of a layer, ascending; m.
+  [[nodiscard]] virtual double travel(int layer) const = 0;
+};
+
+}  // namespace swivel

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <vector>
+
+#include "swivel/core/budget.hpp"
+#include "swivel/core/layer_solver.hpp"
+
+namespace swivel {
+
+/// What is to be least: sum |W dq_i| + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2, q'' the second divided
+/// difference of the joints over the travel, h the mean of the steps on both sides, x the coordinates.
+struct SmoothObjective {
+  std::array<double, kDof> weights{};
+  double bending = 0;      ///< m^3
+  double most_change = 0;  ///< rad, of the coordinate from a layer to the next
+};
+/// Infinite where a layer has no joints.
+[[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x);
+
+struct CoordinateBox {
+  double low = 0, high = 0;
+};
+/// A local minimum inside the boxes, from x on; never worse than x. Newton's method with derivatives by central differences, a
+/// pentadiagonal Hessian, Levenberg's shift where it is not positive definite, bounds by an active set (Bertsekas 1982).
+/// Deterministic. Throws Stopped.
+[[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
+                                                 const std::vector<CoordinateBox>& boxes, std::vector<double> x,
+                                                 const Budget& budget = {});
+
+}  // namespace swivel

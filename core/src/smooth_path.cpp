@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/smooth_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace swivel {
+
+namespace {
+
+constexpr double kChange = 1e3;      // weight of a coordinate that changes too much
+constexpr double kLeastMove = 1e-9;  // rad; rounds off the tip of the norm
+
+/// Joints of all layers at given coordinates, and their derivatives by them.
+struct Layers {
+  std::vector<Config> q, first, second;
+};
+
+/// Coefficients of the second divided difference, and the mean step.
+struct Bend {
+  std::array<double, 3> c{};
+  double h = 0;
+};
+
+class Objective {
+ public:
+  Objective(const LayerSolver& solver, const SmoothObjective& objective)
+      : solver_(&solver), objective_(&objective), n_(solver.layers()) {
+    scale_ = Config::Map(objective.weights.data());
+    bends_.resize(static_cast<std::size_t>(n_));
+    for (int i = 1; i + 1 < n_; ++i) {
+      const double h0 = solver.travel(i) - solver.travel(i - 1), h1 = solver.travel(i + 1) - solver.travel(i), h = (h0 + h1) / 2;
+      bends_[at(i)] = {{1 / (h0 * h), -1 / (h0 * h) - 1 / (h1 * h), 1 / (h1 * h)}, h};
+    }
+  }
+
+  [[nodiscard]] bool solve(const std::vector<double>& x, std::vector<Config>& q) const {
+    q.resize(x.size());
+    for (int i = 0; i < n_; ++i) {
+      const auto joints = solver_->joints(i, x[at(i)]);
+      if (!joints) return false;
+      q[at(i)] = *joints;
+    }
+    return true;
+  }
+
+  [[nodiscard]] double value(const std::vector<double>& x, const std::vector<Config>& q) const {
+    double sum = 0;
+    for (int i = 0; i + 1 < n_; ++i) {
+      sum += norm(scale_.cwiseProduct(q[at(i + 1)] - q[at(i)]));
+      const double over = std::abs(x[at(i + 1)] - x[at(i)]) - objective_->most_change;
+      if (over > 0) sum += kChange * over * over;
+    }
+    for (int i = 1; i + 1 < n_; ++i) sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
+    return sum;
+  }
+
+  /// Fills gradient and the Hessian's diagonals 0, 1, 2 above; false where a derivative does not exist.
+  [[nodiscard]] bool derive(const std::vector<double>& x, Layers& l, std::vector<double>& g,
+                            std::array<std::vector<double>, 3>& H) const {
+    constexpr double kStep = 1e-4;
+    l.first.resize(x.size());
+    l.second.resize(x.size());
+    for (int i = 0; i < n_; ++i) {
+      const auto before = solver_->joints(i, x[at(i)] - kStep), after = solver_->joints(i, x[at(i)] + kStep);
+      if (!before || !after) return false;
+      l.first[at(i)] = (*after - *before) / (2 * kStep);
+      l.second[at(i)] = ((*after - l.q[at(i)]) - (l.q[at(i)] - *before)) / (kStep * kStep);
+    }
+    g.assign(x.size(), 0);
+    for (auto& diagonal : H) diagonal.assign(x.size(), 0);
+    for (int i = 0; i + 1 < n_; ++i) {
+      const std::size_t a = at(i), b = at(i + 1);
+      const Config r = scale_.cwiseProduct(l.q[b] - l.q[a]);
+      const double length = norm(r);
+      const Config way = r / length;
+      const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
+      const double wa = way.dot(ja), wb = way.dot(jb);
+      g[a] -= wa;
+      g[b] += wb;
+      H[0][a] += (ja.squaredNorm() - wa * wa) / length - way.dot(scale_.cwiseProduct(l.second[a]));
+      H[0][b] += (jb.squaredNorm() - wb * wb) / length + way.dot(scale_.cwiseProduct(l.second[b]));
+      H[1][a] -= (ja.dot(jb) - wa * wb) / length;
+      const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
+      if (over <= 0) continue;
+      const double pull = 2 * kChange * std::copysign(over, change);
+      g[a] -= pull;
+      g[b] += pull;
+      H[0][a] += 2 * kChange;
+      H[0][b] += 2 * kChange;
+      H[1][a] -= 2 * kChange;
+    }
+    for (int i = 1; i + 1 < n_; ++i) {
+      const Bend& b = bends_[at(i)];
+      const Config e = bend(l.q, i);
+      const double w = 2 * objective_->bending * b.h;
+      for (int j = 0; j < 3; ++j) {
+        const std::size_t k = at(i - 1 + j);
+        const double cj = b.c[static_cast<std::size_t>(j)];
+        g[k] += w * cj * e.dot(l.first[k]);
+        H[0][k] += w * cj * e.dot(l.second[k]);
+        for (int m = j; m < 3; ++m)
+          H[static_cast<std::size_t>(m - j)][k] +=
+              w * cj * b.c[static_cast<std::size_t>(m)] * l.first[k].dot(l.first[at(i - 1 + m)]);
+      }
+    }
+    return true;
+  }
+
+ private:
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  static double norm(const Config& r) { return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove); }
+  [[nodiscard]] Config bend(const std::vector<Config>& q, int i) const {
+    const auto& c = bends_[at(i)].c;
+    return c[0] * q[at(i - 1)] + c[1] * q[at(i)] + c[2] * q[at(i + 1)];
+  }
+
+  const LayerSolver* solver_;
+  const SmoothObjective* objective_;
+  int n_;
+  Config scale_;
+  std::vector<Bend> bends_;
+};
+
+/// Solves (H + shift) p = -g over the free coordinates, p = 0 elsewhere, by L D L^T; false unless positive definite.
+bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, const std::vector<bool>& free,
+                 double shift, std::vector<double>& p) {
+  const std::size_t n = g.size();
+  std::vector<double> d(n), l1(n, 0), l2(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    // l1[i], l2[i]: entries of row i one and two before the diagonal.
+    if (!free[i]) {
+      d[i] = 1;
+      p[i] = 0;
+      continue;
+    }
+    double rhs = -g[i], pivot = H[0][i] + shift;
+    const bool one = i >= 1 && free[i - 1], two = i >= 2 && free[i - 2];
+    const double h1 = one ? H[1][i - 1] : 0, h2 = two ? H[2][i - 2] : 0;
+    if (two) l2[i] = h2 / d[i - 2];
+    if (one) l1[i] = (h1 - (two ? h2 * l1[i - 1] : 0)) / d[i - 1];
+    pivot -= l1[i] * l1[i] * (one ? d[i - 1] : 0) + l2[i] * l2[i] * (two ? d[i - 2] : 0);
+    if (!(pivot > 1e-12 * (std::abs(H[0][i]) + shift))) return false;
+    d[i] = pivot;
+    if (one) rhs -= l1[i] * p[i - 1];
+    if (two) rhs -= l2[i] * p[i - 2];
+    p[i] = rhs;
+  }
+  for (std::size_t i = 0; i < n; ++i) p[i] /= d[i];
+  for (std::size_t i = n; i-- > 0;) {
+    if (!free[i]) continue;
+    if (i + 1 < n && free[i + 1]) p[i] -= l1[i + 1] * p[i + 1];
+    if (i + 2 < n && free[i + 2]) p[i] -= l2[i + 2] * p[i + 2];
+  }
+  return true;
+}
+
+}  // namespace
+
+double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x) {
+  const Objective f(solver, objective);
+  std::vector<Config> q;
+  return f.solve(x, q) ? f.value(x, q) : std::numeric_limits<double>::infinity();
+}
+
+std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x, const Budget& budget) {
+  constexpr int kIterations = 60;
+  constexpr double kGain = 1e-9, kFirstShift = 1e-3, kLastShift = 1e9;
+  const Objective f(solver, objective);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = std::clamp(x[i], boxes[i].low, boxes[i].high);
+  Layers here;
+  if (!f.solve(x, here.q)) return x;
+  double value = f.value(x, here.q), shift = 0;
+  std::vector<double> g, p(x.size()), next(x.size());
+  std::array<std::vector<double>, 3> H;
+  std::vector<bool> free(x.size());
+  std::vector<Config> q;
+  int small = 0;
+  for (int iteration = 0; iteration < kIterations && small < 2; ++iteration) {
+    budget.poll();
+    if (!f.derive(x, here, g, H)) return x;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      free[i] = boxes[i].low < boxes[i].high && !(x[i] <= boxes[i].low && g[i] > 0) && !(x[i] >= boxes[i].high && g[i] < 0);
+    bool better = false;
+    while (!better && shift <= kLastShift) {
+      if (newton_step(H, g, free, shift, p)) {
+        for (std::size_t i = 0; i < x.size(); ++i) next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
+        if (f.solve(next, q)) {
+          const double there = f.value(next, q);
+          if (there < value) {
+            small = value - there < kGain * (1 + value) ? small + 1 : 0;
+            value = there;
+            x.swap(next);
+            here.q.swap(q);
+            better = true;
+            break;
+          }
+        }
+      }
+      shift = std::max(kFirstShift, 4 * shift);
+    }
+    if (!better) break;
+    shift = shift <= kFirstShift ? 0 : shift / 8;
+  }
+  return x;
+}
+
+}  // namespace swivel

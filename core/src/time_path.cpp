@@ -1,0 +1,601 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/time_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+
+#include "swivel/core/angle.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTarget = 0.99;  // of the rates, by the analytic estimate; what is left covers interpolation
+
+double angle_between(const Pose& a, const Pose& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+/// Weights of values at five places for their first three derivatives at x: Fornberg 1988.
+Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
+  Eigen::Matrix<double, 5, 4> c = Eigen::Matrix<double, 5, 4>::Zero();
+  double c1 = 1, c4 = places[0] - x;
+  c(0, 0) = 1;
+  for (int i = 1; i < 5; ++i) {
+    const int orders = std::min(i, 3);
+    double c2 = 1;
+    const double c5 = c4;
+    c4 = places[i] - x;
+    for (int j = 0; j < i; ++j) {
+      const double c3 = places[i] - places[j];
+      c2 *= c3;
+      if (j == i - 1) {
+        for (int k = orders; k >= 1; --k) c(i, k) = c1 * (k * c(i - 1, k - 1) - c5 * c(i - 1, k)) / c2;
+        c(i, 0) = -c1 * c5 * c(i - 1, 0) / c2;
+      }
+      for (int k = orders; k >= 1; --k) c(j, k) = (c4 * c(j, k) - k * c(j, k - 1)) / c3;
+      c(j, 0) = c4 * c(j, 0) / c3;
+    }
+    c1 = c2;
+  }
+  return c;
+}
+
+/// A motion's geometry at one place of its travel: derivatives of the joints by the travel, and the tool's speeds per m of it.
+struct Place {
+  double x = 0;  // m of travel
+  Config q, first, second, third;
+  double along = 0, turning = 0;  // m/m and rad/m
+};
+
+/// What slows a place down.
+struct Brake {
+  int joint = -1;  // -1: the speed asked for
+  JointRate rate = JointRate::kSpeed;
+};
+
+/// From one rest to the next: where the motion is, and how fast, at which time.
+class Piece {
+ public:
+  Piece(const JointRates& rates, const TimingOptions& options, std::vector<Place> places)
+      : rates_(&rates), places_(std::move(places)), n_(places_.size()) {
+    asked_.resize(n_);
+    cap_.resize(n_);
+    pull_.resize(n_);
+    brake_.resize(n_);
+    slower_.assign(n_, 1);
+    gentler_.assign(n_, 1);
+    speed_.assign(n_, 0);
+    const auto r = [](double limit, double value) { return value > 0 ? limit / value : kInfinity; };
+    filter_ = 0;
+    for (int j = 0; j < kDof; ++j) filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
+    filter_ = std::max(filter_, 1e-4);
+    for (std::size_t k = 0; k < n_; ++k) {
+      const Place& place = places_[k];
+      asked_[k] = r(options.speed, place.along > kStill ? place.along : 0);
+      if (options.turn_speed) asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
+      cap_[k] = asked_[k];
+      pull_[k] = kInfinity;
+      double joint_speed = kInfinity;
+      for (int j = 0; j < kDof; ++j) {
+        joint_speed = std::min(joint_speed, r(rates.speed[j], std::abs(place.first[j])));
+        lower(k, kTarget * r(rates.speed[j], std::abs(place.first[j])), {j, JointRate::kSpeed});
+        lower(k, std::sqrt(kTarget * r(rates.acceleration[j], std::abs(place.second[j]))), {j, JointRate::kAcceleration});
+        lower(k, std::cbrt(kTarget * r(rates.jerk[j], std::abs(place.third[j]))), {j, JointRate::kJerk});
+        pull_[k] = std::min(pull_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
+      }
+      if (!std::isfinite(asked_[k])) asked_[k] = joint_speed;
+      // Nothing moves: any speed will do.
+      const double any = places_.back().x - places_.front().x;
+      if (!std::isfinite(asked_[k])) asked_[k] = any;
+      if (!std::isfinite(cap_[k])) cap_[k] = any;
+      if (!std::isfinite(pull_[k])) pull_[k] = 1e3 * any;
+    }
+  }
+
+  [[nodiscard]] double duration() const { return stretch_ * (end_ + filter_); }
+  /// At the speed asked for throughout.
+  [[nodiscard]] double ideal() const {
+    double time = 0;
+    for (std::size_t k = 1; k < n_; ++k) time += (places_[k].x - places_[k - 1].x) * 0.5 * (1 / asked_[k] + 1 / asked_[k - 1]);
+    return time;
+  }
+
+  /// Travel and its first three derivatives by time, the same at both ends of the filter's window before it.
+  struct State {
+    double x = 0, speed = 0, acceleration = 0, jerk = 0;
+    double from = 0, to = 0;  // travel of the unfiltered motion, half a window before and after
+  };
+  /// Walks through a piece in time: cheap for times that ascend.
+  class Walk {
+   public:
+    explicit Walk(const Piece& piece) : piece_(&piece) {}
+    State at(double t) {
+      const Piece& p = *piece_;
+      t = t / p.stretch_ - p.filter_ / 2;
+      const Raw a = p.raw(t - p.filter_ / 2, before_), b = p.raw(t + p.filter_ / 2, after_);
+      const double w = p.filter_, z = 1 / p.stretch_;
+      return {std::clamp((b.area - a.area) / w, p.places_.front().x, p.places_.back().x),
+              (b.x - a.x) / w * z,
+              (b.speed - a.speed) / w * z * z,
+              (b.acceleration - a.acceleration) / w * z * z * z,
+              a.x,
+              b.x};
+    }
+
+   private:
+    const Piece* piece_;
+    std::size_t before_ = 0, after_ = 0;
+  };
+
+  struct Derivatives {
+    Config first, second, third;
+    double along = 0, turning = 0, asked = 0;
+    std::size_t node = 0;
+  };
+  /// By the travel, linear between places; `node` hints where, and is where.
+  [[nodiscard]] Derivatives derivatives(double x, std::size_t& node) const {
+    seek(x, node);
+    const Place &a = places_[node], &b = places_[node + 1];
+    const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0), v = 1 - u;
+    return {v * a.first + u * b.first, v * a.second + u * b.second,   v * a.third + u * b.third,
+            v * a.along + u * b.along, v * a.turning + u * b.turning, v * asked_[node] + u * asked_[node + 1],
+            u < 0.5 ? node : node + 1};
+  }
+
+  /// Plans the speeds; verifies them and slows down where a joint is too fast, until none is. Returns the rounds.
+  int plan(const Budget& budget) {
+    constexpr int kRounds = 60;
+    for (int round = 1;; ++round) {
+      budget.poll();
+      profile();
+      const double worst = verify(round > kRounds / 3, round < kRounds);
+      if (worst <= 1) return round;
+      if (round == kRounds) {
+        stretch(worst);
+        return round;
+      }
+    }
+  }
+  /// Slower as a whole.
+  void stretch(double factor) { stretch_ *= factor; }
+  [[nodiscard]] const Brake& brake(std::size_t node) const { return brake_[node]; }
+  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+
+ private:
+  static constexpr double kShare = 0.9;   // of a joint's acceleration, for speeding up and slowing down along the path
+  static constexpr double kStill = 1e-9;  // m/m: the path only turns
+  struct Raw {
+    double area = 0, x = 0, speed = 0, acceleration = 0;
+  };
+
+  void lower(std::size_t k, double to, const Brake& brake) {
+    if (to >= cap_[k]) return;
+    cap_[k] = to;
+    brake_[k] = brake;
+  }
+
+  void seek(double x, std::size_t& node) const {
+    if (node + 2 > n_ || places_[node].x > x) node = 0;
+    while (node + 2 < n_ && places_[node + 1].x <= x) ++node;
+  }
+
+  /// Unfiltered speeds: the caps, each kept for as long before and after as the filter looks, and what accelerations allow.
+  void profile() {
+    std::vector<double> cap(n_);
+    for (std::size_t k = 0; k < n_; ++k) cap[k] = cap_[k] * slower_[k];
+    speed_ = cap;
+    for (std::size_t k = 0; k < n_; ++k) {
+      const double reach = cap[k] * filter_ / 2;
+      for (std::size_t i = k; i-- > 0 && places_[k].x - places_[i].x <= reach && cap[i] >= cap[k];)
+        speed_[i] = std::min(speed_[i], cap[k]);
+      for (std::size_t i = k + 1; i < n_ && places_[i].x - places_[k].x <= reach && cap[i] >= cap[k]; ++i)
+        speed_[i] = std::min(speed_[i], cap[k]);
+    }
+    speed_.front() = speed_.back() = 0;
+    const auto bound = [&](std::size_t from, std::size_t to) {
+      const double pull = std::min(pull_[from] * gentler_[from], pull_[to] * gentler_[to]);
+      speed_[to] =
+          std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * pull * std::abs(places_[to].x - places_[from].x)));
+    };
+    for (std::size_t k = 1; k < n_; ++k) bound(k - 1, k);
+    for (std::size_t k = n_ - 1; k-- > 0;) bound(k + 1, k);
+    time_.assign(n_, 0);
+    area_.assign(n_, 0);
+    for (std::size_t k = 1; k < n_; ++k) {
+      const double h = places_[k].x - places_[k - 1].x, dt = 2 * h / (speed_[k - 1] + speed_[k]);
+      const double a = (speed_[k] - speed_[k - 1]) / dt;
+      time_[k] = time_[k - 1] + dt;
+      area_[k] = area_[k - 1] + dt * (places_[k - 1].x + dt * (speed_[k - 1] / 2 + dt * a / 6));
+    }
+    end_ = time_.back();
+  }
+
+  /// The unfiltered motion at a time, and the area under its travel.
+  [[nodiscard]] Raw raw(double t, std::size_t& node) const {
+    if (t <= 0) return {t * places_.front().x, places_.front().x, 0, 0};
+    if (t >= end_) return {area_.back() + (t - end_) * places_.back().x, places_.back().x, 0, 0};
+    if (node + 2 > n_ || time_[node] > t) node = 0;
+    while (node + 2 < n_ && time_[node + 1] <= t) ++node;
+    const double u = t - time_[node], a = (speed_[node + 1] - speed_[node]) / (time_[node + 1] - time_[node]);
+    const double x = places_[node].x, v = speed_[node];
+    return {area_[node] + u * (x + u * (v / 2 + u * a / 6)), x + u * (v + u * a / 2), v + u * a, a};
+  }
+
+  /// The factor by which the motion as a whole would have to be slower. Where a joint is beyond its rates, what lies within the
+  /// filter's window is slowed down: the speed where the path's own bends are the reason, else the acceleration along it; both
+  /// where that takes too many rounds.
+  double verify(bool both, bool slow_down) {
+    constexpr double kLeast = 0.5, kPath = 0.4;
+    std::vector<double> slower(n_, 1), gentler(n_, 1);
+    double worst = 1;
+    const double step = std::min(1e-3, filter_ / 8);
+    Walk walk(*this);
+    std::size_t node = 0, low = 0, high = 0;
+    const auto steps = static_cast<long long>(std::ceil((end_ + filter_) / step));
+    for (long long i = 0; i <= steps; ++i) {
+      const State at = walk.at(static_cast<double>(i) * step * stretch_);
+      const Derivatives d = derivatives(at.x, node);
+      const double v = at.speed, a = at.acceleration, jerk = at.jerk;
+      double path = 1, along = 1;  // factors of speed and of acceleration along the path
+      for (int j = 0; j < kDof; ++j) {
+        const double bend = d.second[j] * v * v, third = d.third[j] * v * v * v;
+        const double ratio[3] = {std::abs(d.first[j] * v) / (kTarget * rates_->speed[j]),
+                                 std::abs(bend + d.first[j] * a) / (kTarget * rates_->acceleration[j]),
+                                 std::abs(third + 3 * d.second[j] * v * a + d.first[j] * jerk) / (kTarget * rates_->jerk[j])};
+        // Shares of the limit that the speed alone takes.
+        const double of_path[3] = {ratio[0], std::abs(bend) / rates_->acceleration[j], std::abs(third) / rates_->jerk[j]};
+        for (int n = 0; n < 3; ++n) {
+          if (ratio[n] <= 1) continue;
+          const double root = n == 0 ? ratio[n] : n == 1 ? std::sqrt(ratio[n]) : std::cbrt(ratio[n]);
+          worst = std::max(worst, root);
+          const bool of_speed = both || of_path[n] > kPath;
+          if (of_speed) path = std::min(path, 0.995 / root);
+          if (both || n > 0) along = std::min(along, 0.98 / ratio[n]);
+          if (of_speed) brake_[d.node] = {j, static_cast<JointRate>(n)};
+        }
+      }
+      if (path >= 1 && along >= 1) continue;
+      seek(at.from, low);
+      seek(at.to, high);
+      for (std::size_t k = low > 0 ? low - 1 : 0; k <= std::min(high + 2, n_ - 1); ++k) {
+        slower[k] = std::min(slower[k], std::max(kLeast, path));
+        gentler[k] = std::min(gentler[k], std::max(kLeast, along));
+      }
+    }
+    if (!slow_down) return worst;
+    for (std::size_t k = 0; k < n_; ++k) slower_[k] *= slower[k], gentler_[k] *= gentler[k];
+    return worst;
+  }
+
+  const JointRates* rates_;
+  std::vector<Place> places_;
+  std::size_t n_;
+  std::vector<double> asked_;             // speed of travel asked for, m/s
+  std::vector<double> cap_, pull_;        // m/s and m/s^2: what the joints allow
+  std::vector<double> slower_, gentler_;  // factors of both, from verifying
+  std::vector<Brake> brake_;
+  std::vector<double> speed_, time_, area_;  // of the unfiltered motion, which is of constant acceleration between places
+  double filter_ = 0, end_ = 0, stretch_ = 1;
+};
+
+/// Places from one rest to the next: at least four a step, eight over what a corner is rounded.
+std::vector<double> places_between(const ToolPath& path, double from, double to) {
+  std::vector<double> knots;  // of the tool's curve and of the arm angle
+  for (int i = path.step_at(from); i < path.size() && path.layer(i).travel <= to; ++i)
+    if (path.layer(i).travel >= from) knots.push_back(path.layer(i).travel);
+  std::vector<double> bends;
+  for (const ToolPath::Corner& corner : path.corners()) {
+    const double x = path.layer(corner.layer).travel;
+    if (corner.reach > 0 && x > from && x < to)
+      for (int k = -8; k <= 8; ++k) bends.push_back(x + k * corner.reach / 8);
+  }
+  std::vector<double> merged;
+  std::merge(knots.begin(), knots.end(), bends.begin(), bends.end(), std::back_inserter(merged));
+  double most = 0;
+  for (std::size_t k = 1; k < knots.size(); ++k) most = std::max(most, knots[k] - knots[k - 1]);
+  std::vector<double> places{from};
+  const double least = 1e-3 * most / 4;  // nearer ones spoil the differences
+  for (const double x : merged) {
+    const double h = x - places.back();
+    if (h < least) continue;
+    const int parts = std::max(1, static_cast<int>(std::ceil(4 * h / most - 1e-6)));
+    const double begin = places.back();
+    for (int k = 1; k <= parts; ++k) places.push_back(k == parts ? x : begin + k * h / parts);
+  }
+  places.back() = to;
+  while (places.size() < 6) {  // five places are needed for a difference
+    std::vector<double> finer{places[0]};
+    for (std::size_t k = 1; k < places.size(); ++k) {
+      finer.push_back((places[k - 1] + places[k]) / 2);
+      finer.push_back(places[k]);
+    }
+    places.swap(finer);
+  }
+  return places;
+}
+
+/// Joints and tool at the places, and their derivatives by the travel.
+std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, std::vector<Place>& places) {
+  const std::size_t n = xs.size();
+  places.resize(n);
+  std::vector<Pose> tool(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    places[k].x = xs[k];
+    tool[k] = motion.path().at_travel(xs[k]);
+    const auto q = motion.joints(xs[k]);
+    if (!q) {
+      const int i = motion.path().step_at(xs[k]);
+      return NoMotion{motion.path().layer(i).s, "the arm has no solution between layers"};
+    }
+    places[k].q = *q;
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t first = std::min(k > 2 ? k - 2 : 0, n - 5);
+    const auto weights = derivative_weights(xs.data() + first, xs[k]);
+    Place& place = places[k];
+    place.first = place.second = place.third = Config::Zero();
+    Vector3d along = Vector3d::Zero();
+    for (std::size_t i = 0; i < 5; ++i) {
+      const auto w = weights.row(static_cast<Eigen::Index>(i));
+      place.first += w[1] * places[first + i].q;
+      place.second += w[2] * places[first + i].q;
+      place.third += w[3] * places[first + i].q;
+      along += w[1] * tool[first + i].translation();
+    }
+    place.along = along.norm();
+    const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, n - 1);
+    place.turning = angle_between(tool[a], tool[b]) / (xs[b] - xs[a]);
+  }
+  return std::nullopt;
+}
+
+/// Sampled motion, and what is measured on the samples.
+class Samples {
+ public:
+  Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, std::vector<Piece>& pieces,
+          const Budget& budget)
+      : motion_(&motion),
+        rates_(&rates),
+        options_(&options),
+        pieces_(&pieces),
+        budget_(&budget),
+        near_(1 / options.rate <= 4e-3 * (1 + 1e-9)) {}
+
+  std::optional<NoMotion> take(TimedPath& out) {
+    out.rows.clear();
+    travel_.clear();
+    asked_.clear();
+    double before = 0;
+    const double dt = 1 / options_->rate;
+    long long k = 0;
+    for (std::size_t p = 0; p < pieces_->size(); ++p) {
+      const Piece& piece = (*pieces_)[p];
+      Piece::Walk walk(piece), beside(piece);
+      std::size_t node = 0;
+      const bool last = p + 1 == pieces_->size();
+      for (;; ++k) {
+        const double t = static_cast<double>(k) * dt, here = t - before;
+        const bool done = here >= piece.duration() - 1e-12;
+        if (done && !last) break;
+        if (k % 256 == 0) budget_->poll();
+        const Piece::State at = walk.at(std::min(here, piece.duration()));
+        const auto q = motion_->joints(at.x);
+        if (!q) return NoMotion{motion_->row(at.x, Config::Zero()).s, "the arm has no solution between layers"};
+        const Piece::Derivatives d = piece.derivatives(at.x, node);
+        TimedRow row;
+        row.t = t;
+        row.row = motion_->row(at.x, *q);
+        if (!near_ && here > 0 && here < piece.duration() && !differ(piece, beside, here, row))
+          return NoMotion{row.row.s, "the arm has no solution between layers"};
+        out.rows.push_back(row);
+        travel_.push_back(at.x);
+        asked_.push_back({at.speed / d.asked, p, d.node});
+        if (done) break;
+      }
+      before += piece.duration();
+    }
+    for (std::size_t i = 1; near_ && i + 1 < out.rows.size(); ++i) {
+      const Config &q0 = out.rows[i - 1].row.q, &q1 = out.rows[i].row.q, &q2 = out.rows[i + 1].row.q;
+      out.rows[i].v = (q2 - q0) / (2 * dt);
+      out.rows[i].a = ((q2 - q1) - (q1 - q0)) / (dt * dt);
+    }
+    out.duration = before;
+    return std::nullopt;
+  }
+
+  /// The factor by which the motion would have to be slower.
+  double measure_peaks(TimedPath& out) const {
+    const auto n = static_cast<long long>(out.rows.size());
+    const double dt = 1 / options_->rate;
+    const auto q = [&](long long k) -> const Config& {
+      return out.rows[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))].row.q;
+    };
+    double slower = 1;
+    out.peaks = {};
+    for (long long k = -1; k < n + 2; ++k) {
+      const Config step = q(k) - q(k - 1);
+      const Config differences[3] = {step / dt, (step - (q(k - 1) - q(k - 2))) / (dt * dt),
+                                     (step - 2 * (q(k - 1) - q(k - 2)) + (q(k - 2) - q(k - 3))) / (dt * dt * dt)};
+      for (int order = 0; order < 3; ++order)
+        for (int j = 0; j < kDof; ++j) {
+          const double limit = (order == 0 ? rates_->speed : order == 1 ? rates_->acceleration : rates_->jerk)[j];
+          const double ratio = std::abs(differences[order][j]) / limit;
+          TimedPath::Peak& peak = out.peaks[static_cast<std::size_t>(order)][static_cast<std::size_t>(j)];
+          if (ratio <= peak.ratio) continue;
+          const TimedRow& row = out.rows[static_cast<std::size_t>(std::clamp(k - order / 2 - (order > 0 ? 1 : 0), 0LL, n - 1))];
+          peak = {ratio, j, row.t, row.row.s};
+          slower = std::max(slower, order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio));
+        }
+    }
+    return slower;
+  }
+
+  void measure_between(TimedPath& out) const {
+    const ToolPath& path = motion_->path();
+    for (std::size_t k = 1; k < out.rows.size(); ++k) {
+      const double middle = (travel_[k - 1] + travel_[k]) / 2, h = travel_[k] - travel_[k - 1];
+      if (h <= 0) continue;
+      const Pose tool = motion_->chain().tool((out.rows[k - 1].row.q + out.rows[k].row.q) / 2);
+      const Pose there = path.at_travel(middle);
+      Vector3d off = tool.translation() - there.translation();
+      // Not along the path: that is a matter of time.
+      const Vector3d way = path.at_travel(travel_[k]).translation() - path.at_travel(travel_[k - 1]).translation();
+      if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
+      out.between_position = std::max(out.between_position, off.norm());
+      out.between_angle = std::max(out.between_angle, angle_between(tool, there));
+    }
+  }
+
+  /// Stretches below 99.5 % of the speed asked for, but for those that begin or end at rest.
+  void find_slow(TimedPath& out) const {
+    const std::size_t n = out.rows.size();
+    const auto slow = [&](std::size_t k) { return asked_[k].share < 0.995; };
+    for (std::size_t k = 0; k < n;) {
+      if (!slow(k)) {
+        ++k;
+        continue;
+      }
+      std::size_t end = k;
+      while (end < n && slow(end) && asked_[end].piece == asked_[k].piece) ++end;
+      const bool starts = k == 0 || asked_[k - 1].piece != asked_[k].piece;
+      const bool stops = end == n || asked_[end].piece != asked_[k].piece;
+      report_slow(out, k, end, starts, stops);
+      k = end;
+    }
+  }
+
+ private:
+  struct Asked {
+    double share = 0;  // of the speed asked for
+    std::size_t piece = 0, node = 0;
+  };
+
+  /// Speeds and accelerations of a row by differences over a few milliseconds.
+  bool differ(const Piece& piece, Piece::Walk& walk, double t, TimedRow& row) const {
+    constexpr double kStep = 1e-3, kLeast = 1e-4;  // s
+    const double step = std::min({kStep, t, piece.duration() - t});
+    if (step < kLeast) return true;  // at rest
+    const auto before = motion_->joints(walk.at(t - step).x), after = motion_->joints(walk.at(t + step).x);
+    if (!before || !after) return false;
+    row.v = (*after - *before) / (2 * step);
+    row.a = ((*after - row.row.q) - (row.row.q - *before)) / (step * step);
+    return true;
+  }
+
+  void report_slow(TimedPath& out, std::size_t k, std::size_t end, bool starts, bool stops) const {
+    // Of a stretch that starts or stops the tool only what lies behind the first fastest, before the last fastest moment.
+    const auto rises = [&](std::size_t i) { return asked_[i + 1].share > asked_[i].share; };
+    std::size_t first = k, last = end - 1;
+    if (starts)
+      while (first < last && rises(first)) ++first;
+    if (stops)
+      while (last > first && !rises(last - 1)) --last;
+    if ((starts || stops) && first >= last) return;
+    std::size_t lowest = first;
+    for (std::size_t i = first; i <= last; ++i)
+      if (asked_[i].share < asked_[lowest].share) lowest = i;
+    const Asked& at = asked_[lowest];
+    const Piece& piece = (*pieces_)[at.piece];
+    // The reason nearest to the slowest moment.
+    Brake brake = piece.brake(at.node);
+    for (std::size_t off = 1; brake.joint < 0 && off < 200; ++off) {
+      if (at.node + off < piece.places().size()) brake = piece.brake(at.node + off);
+      if (brake.joint < 0 && off <= at.node) brake = piece.brake(at.node - off);
+    }
+    TimedPath::Slow slow;
+    slow.from_s = out.rows[first].row.s, slow.to_s = out.rows[last].row.s;
+    slow.from_t = out.rows[first].t, slow.to_t = out.rows[last].t;
+    slow.share = at.share;
+    slow.joint = std::max(brake.joint, 0);
+    slow.reason = brake.rate;
+    const SrsArm& arm = motion_->arm();
+    const Config& q = out.rows[lowest].row.q;
+    const std::pair<const char*, double> angles[] = {
+        {"shoulder", arm.shoulder_angle(q)}, {"elbow", arm.elbow_angle(q)}, {"wrist", arm.wrist_angle(q)}};
+    double nearest = 0.3;
+    for (const auto& [name, angle] : angles) {
+      const double from_singular = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));
+      if (from_singular < nearest) nearest = from_singular, slow.singular = name, slow.singular_angle = from_singular;
+    }
+    out.slow.push_back(std::move(slow));
+  }
+
+  const PathMotion* motion_;
+  const JointRates* rates_;
+  const TimingOptions* options_;
+  std::vector<Piece>* pieces_;
+  const Budget* budget_;
+  bool near_;  // samples tell speeds and accelerations
+  std::vector<double> travel_;
+  std::vector<Asked> asked_;
+};
+
+}  // namespace
+
+const char* to_string(JointRate rate) {
+  return rate == JointRate::kSpeed ? "speed" : rate == JointRate::kAcceleration ? "acceleration" : "jerk";
+}
+
+TimingResult time_path(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, const Budget& budget) {
+  TimingResult result;
+  if (!motion.jumps().empty()) {
+    result.failure = motion.jumps().front();
+    return result;
+  }
+  const ToolPath& path = motion.path();
+  TimedPath out;
+  out.rate = options.rate;
+  std::vector<double> rests{0};
+  std::vector<int> at;
+  for (const ToolPath::Corner& corner : path.corners()) {
+    if (corner.reach > 0) {
+      ++out.rounded;
+      out.rounded_position = std::max(out.rounded_position, corner.position);
+      out.rounded_angle = std::max(out.rounded_angle, corner.angle);
+      continue;
+    }
+    rests.push_back(path.layer(corner.layer).travel);
+    at.push_back(corner.layer);
+  }
+  rests.push_back(motion.length());
+  std::vector<Piece> pieces;
+  for (std::size_t k = 1; k < rests.size(); ++k) {
+    std::vector<Place> places;
+    result.failure = survey(motion, places_between(path, rests[k - 1], rests[k]), places);
+    if (result.failure) return result;
+    pieces.emplace_back(rates, options, std::move(places));
+    out.rounds = std::max(out.rounds, pieces.back().plan(budget));
+    out.ideal += pieces.back().ideal();
+  }
+  Samples samples(motion, rates, options, pieces, budget);
+  for (int round = 0; round < 20; ++round) {
+    result.failure = samples.take(out);
+    if (result.failure) return result;
+    const double slower = samples.measure_peaks(out);
+    if (slower <= 1) break;
+    for (Piece& piece : pieces) piece.stretch(slower * (1 + 1e-6));
+  }
+  double t = 0;
+  for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
+    t += pieces[k].duration();
+    out.stops.push_back({path.layer(at[k]).s, t, path.layer(at[k]).waypoint});
+  }
+  samples.measure_between(out);
+  samples.find_slow(out);
+  out.warnings = rates.assumed;
+  if (out.between_position > 10e-6) {
+    char text[160];
+    std::snprintf(text, sizeof text, "between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",
+                  1e3 * out.between_position);
+    out.warnings.emplace_back(text);
+  }
+  result.motion = std::move(out);
+  return result;
+}
+
+}  // namespace swivel

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Smooth tool paths, splines, motions in time, and the smooth minimum, each against what is plainly right.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "robots.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/cubic_spline.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/path_motion.hpp"
+#include "swivel/core/smooth_path.hpp"
+#include "swivel/core/time_path.hpp"
+#include "swivel/core/tool_path.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+Vector3d random_vector(Random& random, double size) {
+  return size * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+}
+
+Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
+  Waypoint to = from;
+  to.position += by;
+  if (turn.norm() > 0)
+    to.orientation = (to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()))).normalized();
+  return to;
+}
+
+/// Straight and turning segments of 0.2 mm to 60 mm; some only turn, some only move.
+std::vector<Waypoint> random_waypoints(Random& random, const Waypoint& first) {
+  std::vector<Waypoint> waypoints{first};
+  const int more = 2 + random.below(5);
+  for (int k = 0; k < more; ++k) {
+    const int kind = random.below(5);
+    const double length = kind == 0 ? 0 : kind == 1 ? random.uniform(0.2e-3, 2e-3) : random.uniform(0.01, 0.06);
+    const double angle = kind == 0 ? random.uniform(0.05, 0.3) : kind == 2 ? 0 : random.uniform(0.01, 0.3);
+    waypoints.push_back(moved(waypoints.back(), random_vector(random, length), random_vector(random, angle)));
+  }
+  return waypoints;
+}
+
+double angle_between(const Pose& a, const Pose& b) {
+  return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
+}
+
+TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
+  const std::uint64_t base = seed("SmoothToolPath");
+  const Resolution resolution{.ds = 0.005, .dphi = 0.1, .dalpha = 0.1};
+  int rounded = 0, sharp = 0;
+  for (int trial = 0; trial < trials(60); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const PathSmoothing smooth{random.coin(0.1) ? 0 : random.uniform(0.02e-3, 0.3e-3), random.uniform(0.2e-3, 3e-3)};
+    const auto waypoints = random_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)});
+    const ToolPath plain(waypoints, resolution, "test"), curve(waypoints, resolution, "test", {}, smooth);
+    ASSERT_EQ(plain.size(), curve.size());
+    for (int i = 0; i < plain.size(); ++i) {
+      EXPECT_EQ(plain.layer(i).s, curve.layer(i).s);
+      EXPECT_EQ(plain.layer(i).travel, curve.layer(i).travel);
+      EXPECT_LE((plain.layer(i).tool.translation() - curve.layer(i).tool.translation()).norm(), smooth.position + 1e-12);
+      EXPECT_LE(angle_between(plain.layer(i).tool, curve.layer(i).tool), smooth.angle + 1e-7);
+    }
+    const double length = curve.layer(curve.size() - 1).travel;
+    for (double x = 0; x < length; x += 0.31e-3) {
+      const int i = curve.step_at(x);
+      const double t = (x - curve.layer(i).travel) / (curve.layer(i + 1).travel - curve.layer(i).travel);
+      const Pose there = curve.at_travel(x), line = plain.at(i, t), same = curve.at(i, t);
+      EXPECT_LE((there.translation() - line.translation()).norm(), smooth.position + 1e-12) << trial << " at " << x;
+      EXPECT_LE(angle_between(there, line), smooth.angle + 1e-7) << trial << " at " << x;
+      EXPECT_LE((there.translation() - same.translation()).norm(), 1e-12);
+    }
+    for (const ToolPath::Corner& corner : curve.corners()) {
+      if (corner.reach == 0) {
+        ++sharp;
+        continue;
+      }
+      ++rounded;
+      // The most it leaves the polyline is at the corner, and told.
+      EXPECT_NEAR((plain.layer(corner.layer).tool.translation() - curve.layer(corner.layer).tool.translation()).norm(),
+                  corner.position, 1e-12);
+      EXPECT_NEAR(angle_between(plain.layer(corner.layer).tool, curve.layer(corner.layer).tool), corner.angle, 1e-7);
+      // Second differences on both sides of where the curve begins to bend come together as the step shrinks.
+      const double x = curve.layer(corner.layer).travel;
+      for (const double joint : {x - corner.reach, x, x + corner.reach}) {
+        const auto second = [&](double at, double h) -> Eigen::Matrix4d {
+          return ((curve.at_travel(at + h).matrix() - curve.at_travel(at).matrix()) -
+                  (curve.at_travel(at).matrix() - curve.at_travel(at - h).matrix())) /
+                 (h * h);
+        };
+        const auto jump = [&](double h) { return (second(joint + h, h) - second(joint - h, h)).norm(); };
+        const double h = corner.reach / 8, bend = second(x, h).norm();
+        EXPECT_LT(jump(h / 4), 0.4 * jump(h) + 0.02 * bend + 1e-3) << "trial " << trial;
+      }
+    }
+  }
+  std::printf("%d corners rounded, %d sharp\n", rounded, sharp);
+  EXPECT_GT(rounded, 100);
+  EXPECT_GT(sharp, 5);
+}
+
+TEST(CubicSpline, SolvesTheEquationsOfTheNaturalSpline) {
+  Random random(seed("CubicSpline"));
+  for (int trial = 0; trial < trials(50); ++trial) {
+    const int n = 2 + random.below(12);
+    std::vector<double> x{random.uniform(-1, 1)}, y{random.uniform(-3, 3)};
+    for (int k = 1; k < n; ++k) x.push_back(x.back() + random.uniform(0.1, 2)), y.push_back(random.uniform(-3, 3));
+    const CubicSpline spline(x, y);
+    for (int k = 0; k < n; ++k) EXPECT_NEAR(spline.at(x[static_cast<std::size_t>(k)]), y[static_cast<std::size_t>(k)], 1e-12);
+    const auto slope = [&](double at, double h) { return (spline.at(at + h) - spline.at(at)) / h; };
+    const auto bend = [&](double at, double h) {
+      return (spline.at(at + 2 * h) - 2 * spline.at(at + h) + spline.at(at)) / (h * h);
+    };
+    for (int k = 1; k + 1 < n; ++k) {
+      const double at = x[static_cast<std::size_t>(k)];
+      EXPECT_NEAR(slope(at, 1e-6), slope(at, -1e-6), 1e-2);
+      EXPECT_NEAR(bend(at, 1e-5), bend(at, -1e-5), 0.5);
+    }
+    EXPECT_NEAR(bend(x.front(), 1e-5), 0, 0.5);
+    EXPECT_NEAR(bend(x.back(), -1e-5), 0, 0.5);
+    EXPECT_NEAR(bend(x.back() + 1, 1e-3), 0, 1e-6);
+  }
+}
+
+/// Joints that any coordinate has, curved, and different from layer to layer.
+class Waves final : public LayerSolver {
+ public:
+  Waves(Random& random, int layers) {
+    for (int i = 0; i < layers; ++i) {
+      travel_.push_back(i == 0 ? 0 : travel_.back() + random.uniform(0.5, 1.5));
+      Config phase;
+      for (double& value : phase) value = random.uniform(0, 0.3);
+      phase_.push_back(phase);
+    }
+  }
+  [[nodiscard]] int layers() const override { return static_cast<int>(travel_.size()); }
+  [[nodiscard]] double travel(int layer) const override { return travel_[static_cast<std::size_t>(layer)]; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double x) const override {
+    Config q;
+    for (int j = 0; j < kDof; ++j) q[j] = std::sin(x + j + phase_[static_cast<std::size_t>(layer)][j] + 0.1 * layer);
+    return q;
+  }
+
+ private:
+  std::vector<double> travel_;
+  std::vector<Config> phase_;
+};
+
+TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
+  const std::uint64_t base = seed("SmoothMinimum");
+  int at_bounds = 0, inside = 0;
+  for (int trial = 0; trial < trials(40); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const int n = 3 + random.below(12);
+    const Waves waves(random, n);
+    SmoothObjective objective;
+    for (double& weight : objective.weights) weight = random.uniform(0.2, 2);
+    objective.bending = random.coin() ? 0.1 : 1e-3;
+    objective.most_change = random.coin() ? 0.15 : 10;
+    std::vector<double> x;
+    std::vector<CoordinateBox> boxes;
+    for (int i = 0; i < n; ++i) {
+      x.push_back(random.uniform(-0.4, 0.4));
+      const double width = random.coin(0.2) ? 0 : random.uniform(0.01, 0.6);
+      boxes.push_back({x.back() - width, x.back() + width});
+    }
+    const std::vector<double> found = smooth_minimum(waves, objective, boxes, x);
+    const double least = smooth_cost(waves, objective, found);
+    EXPECT_LE(least, smooth_cost(waves, objective, x));
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      EXPECT_GE(found[k], boxes[k].low);
+      EXPECT_LE(found[k], boxes[k].high);
+      (found[k] > boxes[k].low && found[k] < boxes[k].high ? inside : at_bounds)++;
+    }
+    // Coordinate by coordinate and in random directions.
+    for (int move = 0; move < 4 * n; ++move) {
+      std::vector<double> other = found;
+      for (int i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double by = move < 2 * n ? (i == move / 2 ? (move % 2 == 0 ? 1e-3 : -1e-3) : 0) : random.uniform(-1e-3, 1e-3);
+        other[k] = std::clamp(found[k] + by, boxes[k].low, boxes[k].high);
+      }
+      EXPECT_GE(smooth_cost(waves, objective, other), least - 1e-7) << "trial " << trial;
+    }
+  }
+  std::printf("%d coordinates inside their boxes, %d at bounds\n", inside, at_bounds);
+  EXPECT_GT(inside, 50);
+  EXPECT_GT(at_bounds, 20);
+}
+
+/// A path from a posture well inside the limits, and rows with arm angles that wander on a grid, as a lattice has them.
+struct Followed {
+  Chain chain;
+  SrsArm arm;
+  std::optional<ToolPath> path;
+  std::vector<TrajectoryRow> rows;
+};
+std::optional<Followed> followed(const TestRobot& robot, Random& random, const PathSmoothing& smooth) {
+  Followed f;
+  f.chain = arm_of(robot).chain;
+  f.arm = fit_srs(f.chain, robot.name);
+  Config q;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = f.chain.limit[static_cast<std::size_t>(j)];
+    const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2;
+    q[j] = middle + random.uniform(-0.6, 0.6) + (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
+  }
+  f.path.emplace(random_waypoints(random, waypoint_of(f.chain.tool(q))), Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1},
+                 "test", Budget(), smooth);
+  ArmPlane plane;
+  double phi = 0;
+  const int branch = f.arm.branch(q);
+  for (int i = 0; i < f.path->size(); ++i) {
+    const Pose& tool = f.path->layer(i).tool;
+    plane = i == 0 ? first_plane(f.arm, tool) : carry_plane(f.arm, plane, tool);
+    if (reach_status(f.arm, plane.reach) != ReachStatus::kReachable) return std::nullopt;
+    phi = i == 0 ? plane.angle_of(f.arm.elbow_axis(q)) : phi + 0.05 * (random.below(3) - 1);
+    Config next = srs_ik(f.arm, elbow_circles(f.arm, plane, tool), phi, branch);
+    for (int j = 0; j < kDof; ++j) next[j] = q[j] + wrap_angle(next[j] - q[j]);
+    if (i > 0 && (next - q).lpNorm<Eigen::Infinity>() > 0.3) return std::nullopt;
+    q = next;
+    f.rows.push_back({f.path->layer(i).s, phi, branch, q});
+  }
+  return f;
+}
+
+TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
+  const std::uint64_t base = seed("TimePath");
+  int timed = 0, stops = 0, slow = 0, samples = 0;
+  double worst[3] = {0, 0, 0};
+  const std::vector<TestRobot> robots = all_robots();
+  for (int trial = 0; trial < trials(40); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const PathSmoothing smooth = random.coin(0.2) ? PathSmoothing{0, 0} : PathSmoothing{};
+    const auto f = followed(robots[static_cast<std::size_t>(trial) % robots.size()], random, smooth);
+    if (!f) continue;
+    Limits limits;
+    limits.joint_acceleration.emplace().fill(random.uniform(2, 15));
+    limits.joint_jerk.emplace().fill(random.uniform(20, 300));
+    const JointRates rates = joint_rates(f->chain, limits, "test");
+    TimingOptions options;
+    options.speed = random.coin() ? 0.05 : 0.25;
+    options.rate = random.coin() ? 250 : 1000;
+    if (random.coin()) options.turn_speed = 0.5;
+    const PathMotion motion(f->chain, f->arm, *f->path, f->rows);
+    const TimingResult result = time_path(motion, rates, options);
+    if (!result.motion) continue;
+    ++timed;
+    const TimedPath& out = *result.motion;
+    const std::size_t n = out.rows.size();
+    ASSERT_GE(n, 2u);
+    const double dt = 1 / options.rate;
+    const auto q = [&](std::ptrdiff_t k) {  // at rest before and after
+      return out.rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, static_cast<std::ptrdiff_t>(n) - 1))].row.q;
+    };
+    for (std::ptrdiff_t k = -3; k < static_cast<std::ptrdiff_t>(n) + 3; ++k) {
+      const Config v = (q(k + 1) - q(k)) / dt, a = (q(k + 2) - 2 * q(k + 1) + q(k)) / (dt * dt),
+                   j = (q(k + 3) - 3 * q(k + 2) + 3 * q(k + 1) - q(k)) / (dt * dt * dt);
+      worst[0] = std::max(worst[0], (v.cwiseAbs().array() / rates.speed.array()).maxCoeff());
+      worst[1] = std::max(worst[1], (a.cwiseAbs().array() / rates.acceleration.array()).maxCoeff());
+      worst[2] = std::max(worst[2], (j.cwiseAbs().array() / rates.jerk.array()).maxCoeff());
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      const TimedRow& row = out.rows[k];
+      EXPECT_NEAR(row.t, static_cast<double>(k) * dt, 1e-9);
+      const Pose tool = f->chain.tool(row.row.q);
+      // Its place on the path, by s: where the path only turns, s does not tell.
+      int i = 0;
+      while (i + 2 < f->path->size() && f->path->layer(i + 1).s <= row.row.s) ++i;
+      const bool turns = f->path->layer(i).step_length == 0 ||
+                         (i > 0 && f->path->layer(i - 1).step_length == 0 && row.row.s == f->path->layer(i).s);
+      if (k > 0 && !turns) {
+        const Pose there = f->path->at(i, (row.row.s - f->path->layer(i).s) / f->path->layer(i).step_length);
+        EXPECT_LE((tool.translation() - there.translation()).norm(), 1e-8) << "trial " << trial << " row " << k;
+        EXPECT_LE(angle_between(tool, there), 1e-6);
+        ++samples;
+        const double moved = (tool.translation() - f->chain.tool(out.rows[k - 1].row.q).translation()).norm();
+        EXPECT_LE(moved / dt, options.speed * (1 + 1e-3) + 1e-6);
+      }
+      if (k > 0 && k + 1 < n) {
+        const Config v = (out.rows[k + 1].row.q - out.rows[k - 1].row.q) / (2 * dt);
+        EXPECT_LE((v - row.v).lpNorm<Eigen::Infinity>(), 1e-6 + 0.1 * rates.acceleration.maxCoeff() * dt);
+      }
+    }
+    EXPECT_LE((out.rows.front().row.q - f->rows.front().q).lpNorm<Eigen::Infinity>(), 1e-8);
+    EXPECT_LE((out.rows.back().row.q - f->rows.back().q).lpNorm<Eigen::Infinity>(), 1e-8);
+    EXPECT_GE(out.duration, out.ideal * (1 - 1e-6));
+    int sharp = 0;
+    for (const ToolPath::Corner& corner : f->path->corners()) sharp += corner.reach == 0;
+    EXPECT_EQ(out.stops.size(), static_cast<std::size_t>(sharp));
+    stops += sharp;
+    slow += static_cast<int>(out.slow.size());
+  }
+  std::printf("%d motions, %d stops, %d slow stretches, %d samples; worst ratios %.4f %.4f %.4f\n", timed, stops, slow, samples,
+              worst[0], worst[1], worst[2]);
+  for (const double ratio : worst) EXPECT_LE(ratio, 1 + 1e-9);
+  EXPECT_GT(worst[2], 0.8);
+  EXPECT_GE(timed, 20);
+  EXPECT_GT(stops, 5);
+  EXPECT_GT(samples, 5000);
+}
+
+TEST(TimePath, SaysWhatIsAssumedAndWhatIsMissing) {
+  const Chain chain = arm_of(data_robot("iiwa14")).chain;
+  Limits limits;
+  EXPECT_EQ(joint_rates(chain, limits, "test").assumed.size(), 2u);
+  limits.joint_acceleration.emplace().fill(3);
+  limits.joint_jerk.emplace().fill(4);
+  limits.joint_speed.emplace().fill(2);
+  const JointRates rates = joint_rates(chain, limits, "test");
+  EXPECT_TRUE(rates.assumed.empty());
+  EXPECT_EQ(rates.speed[3], 2);
+  EXPECT_EQ(rates.acceleration[3], 3);
+  EXPECT_EQ(rates.jerk[3], 4);
+  Chain without = chain;
+  without.limit[2].velocity = 0;
+  EXPECT_EQ(joint_rates(without, limits, "test").speed[2], 2);
+  EXPECT_THROW(joint_rates(without, {}, "test"), InputError);
+  without.limit[2].acceleration = 5;
+  EXPECT_EQ(joint_rates(chain, {}, "test").acceleration[2], 10);
+}
+
+}  // namespace
+}  // namespace swivel
