@@ -50,8 +50,8 @@ int main(int argc, char** argv) {
           nodes = std::max(nodes, result.lattice.nodes);
         }
         std::sort(late.begin(), late.end());
-        std::printf("%-19s %9lld nodes, %2.0f ms: %3d of %d stopped, %3d with rows; late by %6.2f ms (median), %6.2f (99 %%)\n", name,
-                    static_cast<long long>(nodes), 1e3 * deadline, stopped, times, partial, late[late.size() / 2],
+        std::printf("%-19s %9lld nodes, %2.0f ms: %3d of %d stopped, %3d with rows; late by %6.2f ms (median), %6.2f (99 %%)\n",
+                    name, static_cast<long long>(nodes), 1e3 * deadline, stopped, times, partial, late[late.size() / 2],
                     late[static_cast<std::size_t>(0.99 * static_cast<double>(late.size() - 1))]);
       }
     }
