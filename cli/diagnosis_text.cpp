@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <vector>
+
+#include "swivel/core/types.hpp"
 
 namespace swivel::cli {
 
@@ -16,94 +17,79 @@ std::string text(const char* format, Values... values) {
   return buffer;
 }
 
-std::string range(double low, double high) {
-  const std::string first = text("%.3g", low), last = text("%.3g", high);
-  return first == last ? first : first + " to " + last;
+/// "joint a4 (0.3 deg beyond 120.00 deg)".
+std::string cause_text(const Cause& cause, std::optional<double> most = {}) {
+  const std::string by = figures(cause, most);
+  return words(cause) + (by.empty() ? "" : " (" + by + ")");
 }
 
-double degrees(double angle) {
-  return angle * 180 / kPi;
+std::string line_of(const EmptyLayers& run) {
+  std::string line = run.first == run.last ? text("  layer %d", run.first) : text("  layers %d to %d", run.first, run.last);
+  if (run.first_waypoint >= 0)
+    line += run.first_waypoint == run.last_waypoint ? text(" (waypoint %d)", run.first_waypoint)
+                                                    : text(" (waypoints %d to %d)", run.first_waypoint, run.last_waypoint);
+  line += run.first == run.last ? text(", s = %.4f m", run.first_s) : text(", s = %.4f to %.4f m", run.first_s, run.last_s);
+  return line + ": no valid node: " + cause_text(run.cause, run.most) + '\n';
 }
 
-/// "no IK (out of reach by 3 mm)": by how much, over some layers of one reason.
-std::string reason_text(const std::string& reason, const std::optional<Shortfall>& shortfall, double least, double most) {
-  if (!shortfall) return reason;
-  switch (shortfall->kind) {
-    case Shortfall::Kind::kTooFar:
-      return reason + " (out of reach by " + range(1e3 * least, 1e3 * most) + " mm)";
-    case Shortfall::Kind::kTooNear:
-      return reason + " (too near to the shoulder by " + range(1e3 * least, 1e3 * most) + " mm)";
-    case Shortfall::Kind::kLowerLimit:
-    case Shortfall::Kind::kUpperLimit:
-      return reason + " (" + (reason == "joint " + shortfall->joint ? "" : shortfall->joint + ": ") +
-             range(degrees(least), degrees(most)) + " deg beyond " + text("%.2f deg)", degrees(shortfall->limit));
+/// What else would have to go, or what going without the cause is worth.
+std::string without_text(const PlanResult& result) {
+  const Diagnosis& d = result.diagnosis;
+  if (!d.together.empty()) {
+    std::string line = "  no single thing stands in the way: besides it";
+    for (std::size_t k = 0; k < d.together.size(); ++k) line += (k == 0 ? " " : ", ") + cause_text(d.together[k]);
+    return line + '\n';
   }
-  return reason;
+  if (!d.without_it) return "";
+  const std::string removed = d.cause.object.empty() ? "it" : d.cause.object;
+  return text("  without ") + removed +
+         text(" there are paths to layer %d (s = %.4f m) at least\n", *d.without_it, *d.without_it_s);
 }
-
-/// Layers, one after the other, that are empty for one reason.
-struct Run {
-  const EmptyLayer* first;
-  const EmptyLayer* last;
-  int first_waypoint = -1, last_waypoint = -1;
-  double least = 0, most = 0;  // of the shortfalls
-
-  explicit Run(const EmptyLayer& layer) : first(&layer), last(&layer) {
-    if (layer.shortfall) least = most = layer.shortfall->by();
-    add_waypoint(layer);
-  }
-  [[nodiscard]] bool takes(const EmptyLayer& layer) const {
-    const auto &a = first->shortfall, &b = layer.shortfall;
-    return layer.layer == last->layer + 1 && layer.reason == first->reason && a.has_value() == b.has_value() &&
-           (!a || (a->kind == b->kind && a->joint == b->joint));
-  }
-  void add(const EmptyLayer& layer) {
-    last = &layer;
-    if (layer.shortfall) {
-      least = std::min(least, layer.shortfall->by());
-      most = std::max(most, layer.shortfall->by());
-    }
-    add_waypoint(layer);
-  }
-  void add_waypoint(const EmptyLayer& layer) {
-    if (layer.waypoint < 0) return;
-    if (first_waypoint < 0) first_waypoint = layer.waypoint;
-    last_waypoint = layer.waypoint;
-  }
-  [[nodiscard]] std::string line() const {
-    std::string line = first == last ? text("  layer %d", first->layer) : text("  layers %d to %d", first->layer, last->layer);
-    if (first_waypoint >= 0)
-      line += first_waypoint == last_waypoint ? text(" (waypoint %d)", first_waypoint)
-                                              : text(" (waypoints %d to %d)", first_waypoint, last_waypoint);
-    line += first == last ? text(", s = %.4f m", first->s) : text(", s = %.4f to %.4f m", first->s, last->s);
-    return line + ": no valid node: " + reason_text(first->reason, first->shortfall, least, most) + '\n';
-  }
-};
-
-}  // namespace
 
 std::string diagnosis_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
-  if (d.reason.empty()) return "no path at this resolution; stopped before it was known what ends every one\n";
-  const double by = d.shortfall ? d.shortfall->by() : 0;
-  const std::string why = reason_text(d.reason, d.shortfall, by, by);
+  if (d.cause.kind == Cause::Kind::kNone) return "no path at this resolution; stopped before it was known what ends every one\n";
+  const std::string why = cause_text(d.cause);
   std::string answer = d.reached_layer ? text("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where ",
                                               *d.reached_layer, result.lattice.layers - 1, *d.reached_s) +
                                              why + " stops it\n"
                                        : "no path at this resolution: the first layer has no valid node: " + why + '\n';
-  std::vector<Run> runs;
-  for (const EmptyLayer& layer : d.empty_layers) {
-    if (!runs.empty() && runs.back().takes(layer))
-      runs.back().add(layer);
-    else
-      runs.emplace_back(layer);
-  }
+  answer += without_text(result);
   constexpr std::size_t kMostLines = 40;
-  for (std::size_t k = 0; k < runs.size() && k < kMostLines; ++k) answer += runs[k].line();
-  if (runs.size() > kMostLines) answer += text("  ... and %zu more, listed in --json\n", runs.size() - kMostLines);
+  for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) answer += line_of(d.empty_layers[k]);
+  if (d.empty_layers.size() > kMostLines)
+    answer += text("  ... and %zu more, listed in --json\n", d.empty_layers.size() - kMostLines);
   if (!d.complete && d.layers_known < result.lattice.layers)
     answer += text("  layers from %d on were not looked at\n", d.layers_known);
   return answer;
+}
+
+std::string solved_text(const PlanResult& result) {
+  const auto s_of = [&](int row) { return result.trajectory[static_cast<std::size_t>(row)].s; };
+  std::string line = text("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
+  if (const auto& least = result.min_margin)
+    line += text(" | least clearance %.1f mm (asked %.3g) at s %.3f: ", 1e3 * least->clearance, 1e3 * least->required,
+                 s_of(least->row)) +
+            least->bodies[0] + " - " + least->bodies[1];
+  if (const auto& limit = result.nearest_limit)
+    line += " | " + limit->joint + text(" %.1f deg from its limit at s %.3f", limit->margin * 180 / kPi, s_of(limit->row));
+  if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
+    line += text(" | tool %.3f mm off", error.max) + (error.allowed ? text(" (allowed %.3g)", 1e3 * *error.allowed) : "");
+  if (const auto& top = result.top_tool_speed) line += text(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
+  return line + '\n';
+}
+
+}  // namespace
+
+std::string answer_text(const PlanResult& result) {
+  switch (result.status) {
+    case PlanStatus::kSolved:
+      return solved_text(result);
+    case PlanStatus::kInfeasible:
+      return diagnosis_text(result);
+    default:
+      return std::string("stopped: ") + to_string(result.status) + '\n';
+  }
 }
 
 }  // namespace swivel::cli

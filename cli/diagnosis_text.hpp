@@ -6,7 +6,8 @@
 
 namespace swivel::cli {
 
-/// Why an infeasible problem has no path, for people: one line, then a line for every run of layers that are empty for one reason.
-[[nodiscard]] std::string diagnosis_text(const PlanResult& result);
+/// The answer for people, in one line: whether there is a path, and what it comes near to, as far as that was asked for. Where
+/// there is none, what ends every path, and a line for every run of layers that are empty for one cause.
+[[nodiscard]] std::string answer_text(const PlanResult& result);
 
 }  // namespace swivel::cli

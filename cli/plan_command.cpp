@@ -41,24 +41,7 @@ double ms(const PlanResult& result, const char* key) {
 }
 
 void print_summary(const PlanResult& result) {
-  switch (result.status) {
-    case PlanStatus::kSolved: {
-      std::printf("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
-      if (result.evidence.tool_path_error)
-        std::printf(", tool-path error %.3f mm mean %.3f mm max", result.tool_path_error_mm.mean, result.tool_path_error_mm.max);
-      if (result.min_clearance) std::printf(", clearance at least %.1f mm", 1e3 * *result.min_clearance);
-      if (const auto& least = result.min_margin)
-        std::printf(", %.1f mm more than asked (%s - %s keep %.3g mm)", 1e3 * least->margin, least->bodies[0].c_str(),
-                    least->bodies[1].c_str(), 1e3 * least->required);
-      std::printf("\n");
-      break;
-    }
-    case PlanStatus::kInfeasible:
-      std::fputs(diagnosis_text(result).c_str(), stdout);
-      break;
-    default:
-      std::printf("stopped: %s\n", to_string(result.status));
-  }
+  std::fputs(answer_text(result).c_str(), stdout);
   const Counters& c = result.counters;
   std::printf(
       "%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",

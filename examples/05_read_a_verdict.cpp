@@ -15,9 +15,11 @@ int main(int argc, char** argv) {
   options.evidence.layers = true;  // which layers have no valid node, and why
   const swivel::PlanResult result = swivel::plan(problem, options);
   const swivel::Diagnosis& diagnosis = result.diagnosis;
-  std::cout << to_string(result.status) << ": " << diagnosis.reason << '\n';
+  std::cout << to_string(result.status) << ": " << words(diagnosis.cause) << '\n';
   if (diagnosis.reached_s) std::cout << "a valid path reaches s = " << *diagnosis.reached_s << " m\n";
-  for (const auto& [reason, count] : diagnosis.removed)
-    std::cout << count << " nodes or edges are removed there by " << reason << '\n';
-  std::cout << diagnosis.empty_layers.size() << " layers have no valid node\n";
+  if (diagnosis.without_it_s) std::cout << "without that, paths reach s = " << *diagnosis.without_it_s << " m at least\n";
+  for (const auto& [cause, count] : diagnosis.removed)
+    std::cout << count << " nodes or edges are removed there by " << words(cause) << '\n';
+  for (const swivel::EmptyLayers& run : diagnosis.empty_layers)
+    std::cout << "layers " << run.first << " to " << run.last << " have no valid node: " << words(run.cause) << '\n';
 }

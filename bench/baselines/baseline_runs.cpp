@@ -68,7 +68,7 @@ void run_swivel(const char* name, const PreparedRobot& robot, const Problem& pro
     if (!rows.empty()) write_rows(rows, robot, problem, all);
   } else if (planned.diagnosis.reached_s) {
     std::printf(": no path goes past %.1f %% of the path: %s", 100 * *planned.diagnosis.reached_s / length,
-                planned.diagnosis.reason.c_str());
+                words(planned.diagnosis.cause).c_str());
   }
   std::printf("\n");
 }

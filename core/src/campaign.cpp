@@ -34,7 +34,7 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result)
     tool_path_error_mm_max = result.tool_path_error_mm.max;
   } else if (status == PlanStatus::kInfeasible) {
     failed_s = result.diagnosis.reached_s;
-    reason = result.diagnosis.reason;
+    reason = words(result.diagnosis.cause);
   }
 }
 

@@ -112,7 +112,7 @@ bool Lattice::step_allowed(int layer, const Config& delta) const {
 }
 
 bool Lattice::row_step_allowed(int layer, const Config& delta) const {
-  return within(delta, row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)]);
+  return within(delta, row_step_bound(layer));
 }
 
 double Lattice::rounded_cost(double cost) const {
@@ -141,7 +141,7 @@ bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Conf
     return false;
   if (limits_.tool_angle_error && !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
     return false;
-  return !limits_.step_error || step_error_allowed(layer, a, b);
+  return keeps_step_error(layer, a, b);
 }
 
 std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {

@@ -410,13 +410,16 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   Config q = given ? start_->row : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
-  fault.q = q;
   const int winding = label_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
-    q[j] = image_from(q[j], images.base) + kTwoPi * winding_images(winding, j);
-    if (q[j] > images.upper) fault.joints |= static_cast<std::uint8_t>(1 << j);
+    const double first = image_from(q[j], images.base), below = first - kTwoPi;
+    q[j] = first + kTwoPi * winding_images(winding, j);
+    if (q[j] <= images.upper) continue;
+    fault.joints |= static_cast<std::uint8_t>(1 << j);
+    if (images.base - below < q[j] - images.upper) q[j] = below;
   }
+  fault.q = q;
   if (!arm_->exact) {
     const auto polished =
         polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
@@ -426,6 +429,13 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   }
   if (fault.joints) fault.status = NodeStatus::kLimit;
   return fault;
+}
+
+std::optional<Lattice::Reach> SrsLattice::out_of_reach(int layer) const {
+  const double distance = plane(layer).reach, most = arm_->upper + arm_->fore, least = std::abs(arm_->upper - arm_->fore);
+  if (distance > most) return Reach{distance, most};
+  if (distance < least) return Reach{distance, least};
+  return std::nullopt;
 }
 
 void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {

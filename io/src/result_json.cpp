@@ -45,33 +45,81 @@ Json time_json(const std::map<std::string, double>& time_ms) {
   return json;
 }
 
-Json shortfall_json(const std::optional<Shortfall>& shortfall) {
-  if (!shortfall) return nullptr;
-  constexpr const char* kKinds[] = {"too far", "too near", "lower limit", "upper limit"};
-  return {{"kind", kKinds[static_cast<std::size_t>(shortfall->kind)]},
-          {"joint", shortfall->joint.empty() ? Json(nullptr) : Json(shortfall->joint)},
-          {"by", shortfall->by()},
-          {"value", shortfall->value},
-          {"limit", shortfall->limit},
-          {"unit", shortfall->is_reach() ? "m" : "rad"}};
+Json text_or_null(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+/// Keys that do not apply are null; the whole where there is no cause.
+Json cause_json(const Cause& cause) {
+  if (cause.kind == Cause::Kind::kNone) return nullptr;
+  return {{"cause", to_string(cause.kind)},
+          {"joint", text_or_null(cause.joint)},
+          {"other_joints", cause.other_joints},
+          {"side", text_or_null(to_string(cause.side))},
+          {"bodies", cause.bodies[0].empty() ? Json(nullptr) : Json(cause.bodies)},
+          {"between_layers", cause.between_layers},
+          {"object", text_or_null(cause.object)},
+          {"check", text_or_null(cause.check)},
+          {"by", or_null(cause.by())},
+          {"value", or_null(cause.value)},
+          {"limit", or_null(cause.limit)},
+          {"unit", text_or_null(cause.unit())}};
+}
+
+Json waypoint_json(int waypoint) {
+  return waypoint < 0 ? Json(nullptr) : Json(waypoint);
 }
 
 Json diagnosis_json(const Diagnosis& diagnosis) {
-  Json layers = Json::array();
-  for (const EmptyLayer& layer : diagnosis.empty_layers)
-    layers.push_back({{"layer", layer.layer},
-                      {"waypoint", layer.waypoint < 0 ? Json(nullptr) : Json(layer.waypoint)},
-                      {"s", layer.s},
-                      {"reason", layer.reason},
-                      {"shortfall", shortfall_json(layer.shortfall)}});
+  Json together = Json::array(), empty = Json::array(), removed = Json::object();
+  for (const Cause& cause : diagnosis.together) together.push_back(cause_json(cause));
+  for (const EmptyLayers& run : diagnosis.empty_layers)
+    empty.push_back({{"layers", {run.first, run.last}},
+                     {"s", {run.first_s, run.last_s}},
+                     {"waypoints", run.first_waypoint < 0 ? Json(nullptr) : Json({run.first_waypoint, run.last_waypoint})},
+                     {"reason", words(run.cause)},
+                     {"cause", cause_json(run.cause)},
+                     {"most", or_null(run.most)}});
+  for (const Diagnosis::Removed& one : diagnosis.removed) removed[words(one.cause)] = one.count;
   return {{"reached_layer", or_null(diagnosis.reached_layer)},
           {"reached_s", or_null(diagnosis.reached_s)},
-          {"reason", diagnosis.reason},
-          {"shortfall", shortfall_json(diagnosis.shortfall)},
-          {"empty_layers", std::move(layers)},
-          {"removed", diagnosis.removed},
+          {"reason", words(diagnosis.cause)},
+          {"cause", cause_json(diagnosis.cause)},
+          {"at_s", or_null(diagnosis.at_s)},
+          {"waypoints", {waypoint_json(diagnosis.waypoints[0]), waypoint_json(diagnosis.waypoints[1])}},
+          {"without_it", or_null(diagnosis.without_it)},
+          {"without_it_s", or_null(diagnosis.without_it_s)},
+          {"together", std::move(together)},
+          {"empty_layers", std::move(empty)},
+          {"removed", std::move(removed)},
           {"complete", diagnosis.complete},
           {"layers_known", diagnosis.layers_known}};
+}
+
+/// The answer at a glance: what is null was not asked for, or does not apply.
+Json summary_json(const PlanResult& result) {
+  const bool solved = result.status == PlanStatus::kSolved;
+  const auto s_of = [&](int row) { return result.trajectory[static_cast<std::size_t>(row)].s; };
+  Json json = {{"solved", solved},
+               {"clearance", nullptr},
+               {"joint_limit", nullptr},
+               {"tool_path_error", nullptr},
+               {"top_tool_speed", nullptr}};
+  if (!solved) return json;
+  if (const auto& least = result.min_margin)
+    json["clearance"] = {
+        {"value", least->clearance}, {"asked", least->required}, {"bodies", least->bodies}, {"s", s_of(least->row)}};
+  if (const auto& limit = result.nearest_limit)
+    json["joint_limit"] = {{"joint", limit->joint},
+                           {"side", to_string(limit->side)},
+                           {"margin_deg", limit->margin * 180 / kPi},
+                           {"s", s_of(limit->row)}};
+  if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
+    json["tool_path_error"] = {
+        {"max_mm", error.max}, {"allowed_mm", error.allowed ? Json(1e3 * *error.allowed) : Json(nullptr)}, {"s", s_of(error.row)}};
+  if (const auto& top = result.top_tool_speed)
+    json["top_tool_speed"] = {{"speed", top->speed}, {"joint", top->joint}, {"s", s_of(top->row)}};
+  return json;
 }
 
 Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
@@ -133,6 +181,7 @@ std::string to_json(const PlanResult& result) {
   const Evidence& evidence = result.evidence;
   Json json;
   json["status"] = to_string(result.status);
+  json["summary"] = summary_json(result);
   json["cost"] = if_known(true, result.cost);
   json["planner"] = result.planner;
   json["threads"] = result.threads;

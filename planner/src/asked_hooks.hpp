@@ -19,8 +19,7 @@ class AskedCheck {
 
   [[nodiscard]] explicit operator bool() const { return check_ != nullptr; }
   [[nodiscard]] bool checks_motions() const { return check_ && check_->checks_motions(); }
-  /// As verdicts name it.
-  [[nodiscard]] std::string cause() const { return "check " + check_->name(); }
+  [[nodiscard]] std::string name() const { return check_->name(); }
 
   /// Whether each is allowed: one call for all, and none for none. Valid until the next call.
   [[nodiscard]] std::span<const bool> states(std::span<const Config> states);

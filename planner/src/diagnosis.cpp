@@ -1,30 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "diagnosis.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <map>
+#include <string>
 
-#include "asked_hooks.hpp"
 #include "collision_validity.hpp"
+#include "constraint_removal.hpp"
+#include "constraints.hpp"
+#include "hooked_validity.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
 
 namespace {
 
-using Reasons = std::map<std::string, std::int64_t>;
-
-std::string most_frequent(const Reasons& reasons) {
-  const auto most =
-      std::max_element(reasons.begin(), reasons.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == reasons.end() ? "" : most->first;
+Cause of_kind(Cause::Kind kind) {
+  Cause cause;
+  cause.kind = kind;
+  return cause;
 }
 
-struct Cause {
-  std::string reason;
-  std::optional<Shortfall> shortfall;
+/// Causes by their words, so that those of one name are counted together and listed in a fixed order.
+class Counts {
+ public:
+  void add(const Cause& cause, std::int64_t count = 1) {
+    const auto [at, fresh] = counts_.try_emplace(words(cause), Diagnosis::Removed{cause, 0});
+    at->second.count += count;
+  }
+  void add(const Counts& others) {
+    for (const auto& [name, removed] : others.counts_) add(removed.cause, removed.count);
+  }
+  [[nodiscard]] bool empty() const { return counts_.empty(); }
+  [[nodiscard]] Cause most_frequent() const {
+    const auto most = std::max_element(counts_.begin(), counts_.end(),
+                                       [](const auto& a, const auto& b) { return a.second.count < b.second.count; });
+    return most == counts_.end() ? Cause{} : most->second.cause;
+  }
+  [[nodiscard]] std::vector<Diagnosis::Removed> list() const {
+    std::vector<Diagnosis::Removed> list;
+    for (const auto& [name, removed] : counts_) list.push_back(removed);
+    return list;
+  }
+
+ private:
+  std::map<std::string, Diagnosis::Removed> counts_;
 };
 
 constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
@@ -33,12 +56,12 @@ constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of th
 /// stand alike (Lattice::alike), so that most nodes need no question, or a short one.
 class LayerBlockers {
  public:
-  LayerBlockers(const SrsLattice& lattice, const World& world, World::Query& query)
-      : lattice_(lattice), world_(world), query_(query), known_(static_cast<std::size_t>(lattice.width())), asked_(known_.size()) {}
+  LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
+      : lattice_(lattice), world_(world), query_(query) {}
 
-  void start() {
-    std::fill(known_.begin(), known_.end(), kUnknown);
-    std::fill(asked_.begin(), asked_.end(), 0);
+  void start(int layer) {
+    known_.assign(static_cast<std::size_t>(lattice_.slots(layer)), kUnknown);
+    asked_.assign(known_.size(), 0);
     all_ = false;
   }
   /// The first of World::pairs() that is too near, or kManipulability, or kFree.
@@ -82,7 +105,7 @@ class LayerBlockers {
     return known_[k];
   }
 
-  const SrsLattice& lattice_;
+  const Lattice& lattice_;
   const World& world_;
   World::Query& query_;
   std::vector<int> known_;   // [slot] kUnknown, or what is known to block it
@@ -93,302 +116,339 @@ class LayerBlockers {
 
 class Inspector {
  public:
-  Inspector(const SrsLattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
+  Inspector(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
             const std::shared_ptr<StateCheck>& check)
       : lattice_(lattice),
         world_(world),
-        rule_(rule),
         budget_(budget),
-        check_(check, budget),
-        query_(world, Certificates::kOn),
-        blockers_(lattice, world, query_),
-        blockers_before_(lattice, world, query_) {
-    question_us_ = world.has_meshes() ? 300 : 3;
-    ik_us_ = lattice.arm().exact ? 0.3 : 5;
-  }
+        constraints_(lattice, world, rule, budget, check),
+        blockers_(lattice, world, constraints_.query()),
+        blockers_before_(lattice, world, constraints_.query()) {}
 
-  /// An estimate of the time spent, that is the same on every machine.
+  Constraints& constraints() { return constraints_; }
+  /// What the cause has cost is not taken from what the layers may cost.
+  void begin_layers() { spent_before_us_ = constraints_.spent_us(); }
   [[nodiscard]] bool affordable() const {
     constexpr double kMost = 1e6;  // us
-    const CollisionCounters c = query_.counters();
-    return question_us_ * static_cast<double>(c.certified_free + c.certified_colliding + c.fcl_calls) +
-               ik_us_ * static_cast<double>(ik_) <
-           kMost;
+    return constraints_.spent_us() - spent_before_us_ < kMost;
   }
 
   /// What blocks the nodes of the layer that exist, by count. `left`: those that are valid.
-  Reasons blocked(int layer, std::vector<int>& left) {
-    lattice_.solve(layer, nodes_);
-    ik_ += lattice_.width();
-    blockers_.start();
+  Counts blocked(int layer, std::vector<Lattice::Node>& left) {
+    rows_of(layer, nodes_);
+    constraints_.count_nodes(lattice_.slots(layer));
+    blockers_.start(layer);
     std::map<int, std::int64_t> counts;
-    for (int slot = 0; slot < lattice_.width(); ++slot) {
-      if (!nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot))) continue;
+    for (const Lattice::Node& node : nodes_) {
       budget_.poll();
-      const auto q = lattice_.row(layer, slot, config(nodes_, slot));
-      if (!q) continue;
-      const int blocker = blockers_.first(layer, slot, *q);
+      const int blocker = blockers_.first(layer, node.slot, node.q);
       ++counts[blocker];
-      if (blocker == kFree) left.push_back(slot);
+      if (blocker == kFree) left.push_back(node);
     }
-    Reasons reasons;
+    Counts causes;
     for (const auto& [blocker, count] : counts)
-      if (blocker != kFree) reasons[name(blocker)] += count;
-    if (!check_) return reasons;
-    states_.clear();
-    for (const int slot : left) states_.push_back(config(nodes_, slot));
-    const auto allowed = check_.states(states_);
-    std::size_t kept = 0;
-    for (std::size_t k = 0; k < allowed.size(); ++k)
-      if (allowed[k]) left[kept++] = left[k];
-    left.resize(kept);
-    if (kept < allowed.size()) reasons[check_.cause()] = static_cast<std::int64_t>(allowed.size() - kept);
-    return reasons;
+      if (blocker != kFree) causes.add(cause_of(blocker), count);
+    keep_allowed(left, causes);
+    return causes;
   }
 
-  /// Why no node of the layer is valid; none where one is. Asks around `hint`, a slot valid in a layer before, angle by angle.
+  /// Why no node of the layer is valid; none where one is. Asks first at `hint`, a slot that is valid in the layer before or -1.
   std::optional<Cause> why_empty(int layer, int& hint) {
     budget_.poll();
-    if (!lattice_.alive(layer)) return kinematic_cause(layer);
-    blockers_.start();
-    std::map<int, std::int64_t> counts;
-    std::int64_t refused = 0;
-    const int n = lattice_.angles(), hint_label = lattice_.label_of(hint), hint_angle = lattice_.angle_of(hint);
-    for (int k = 0; k < n; ++k) {
-      const int j = (hint_angle + (k % 2 ? n - (k + 1) / 2 : k / 2)) % n;  // at the hint, then on either side
-      lattice_.solve(layer, j, 1, nodes_);
-      ik_ += lattice_.labels();
-      states_.clear();
-      free_.clear();
-      for (int l = 0; l < lattice_.labels(); ++l) {
-        const int label = (hint_label + l) % lattice_.labels(), slot = label * n + j;
-        if (!nodes_.valid(label, 0)) continue;
-        budget_.poll();
-        const auto q = lattice_.row(layer, slot, nodes_.config(label, 0));
-        if (!q) continue;
-        const int blocker = blockers_.any(layer, slot, *q);
-        if (blocker == kFree) {
-          states_.push_back(*q);
-          free_.push_back(slot);
-          if (!check_) break;
-          continue;
-        }
-        if (blockers_.all()) return Cause{name(blocker), {}};
-        ++counts[blocker];
+    blockers_.start(layer);
+    std::vector<Lattice::Node> free;  // but for the user's check
+    Counts causes;
+    if (const int slot = hint < 0 ? -1 : lattice_.along(layer - 1, hint, 1); slot >= 0) {
+      constraints_.count_nodes(1);
+      if (const auto q = lattice_.row(layer, slot); q && blockers_.any(layer, slot, *q) == kFree) {
+        free.push_back({slot, *q});
+        keep_allowed(free, causes);
+        hint = slot;
+        if (!free.empty()) return std::nullopt;
       }
-      const auto allowed = check_.states(states_);
-      const auto first = std::find(allowed.begin(), allowed.end(), true) - allowed.begin();
-      if (first < static_cast<std::ptrdiff_t>(free_.size())) {
-        hint = free_[static_cast<std::size_t>(first)];
+    }
+    causes = {};
+    lattice_.layer_nodes(layer, nodes_);
+    constraints_.count_nodes(static_cast<std::int64_t>(nodes_.size()));
+    constexpr std::size_t kBatch = 64;  // of questions to the user's check; one free node is enough where there is none
+    std::map<int, std::int64_t> counts;
+    for (const Lattice::Node& node : nodes_) {
+      budget_.poll();
+      const auto q = lattice_.row(layer, node.slot, node.q);
+      if (!q) continue;
+      const int blocker = blockers_.any(layer, node.slot, *q);
+      if (blocker == kFree) {
+        free.push_back({node.slot, *q});
+        if (constraints_.check() && free.size() < kBatch) continue;
+        keep_allowed(free, causes);
+        if (free.empty()) continue;
+        hint = free.front().slot;
         return std::nullopt;
       }
-      refused += static_cast<std::int64_t>(free_.size());
+      if (blockers_.all()) return cause_of(blocker);
+      ++counts[blocker];
     }
-    if (counts.empty() && refused == 0) return kinematic_cause(layer);
-    Reasons reasons;
-    if (refused > 0) reasons[check_.cause()] = refused;
-    for (const auto& [blocker, count] : counts) reasons[name(blocker)] += count;
-    return Cause{most_frequent(reasons), {}};
+    keep_allowed(free, causes);
+    if (!free.empty()) {
+      hint = free.front().slot;
+      return std::nullopt;
+    }
+    for (const auto& [blocker, count] : counts) causes.add(cause_of(blocker), count);
+    return causes.empty() ? kinematic_cause(layer) : causes.most_frequent();
   }
 
   /// What every node of the layer fails, or the joint whose release alone would help; and by how little.
   Cause kinematic_cause(int layer) {
-    Reasons released, statuses;
-    std::map<std::string, Shortfall> least;  // by the reason that it belongs to
-    const auto add = [&](const std::string& reason, const Shortfall& shortfall) {
-      const auto [at, fresh] = least.try_emplace(reason, shortfall);
-      if (!fresh && shortfall.by() < at->second.by()) at->second = shortfall;
-    };
-    for (int slot = 0; slot < lattice_.width(); ++slot) {
+    if (const auto reach = lattice_.out_of_reach(layer)) {
+      Cause cause = of_kind(Cause::Kind::kReach);
+      cause.side = reach->distance > reach->limit ? Cause::Side::kUpper : Cause::Side::kLower;
+      cause.value = reach->distance;
+      cause.limit = reach->limit;
+      return cause;
+    }
+    bool singular = false;
+    std::map<int, std::pair<std::int64_t, Cause>> released;  // by the limit that one node or more lacks alone
+    std::optional<Cause> several;
+    for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
       if (slot % 64 == 0) budget_.poll();
-      const SrsLattice::NodeFault fault = lattice_.fault(layer, slot);
-      ++statuses[status_name(fault)];
+      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      singular = singular || fault.status == NodeStatus::kSingular;
       if (fault.status != NodeStatus::kLimit) continue;
-      ++ik_;
-      const auto shortfall = limit_shortfall(fault);
-      if (shortfall) add("joint limits", *shortfall);
-      if (std::popcount(fault.joints) != 1) continue;
-      const std::string reason = joint_name(std::countr_zero(fault.joints));
-      ++released[reason];
-      if (shortfall) add(reason, *shortfall);
+      constraints_.count_nodes(1);
+      Cause worst;  // of this node
+      int limit = 0;
+      for (int k = 0; k < kDof; ++k) {
+        if ((fault.joints >> k & 1) == 0) continue;
+        const int here = constraints_.limit_beyond(k, fault.q);
+        const Cause cause = constraints_.measured(here, layer, fault.q);
+        if (worst.by().value_or(-1) < *cause.by()) worst = cause, limit = here;
+      }
+      if (std::popcount(fault.joints) == 1) {
+        auto& [count, least] = released.try_emplace(limit, 0, worst).first->second;
+        ++count;
+        if (*worst.by() < *least.by()) least = worst;
+      } else if (!several || *worst.by() < *several->by()) {
+        several = worst;
+        several->other_joints = true;
+      }
     }
-    Cause cause{"no IK", {}};
-    for (const char* status : {"no IK", "singular", "joint limits"})
-      if (statuses.contains(status)) cause.reason = status;
-    if (!released.empty()) cause.reason = most_frequent(released);
-    if (cause.reason == "no IK")
-      cause.shortfall = reach_shortfall(layer);
-    else if (const auto found = least.find(cause.reason); found != least.end())
-      cause.shortfall = found->second;
-    return cause;
+    const auto most = std::max_element(released.begin(), released.end(),
+                                       [](const auto& a, const auto& b) { return a.second.first < b.second.first; });
+    if (most != released.end()) return most->second.second;
+    if (several) return *several;
+    return of_kind(singular ? Cause::Kind::kSingular : Cause::Kind::kReach);
   }
 
-  /// The nodes that closed form and limits take out of the layer.
-  void add_missing(int layer, Reasons& reasons) {
-    for (int slot = 0; slot < lattice_.width(); ++slot) {
-      const bool exists = nodes_.valid(lattice_.label_of(slot), lattice_.angle_of(slot));
-      if (exists && lattice_.row(layer, slot, config(nodes_, slot))) continue;
-      if (slot % 64 == 0) budget_.poll();
-      const SrsLattice::NodeFault fault = lattice_.fault(layer, slot);
-      if (fault.status != NodeStatus::kLimit) ++reasons[status_name(fault)];
-      for (int k = 0; k < kDof; ++k)
-        if ((fault.joints >> k) & 1) ++reasons[joint_name(k)];
+  /// The limit that the continuation of a node into the next layer is beyond, by the shortest move there; none where there is none.
+  std::optional<Cause> limit_ahead(int layer, Config q) {
+    const Chain& chain = lattice_.chain();
+    const Pose& pose = lattice_.path().layer(layer + 1).tool;
+    constexpr int kMostSteps = 20;
+    double residual = 1;
+    for (int step = 0; step < kMostSteps && residual > 1e-9; ++step) {
+      const Pose reached = chain.tool(q);
+      const Eigen::AngleAxisd turn(pose.linear() * reached.linear().transpose());
+      Eigen::Matrix<double, 6, 1> error;
+      error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
+      residual = error.norm();
+      const auto jacobian = chain.jacobian(q);
+      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);  // minimum norm
     }
-  }
-
-  /// What removes edges from valid nodes of `layer` to the nodes `left` of the next, whose joints blocked() has solved.
-  Reasons removed_edges(int layer, const std::vector<int>& left) {
-    Reasons reasons;
-    if (left.empty()) return reasons;
-    std::vector<std::optional<Config>> left_rows(static_cast<std::size_t>(lattice_.width()));
-    for (const int b : left) left_rows[static_cast<std::size_t>(b)] = lattice_.row(layer + 1, b, config(nodes_, b));
-    LayerNodes before;
-    lattice_.solve(layer, before);
-    blockers_before_.start();
-    constexpr int kMostEdges = 300;  // collision checks of edges are the slow part of a report
-    int edges = 0;
-    for (int a = 0; a < lattice_.width() && edges < kMostEdges && affordable(); ++a) {
-      if (!before.valid(lattice_.label_of(a), lattice_.angle_of(a))) continue;
-      budget_.poll();
-      const Config node = config(before, a);
-      const auto row = lattice_.row(layer, a, node);
-      if (!row || blockers_before_.any(layer, a, *row) != kFree || !check_.states({&*row, 1})[0]) continue;
-      const SrsLattice::Run run = lattice_.run_after(layer, a);
-      for (int label = 0; label < lattice_.labels(); ++label)
-        for (int k = 0; k < run.count; ++k) {
-          const int b = label * lattice_.angles() + (run.first + k) % lattice_.angles();
-          const auto& row_b = left_rows[static_cast<std::size_t>(b)];
-          if (!row_b) continue;
-          const bool may_step = lattice_.step_allowed(layer, lattice_.delta(node, config(nodes_, b)));
-          const std::string reason = may_step ? edge_reason(layer, a, *row, b, *row_b) : "joint step";
-          if (!reason.empty()) ++reasons[reason];
-          edges += reason != "joint step";
-        }
-    }
-    return reasons;
-  }
-
- private:
-  [[nodiscard]] Config config(const LayerNodes& nodes, int slot) const {
-    return nodes.config(lattice_.label_of(slot), lattice_.angle_of(slot));
-  }
-
-  std::string edge_reason(int layer, int a, const Config& qa, int b, const Config& qb) {
-    const Config delta = lattice_.delta(qa, qb);
-    if (!lattice_.row_step_allowed(layer, delta)) return "joint step";
-    if (!lattice_.follows_path(layer, a, qa, b, qb)) return "tool-path error";
-    if (lattice_.limits().edges == EdgeMode::kContinuous) {
-      const auto pair = edge_blocked(query_, rule_, qa, qa + delta, budget_);
-      if (pair) return name(*pair) + " between layers";
-    }
-    const StateCheck::Motion motion{qa, qa + delta};
-    if (check_.checks_motions() && !check_.motions({&motion, 1})[0]) return check_.cause() + " between layers";
-    return "";
-  }
-
-  [[nodiscard]] std::optional<Shortfall> reach_shortfall(int layer) const {
-    const SrsArm& arm = lattice_.arm();
-    const double reach = lattice_.plane(layer).reach, most = arm.upper + arm.fore, least = std::abs(arm.upper - arm.fore);
-    if (reach > most) return Shortfall{Shortfall::Kind::kTooFar, reach, most, {}};
-    if (reach < least) return Shortfall{Shortfall::Kind::kTooNear, reach, least, {}};
-    return std::nullopt;
-  }
-
-  /// The joint that is furthest outside, each taken at the winding where it is nearest to its limits.
-  [[nodiscard]] std::optional<Shortfall> limit_shortfall(const SrsLattice::NodeFault& fault) const {
-    std::optional<Shortfall> worst;
-    for (int k = 0; k < kDof; ++k) {
-      if (((fault.joints >> k) & 1) == 0) continue;
-      const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(k)];
-      const double margin = lattice_.limits().joint_margin, lower = limit.lower + margin, upper = limit.upper - margin;
-      const double above = fault.q[k] + kTwoPi * std::ceil((lower - fault.q[k]) / kTwoPi), below = above - kTwoPi;
-      if (above <= upper) continue;  // inside, at another winding than this node's
-      const bool high = above - upper < lower - below;
-      const Shortfall shortfall{high ? Shortfall::Kind::kUpperLimit : Shortfall::Kind::kLowerLimit, high ? above : below,
-                                high ? upper : lower, lattice_.chain().joint_names[static_cast<std::size_t>(k)]};
-      if (!worst || shortfall.by() > worst->by()) worst = shortfall;
+    std::optional<Cause> worst;
+    for (int k = 0; residual <= 1e-9 && k < kDof; ++k) {
+      if (lattice_.continuous()[static_cast<std::size_t>(k)]) continue;
+      const Cause cause = constraints_.measured(constraints_.limit_beyond(k, q), layer + 1, q);
+      const double beyond = cause.side == Cause::Side::kUpper ? *cause.value - *cause.limit : *cause.limit - *cause.value;
+      if (beyond > 0 && (!worst || beyond > *worst->by())) worst = cause;
     }
     return worst;
   }
 
-  [[nodiscard]] std::string name(const BodyPair& pair) const {
-    return world_.body_names()[static_cast<std::size_t>(pair.a)] + " - " + world_.body_names()[static_cast<std::size_t>(pair.b)];
-  }
-  [[nodiscard]] std::string name(int blocker) const {
-    return blocker == kManipulability ? "manipulability" : name(world_.pairs()[static_cast<std::size_t>(blocker)]);
-  }
-  [[nodiscard]] std::string joint_name(int k) const { return "joint " + lattice_.chain().joint_names[static_cast<std::size_t>(k)]; }
-  static const char* status_name(const SrsLattice::NodeFault& fault) {
-    switch (fault.status) {
-      case NodeStatus::kNoIk:
-        return "no IK";
-      case NodeStatus::kSingular:
-        return "singular";
-      default:
-        return "joint limits";
+  /// The nodes that closed form and limits take out of the layer whose nodes blocked() has listed.
+  void add_missing(int layer, Counts& causes) {
+    auto node = nodes_.begin();
+    for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
+      if (node != nodes_.end() && node->slot == slot) {
+        ++node;
+        continue;
+      }
+      if (slot % 64 == 0) budget_.poll();
+      const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+      if (fault.status == NodeStatus::kNoIk) causes.add(of_kind(Cause::Kind::kReach));
+      if (fault.status == NodeStatus::kSingular) causes.add(of_kind(Cause::Kind::kSingular));
+      for (int k = 0; k < kDof; ++k)
+        if ((fault.joints >> k) & 1) causes.add(constraints_.cause(constraints_.limit_beyond(k, fault.q)));
     }
   }
 
-  const SrsLattice& lattice_;
+  /// What removes edges from valid nodes of `layer` to the nodes `left` of the next.
+  Counts removed_edges(int layer, const std::vector<Lattice::Node>& left) {
+    Counts causes;
+    if (left.empty()) return causes;
+    std::vector<const Lattice::Node*> heads(static_cast<std::size_t>(lattice_.slots(layer + 1)), nullptr);
+    for (const Lattice::Node& b : left) heads[static_cast<std::size_t>(b.slot)] = &b;
+    std::vector<Lattice::Node> before;
+    rows_of(layer, before);
+    blockers_before_.start(layer);
+    constexpr int kMostEdges = 300;  // collision checks of edges are the slow part of a report
+    int edges = 0;
+    std::vector<Lattice::SlotRun> runs;
+    for (const Lattice::Node& a : before) {
+      if (edges >= kMostEdges || !affordable()) break;
+      budget_.poll();
+      if (blockers_before_.any(layer, a.slot, a.q) != kFree || !constraints_.check().states({&a.q, 1})[0]) continue;
+      lattice_.successors(layer, a.slot, runs);
+      for (const Lattice::SlotRun& run : runs)
+        for (int slot = run.first; slot < run.last; ++slot) {
+          const Lattice::Node* const b = heads[static_cast<std::size_t>(slot)];
+          if (b == nullptr) continue;
+          const ConstraintSet violated =
+              constraints_.edge(layer, a.slot, {a.q, true, 0}, slot, {b->q, true, 0}, 0, Constraints::Until::kFirst);
+          const int first = std::countr_zero(violated);
+          edges += first != Constraints::kJointStep && first != Constraints::kSpeed;
+          if (violated == 0) continue;
+          Cause cause = constraints_.cause(first);
+          cause.between_layers = first >= Constraints::kCheck;
+          causes.add(cause);
+        }
+    }
+    return causes;
+  }
+
+ private:
+  /// The nodes of a layer that have rows, with their rows' joints.
+  void rows_of(int layer, std::vector<Lattice::Node>& out) {
+    lattice_.layer_nodes(layer, out);
+    if (!lattice_.has_own_rows()) return;
+    std::erase_if(out, [&](Lattice::Node& node) {
+      budget_.poll();
+      const auto row = lattice_.row(layer, node.slot, node.q);
+      if (row) node.q = *row;
+      return !row;
+    });
+  }
+
+  /// Takes out, and counts, what the user's check refuses of nodes that nothing else blocks.
+  void keep_allowed(std::vector<Lattice::Node>& nodes, Counts& causes) {
+    if (!constraints_.check()) return;
+    states_.clear();
+    for (const Lattice::Node& node : nodes) states_.push_back(node.q);
+    constraints_.count_checked(static_cast<std::int64_t>(states_.size()));
+    auto allowed = constraints_.check().states(states_).begin();
+    const auto refused = std::erase_if(nodes, [&](const Lattice::Node&) { return !*allowed++; });
+    if (refused > 0) causes.add(constraints_.cause(Constraints::kCheck), static_cast<std::int64_t>(refused));
+  }
+
+  [[nodiscard]] Cause cause_of(int blocker) {
+    Cause cause = of_kind(blocker == kManipulability ? Cause::Kind::kManipulability : Cause::Kind::kPair);
+    if (blocker != kManipulability) cause.bodies = world_.names(world_.pairs()[static_cast<std::size_t>(blocker)]);
+    return cause;
+  }
+
+  const Lattice& lattice_;
   const World& world_;
-  EdgeRule rule_;
   const Budget& budget_;
-  AskedCheck check_;
-  World::Query query_;
+  Constraints constraints_;
   LayerBlockers blockers_, blockers_before_;
-  LayerNodes nodes_;
-  std::vector<Config> states_;  // that only the user's check may refuse
-  std::vector<int> free_;       // their slots
-  double question_us_ = 0, ik_us_ = 0;
-  std::int64_t ik_ = 0;
+  std::vector<Lattice::Node> nodes_;  // of the layer looked at last
+  std::vector<Config> states_;        // scratch
+  double spent_before_us_ = 0;
 };
 
-EmptyLayer empty_layer(const SrsLattice& lattice, int layer, const Cause& cause) {
+/// Adds a layer to the run that it goes on, or begins one.
+void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vector<EmptyLayers>& runs) {
   const PathLayer& at = lattice.path().layer(layer);
-  return {layer, at.waypoint, at.s, cause.reason, cause.shortfall};
+  if (runs.empty() || runs.back().last + 1 != layer || !runs.back().cause.same_thing(cause))
+    runs.emplace_back(), runs.back().first = layer, runs.back().first_s = at.s, runs.back().cause = cause;
+  EmptyLayers& run = runs.back();
+  run.last = layer;
+  run.last_s = at.s;
+  if (at.waypoint >= 0) {
+    if (run.first_waypoint < 0) run.first_waypoint = at.waypoint;
+    run.last_waypoint = at.waypoint;
+  }
+  const auto by = cause.by();
+  if (!by) return;
+  if (*by < run.cause.by().value_or(*by)) run.cause = cause;
+  run.most = std::max(run.most.value_or(*by), *by);
 }
 
 }  // namespace
 
-void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path, bool layers,
               const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check) {
   const Span span("diagnosis");
+  const int deepest = static_cast<int>(path.size()) - 1, next = deepest + 1;
   diagnosis.complete = false;
-  if (deepest_layer >= 0) {
-    diagnosis.reached_layer = deepest_layer;
-    diagnosis.reached_s = lattice.path().layer(deepest_layer).s;
+  if (deepest >= 0) {
+    diagnosis.reached_layer = deepest;
+    diagnosis.reached_s = lattice.path().layer(deepest).s;
   }
-  diagnosis.layers_known = deepest_layer + 1;  // those before have a node: a path leads through them
+  const ToolPath& tool_path = lattice.path();
+  diagnosis.at_s = tool_path.layer(next).s;
+  for (int layer = 0; layer < lattice.layers() && diagnosis.waypoints[1] < 0; ++layer)
+    if (const int waypoint = tool_path.layer(layer).waypoint; waypoint >= 0) diagnosis.waypoints[layer < next ? 0 : 1] = waypoint;
+  diagnosis.layers_known = next;  // those before have a node: a path leads through them
   Inspector inspector(lattice, world, rule, budget, check);
 
-  const int next = deepest_layer + 1;
-  std::vector<int> left;
-  Reasons removed = inspector.blocked(next, left);
-  if (left.empty()) {
-    const Cause cause = removed.empty() ? inspector.kinematic_cause(next) : Cause{most_frequent(removed), {}};
-    diagnosis.reason = cause.reason;
-    diagnosis.shortfall = cause.shortfall;
-    if (layers) diagnosis.empty_layers.push_back(empty_layer(lattice, next, cause));
-  } else {
-    const Reasons edges = inspector.removed_edges(deepest_layer, left);
-    diagnosis.reason = edges.empty() ? "arm slope" : most_frequent(edges);
-    for (const auto& [reason, count] : edges) removed[reason] += count;
+  std::vector<Lattice::Node> left;
+  Counts removed = inspector.blocked(next, left);
+  const std::optional<Cause> empty = !left.empty()     ? std::nullopt
+                                     : removed.empty() ? std::optional(inspector.kinematic_cause(next))
+                                                       : std::optional(removed.most_frequent());
+  constexpr double kMost = 0.5e6;  // us
+  std::optional<ConstraintRemoval::Answer> answer;
+  if (!lattice.out_of_reach(next)) answer = ConstraintRemoval(lattice, inspector.constraints(), path, budget).find(kMost);
+  if (answer) {
+    diagnosis.cause = answer->cause;
+    diagnosis.without_it = answer->without_it;
+    if (answer->without_it) diagnosis.without_it_s = tool_path.layer(*answer->without_it).s;
+    diagnosis.together = std::move(answer->together);
+  } else if (empty) {
+    diagnosis.cause = *empty;
   }
+  if (!diagnosis.without_it && deepest >= 0 && lattice.along(deepest, path.back(), 1) < 0)  // no node is listed that continues it
+    if (const auto limit = inspector.limit_ahead(deepest, *lattice.row(deepest, path.back())))
+      diagnosis.cause = *limit, answer.emplace();
+  inspector.begin_layers();
+  Counts edges;
+  if (!empty && (layers || !answer)) edges = inspector.removed_edges(deepest, left);
+  if (check && diagnosis.cause.kind != Cause::Kind::kCheck) {  // it was not asked about what other rules refuse
+    diagnosis.without_it.reset();
+    diagnosis.without_it_s.reset();
+  }
+  if (!empty && !answer) diagnosis.cause = edges.empty() ? of_kind(Cause::Kind::kArmSlope) : edges.most_frequent();
   diagnosis.layers_known = next + 1;
   if (layers) {
-    if (deepest_layer >= 0) {
+    if (empty) add_empty(lattice, next, *empty, diagnosis.empty_layers);
+    removed.add(edges);
+    if (deepest >= 0) {
       inspector.add_missing(next, removed);
-      diagnosis.removed = removed;
+      diagnosis.removed = removed.list();
     }
-    int hint = left.empty() ? 0 : left.front();
+    int hint = left.empty() ? -1 : left.front().slot;
     for (int layer = next + 1; layer < lattice.layers(); ++layer) {
       if (!inspector.affordable()) return;
-      if (const auto cause = inspector.why_empty(layer, hint))
-        diagnosis.empty_layers.push_back(empty_layer(lattice, layer, *cause));
+      if (const auto cause = inspector.why_empty(layer, hint)) {
+        add_empty(lattice, layer, *cause, diagnosis.empty_layers);
+        hint = -1;
+      }
       diagnosis.layers_known = layer + 1;
     }
   }
   diagnosis.complete = true;
+}
+
+SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer, const Budget& budget,
+                      const Hooks& hooks) {
+  const Span span("furthest path");
+  Executor executor(1);
+  CollisionValidity validity(lattice, world, rule, lattice.limits().edges, Certificates::kOn, executor, 1, budget);
+  HookedValidity hooked(lattice, validity, hooks, budget);
+  const auto togo = make_cost_to_go(lattice, Extent::kWhole, budget);
+  togo->sweep(layer);
+  SearchCounters counters;
+  return path_first(*togo, hooked, {}, counters).path;
 }
 
 }  // namespace swivel

@@ -5,16 +5,21 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/budget.hpp"
 #include "swivel/core/hooks.hpp"
+#include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/path_first.hpp"
 
 namespace swivel {
 
-/// Why no path goes beyond the deepest layer that one reaches (-1: none has a node in layer 0), and with `layers` what removed the
-/// nodes and edges just past it and which later layers are empty. A function of the problem and that layer alone: the same for all
-/// planners. Later layers are looked at until they would take more than about a second by a fixed estimate. Throws Stopped;
-/// `diagnosis` then holds what was found, and `complete` is false.
-void diagnose(const SrsLattice& lattice, const World& world, const EdgeRule& rule, int deepest_layer, bool layers,
+/// Why no path goes beyond the furthest layer that one reaches, and with `layers` what removed the nodes and edges just past it and
+/// which later layers are empty. `path`: the best one to that layer; empty where layer 0 has no valid node. A function of the
+/// problem and that path alone: the same for all planners. Looks until it would take more than about a second by a fixed estimate.
+/// Throws Stopped; `diagnosis` then holds what was found, and `complete` is false.
+void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path, bool layers,
               const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check = nullptr);
+
+/// The best valid path from layer 0 to a layer that one reaches. Throws Stopped.
+[[nodiscard]] SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer,
+                                    const Budget& budget, const Hooks& hooks = {});
 
 }  // namespace swivel

@@ -29,7 +29,9 @@ void measure_tool_path_error(const Chain& chain, const ToolPath& path, const Bud
     for (const double error : path_deviation(chain, path, i, q, result.trajectory[static_cast<std::size_t>(i) + 1].q - q)) {
       sum += error;
       ++samples;
-      result.tool_path_error_mm.max = std::max(result.tool_path_error_mm.max, 1e3 * error);
+      if (1e3 * error <= result.tool_path_error_mm.max) continue;
+      result.tool_path_error_mm.max = 1e3 * error;
+      result.tool_path_error_mm.row = i;
     }
   }
   result.tool_path_error_mm.mean = 1e3 * sum / static_cast<double>(samples);
@@ -62,7 +64,43 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
   result.evidence.postures = true;
 }
 
+std::optional<NearestLimit> nearest_limit(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
+  std::optional<NearestLimit> nearest;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t k = 0; k < kDof; ++k) {
+      if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
+      const double q = rows[i].q[static_cast<Eigen::Index>(k)];
+      const double to_lower = q - chain.limit[k].lower, to_upper = chain.limit[k].upper - q, margin = std::min(to_lower, to_upper);
+      if (nearest && margin >= nearest->margin) continue;
+      nearest = {margin, chain.joint_names[k], to_lower <= to_upper ? Cause::Side::kLower : Cause::Side::kUpper,
+                 static_cast<int>(i)};
+    }
+  return nearest;
+}
+
+std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+  std::optional<TopToolSpeed> top;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+    const double length = path.layer(static_cast<int>(i)).step_length;
+    if (length <= 0) continue;  // a turn in place asks for no speed
+    for (std::size_t k = 0; k < kDof; ++k) {
+      const double velocity = chain.limit[k].velocity;
+      if (velocity <= 0) return std::nullopt;
+      const auto j = static_cast<Eigen::Index>(k);
+      const double moved = std::abs(rows[i + 1].q[j] - rows[i].q[j]);
+      if (top ? length * velocity < top->speed * moved : moved > 0)
+        top = {length * velocity / moved, chain.joint_names[k], static_cast<int>(i)};
+    }
+  }
+  return top;
+}
+
 }  // namespace
+
+void measure_margins(const Chain& chain, const ToolPath& path, PlanResult& result) {
+  result.nearest_limit = nearest_limit(chain, result.trajectory);
+  result.top_tool_speed = top_tool_speed(chain, path, result.trajectory);
+}
 
 void measure(const PreparedRobot& robot, const ToolPath& path, const World& world, const Evidence& wanted, const Budget& budget,
              PlanResult& result) {

@@ -13,4 +13,7 @@ namespace swivel {
 void measure(const PreparedRobot& robot, const ToolPath& path, const World& world, const Evidence& wanted, const Budget& budget,
              PlanResult& result);
 
+/// Fills nearest_limit and top_tool_speed of a result that has its trajectory.
+void measure_margins(const Chain& chain, const ToolPath& path, PlanResult& result);
+
 }  // namespace swivel

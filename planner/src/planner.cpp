@@ -298,6 +298,7 @@ struct Planner::Impl {
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = rows_of(layout->lattice, path);
+      measure_margins(robot->arm().chain, layout->path, result);
       if (layout->lattice.has_own_rows()) result.cost = cost_of_rows(layout->lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();
@@ -310,17 +311,17 @@ struct Planner::Impl {
     const Span span("report");
     try {
       if (result.status == PlanStatus::kSolved) {
+        result.tool_path_error_mm.allowed = problem.limits.tool_path_error;
         measure(*robot, layout->path, *world, options.evidence, budget, result);
         return;
       }
+      result.diagnosis.complete = false;  // until diagnose() has done
+      if (found.deepest) budget.tell(Stage::kDiagnosis);
+      if (was_eager && found.deepest.value_or(-1) >= 0)
+        path = best_path_to(layout->lattice, *world, rule, *found.deepest, budget, options.hooks);
       result.partial = rows_of(layout->lattice, path);
-      if (!found.deepest) {
-        result.diagnosis.complete = false;
-        return;
-      }
-      budget.tell(Stage::kDiagnosis);
-      diagnose(layout->lattice, *world, rule, *found.deepest, options.evidence.layers, budget, result.diagnosis,
-               options.hooks.check);
+      if (!found.deepest) return;
+      diagnose(layout->lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis, options.hooks.check);
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
     }

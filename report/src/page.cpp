@@ -137,9 +137,12 @@ Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<
 
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& world, const std::string& reason) {
+Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const Json& diagnosis) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
+  const std::string reason = diagnosis["reason"];
+  const Json bodies = diagnosis["cause"].is_object() ? diagnosis["cause"]["bodies"] : Json(nullptr);
+  const bool motion = bodies.is_array() && diagnosis["cause"]["between_layers"];
   const int from = map.path.empty() ? 0 : map.path.back();
   LayerNodes nodes;
   lattice.solve(layer, nodes);
@@ -148,7 +151,8 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
     for (int slot = 0; slot < lattice.width(); ++slot) {
       const int label = lattice.label_of(slot), angle = lattice.angle_of(slot);
       const LatticeMap::Node& node = map.at(layer, label, angle);
-      const bool blocked = node.state == NodeState::kBlocked && reason == map.blocker_name(node);
+      const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
+                           bodies[0] == map.blockers[node.cause].first && bodies[1] == map.blockers[node.cause].second;
       if (!nodes.valid(label, angle) || blocked != by_bodies) continue;
       const int away = std::abs(angle - lattice.angle_of(from));
       const int far = std::min(away, map.angles - away) + (label == lattice.label_of(from) ? 0 : map.angles);
@@ -163,19 +167,15 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
   const Config q = lattice.row(layer, best, node_q).value_or(node_q);
   std::string what = "no valid pose here: " + reason;
   Json pair = nullptr;
-  const auto& names = world.body_names();
-  const auto between = std::find_if(world.pairs().begin(), world.pairs().end(), [&](const BodyPair& p) {
-    return reason == names[p.a] + " - " + names[p.b] + " between layers";
-  });
   if (node.state == NodeState::kBlocked) {
     pair = {map.blockers[node.cause].first, map.blockers[node.cause].second};
     what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + map.blocker_name(node);
-  } else if (between != world.pairs().end()) {
-    pair = {names[between->a], names[between->b]};
+  } else if (motion) {
+    pair = bodies;
     what = "the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " + pair[1].get<std::string>();
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
-    if (reason == "joint step") {
+    if (diagnosis["cause"].is_object() && diagnosis["cause"]["cause"] == "joint_step") {
       const Config step = lattice.delta(*lattice.row(layer - 1, from), q);
       Eigen::Index joint = 0;
       const double most = step.cwiseAbs().maxCoeff(&joint);
@@ -296,7 +296,6 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   const ToolPath& path = lattice.path();
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
-  const std::string reason = diagnosis.is_object() ? diagnosis.value("reason", "") : "";
   Bodies bodies;
   for (const RobotBody& body : world.bodies())
     bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
@@ -317,7 +316,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                      {"meshes", std::move(bodies.meshes)},
                      {"tool_path", std::move(tool_path)},
                      {"rows", rows_json(world, lattice, view.path, budget)},
-                     {"cut", cut_json(map, lattice, world, reason)},
+                     {"cut", diagnosis.is_object() ? cut_json(map, lattice, diagnosis) : Json(nullptr)},
                      {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -19,7 +19,7 @@ export function summary({ result, settings }) {
   const removed = result.diagnosis?.removed, empty = result.diagnosis?.empty_layers ?? [];
   if (removed) add('Removed past the furthest layer', words(removed));
   if (empty.length)
-    add('Empty layers', [...empty.slice(0, 20).map((l) => [`layer ${l.layer}, s = ${number(l.s)} m`, l.reason]), ...(empty.length > 20 ? [['more', `${empty.length - 20}`]] : [])]);
+    add('Empty layers', [...empty.slice(0, 20).map(({ layers: [first, last], s, reason }) => [first === last ? `layer ${first}, s = ${number(s[0])} m` : `layers ${first} to ${last}, s = ${number(s[0])} to ${number(s[1])} m`, reason]), ...(empty.length > 20 ? [['more', `${empty.length - 20}`]] : [])]);
   add('Times, ms', [...words(result.time_ms), ...words(result.time_ms.stages)]);
   add('Counters', words(result.counters));
   add('Lattice', words(result.lattice));

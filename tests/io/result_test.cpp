@@ -24,9 +24,11 @@ PlanResult solved() {
   result.counters = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   result.time_ms = {{"load", 1.5}, {"plan", 2.5}, {"search", 0.25}};
   result.evidence = Evidence::all();
-  result.tool_path_error_mm = {0.1, 0.2};
+  result.tool_path_error_mm = {0.1, 0.2, 1, 0.001};
+  result.nearest_limit = {0.04, "c", Cause::Side::kUpper, 0};
+  result.top_tool_speed = {0.35, "g", 0};
   result.min_clearance = 0.012;
-  result.min_margin = {0.001, 0.003, 0.002, {"link_5", "link_7"}, 4};
+  result.min_margin = {0.001, 0.003, 0.002, {"link_5", "link_7"}, 1};
   result.reduced_pairs = {{{"link_5", "link_7"}, 0.004, 0.002, 0.001}};
   result.dropped_pairs = {{{"link_1", "link_3"}, 0, 0, 0}};
   result.min_manipulability = 0.05;
@@ -45,7 +47,7 @@ PlanResult solved() {
 TEST(Result, KeysInOrder) {
   const Json json = Json::parse(to_json(solved()));
   EXPECT_EQ(keys_of(json),
-            (std::vector<std::string>{"status", "cost", "planner", "threads", "lattice", "counters", "time_ms",
+            (std::vector<std::string>{"status", "summary", "cost", "planner", "threads", "lattice", "counters", "time_ms",
                                       "tool_path_error_mm", "min_clearance", "min_margin", "min_manipulability", "arm_angle",
                                       "diagnosis", "trajectory", "partial", "robot_pairs", "warnings", "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
@@ -72,7 +74,12 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["tool_path_error_mm"]["max"], 0.2);
   EXPECT_EQ(json["min_clearance"], 0.012);
   EXPECT_EQ(json["min_margin"],
-            Json({{"margin", 0.001}, {"clearance", 0.003}, {"required", 0.002}, {"bodies", {"link_5", "link_7"}}, {"row", 4}}));
+            Json({{"margin", 0.001}, {"clearance", 0.003}, {"required", 0.002}, {"bodies", {"link_5", "link_7"}}, {"row", 1}}));
+  EXPECT_EQ(json["summary"]["clearance"], Json({{"value", 0.003}, {"asked", 0.002}, {"bodies", {"link_5", "link_7"}}, {"s", 0.1}}));
+  EXPECT_EQ(json["summary"]["joint_limit"],
+            Json({{"joint", "c"}, {"side", "upper"}, {"margin_deg", 0.04 * 180 / kPi}, {"s", 0.1}}));
+  EXPECT_EQ(json["summary"]["tool_path_error"], Json({{"max_mm", 0.2}, {"allowed_mm", 1.0}, {"s", 0.1}}));
+  EXPECT_EQ(json["summary"]["top_tool_speed"], Json({{"speed", 0.35}, {"joint", "g"}, {"s", 0.1}}));
   EXPECT_EQ(json["robot_pairs"]["dropped"], Json::parse(R"([{"bodies": ["link_1", "link_3"]}])"));
   EXPECT_EQ(json["robot_pairs"]["reduced"],
             Json::parse(R"([{"bodies": ["link_5", "link_7"], "median": 0.004, "clearance": 0.002, "edge_clearance": 0.001}])"));
@@ -87,13 +94,27 @@ TEST(Result, SolvedRoundTrip) {
 TEST(Result, Infeasible) {
   PlanResult result;
   result.status = PlanStatus::kInfeasible;
-  result.diagnosis.reason = "joint j5";
+  Cause limit, pair, reach;
+  limit.kind = Cause::Kind::kLimit;
+  limit.side = Cause::Side::kLower;
+  limit.joint = "j5";
+  limit.value = -2.5;
+  limit.limit = -2.0;
+  pair.kind = Cause::Kind::kPair;
+  pair.bodies = {"link_3", "table"};
+  reach.kind = Cause::Kind::kReach;
+  reach.side = Cause::Side::kUpper;
+  reach.value = 0.75;
+  reach.limit = 0.5;
+  result.diagnosis.cause = limit;
+  result.diagnosis.at_s = 0.35;
+  result.diagnosis.waypoints = {3, 4};
+  result.diagnosis.without_it = 20;
+  result.diagnosis.without_it_s = 0.45;
   result.diagnosis.reached_layer = 12;
   result.diagnosis.reached_s = 0.34;
-  result.diagnosis.empty_layers = {{13, 4, 0.35, "no IK", Shortfall{Shortfall::Kind::kTooFar, 0.75, 0.5, ""}},
-                                   {14, -1, 0.36, "link_3 - table"},
-                                   {15, -1, 0.37, "joint j5", Shortfall{Shortfall::Kind::kLowerLimit, -2.5, -2.0, "j5"}}};
-  result.diagnosis.removed = {{"no IK", 9}};
+  result.diagnosis.empty_layers = {{13, 14, 0.35, 0.36, 4, 4, reach, 0.3}, {15, 15, 0.37, 0.37, -1, -1, pair, {}}};
+  result.diagnosis.removed = {{reach, 9}};
   result.diagnosis.complete = false;
   result.diagnosis.layers_known = 16;
   const Json json = Json::parse(to_json(result));
@@ -101,25 +122,30 @@ TEST(Result, Infeasible) {
   for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   const Json& diagnosis = json["diagnosis"];
-  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "shortfall", "empty_layers",
-                                                          "removed", "complete", "layers_known"}));
+  EXPECT_EQ(keys_of(diagnosis),
+            (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s", "waypoints", "without_it",
+                                      "without_it_s", "together", "empty_layers", "removed", "complete", "layers_known"}));
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
-  EXPECT_EQ(diagnosis["empty_layers"][0],
-            Json({{"layer", 13},
-                  {"waypoint", 4},
-                  {"s", 0.35},
-                  {"reason", "no IK"},
-                  {"shortfall",
-                   {{"kind", "too far"}, {"joint", nullptr}, {"by", 0.25}, {"value", 0.75}, {"limit", 0.5}, {"unit", "m"}}}}));
-  EXPECT_TRUE(diagnosis["empty_layers"][1]["shortfall"].is_null());
-  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["by"], 0.5);
-  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["joint"], "j5");
-  EXPECT_EQ(diagnosis["empty_layers"][2]["shortfall"]["unit"], "rad");
-  EXPECT_TRUE(diagnosis["shortfall"].is_null());
+  EXPECT_EQ(diagnosis["reason"], "joint j5");
+  EXPECT_EQ(diagnosis["cause"], Json::parse(R"({"cause": "limit", "joint": "j5", "other_joints": false, "side": "lower",
+      "bodies": null, "between_layers": false, "object": null, "check": null, "by": 0.5, "value": -2.5, "limit": -2.0, "unit": "rad"})"));
+  EXPECT_EQ(diagnosis["waypoints"], Json({3, 4}));
+  EXPECT_EQ(diagnosis["without_it"], 20);
+  EXPECT_EQ(diagnosis["empty_layers"][0]["layers"], Json({13, 14}));
+  EXPECT_EQ(diagnosis["empty_layers"][0]["s"], Json({0.35, 0.36}));
+  EXPECT_EQ(diagnosis["empty_layers"][0]["waypoints"], Json({4, 4}));
+  EXPECT_EQ(diagnosis["empty_layers"][0]["reason"], "no IK");
+  EXPECT_EQ(diagnosis["empty_layers"][0]["cause"]["side"], "upper");
+  EXPECT_EQ(diagnosis["empty_layers"][0]["cause"]["by"], 0.25);
+  EXPECT_EQ(diagnosis["empty_layers"][0]["most"], 0.3);
+  EXPECT_TRUE(diagnosis["empty_layers"][1]["waypoints"].is_null());
+  EXPECT_EQ(diagnosis["empty_layers"][1]["cause"]["bodies"], Json({"link_3", "table"}));
+  EXPECT_TRUE(diagnosis["empty_layers"][1]["cause"]["by"].is_null());
+  EXPECT_EQ(json["summary"]["solved"], false);
+  EXPECT_TRUE(json["summary"]["clearance"].is_null());
   EXPECT_EQ(diagnosis["complete"], false);
   EXPECT_EQ(diagnosis["layers_known"], 16);
-  EXPECT_TRUE(diagnosis["empty_layers"][1]["waypoint"].is_null());
   EXPECT_EQ(diagnosis["removed"]["no IK"], 9);
   EXPECT_EQ(json["trajectory"], Json::array());
 }

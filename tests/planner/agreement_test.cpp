@@ -40,13 +40,20 @@ void expect_same(const PlanResult& a, const PlanResult& b, const std::string& wh
     ASSERT_EQ(a.trajectory[i].phi, b.trajectory[i].phi) << what;
   }
   ASSERT_EQ(a.diagnosis.reached_layer, b.diagnosis.reached_layer) << what;
-  ASSERT_EQ(a.diagnosis.reason, b.diagnosis.reason) << what;
-  ASSERT_EQ(a.diagnosis.removed, b.diagnosis.removed) << what;
+  ASSERT_EQ(words(a.diagnosis.cause), words(b.diagnosis.cause)) << what;
+  ASSERT_EQ(a.diagnosis.without_it, b.diagnosis.without_it) << what;
+  ASSERT_EQ(a.diagnosis.together.size(), b.diagnosis.together.size()) << what;
+  ASSERT_EQ(a.diagnosis.removed.size(), b.diagnosis.removed.size()) << what;
+  for (std::size_t k = 0; k < a.diagnosis.removed.size(); ++k) {
+    ASSERT_EQ(words(a.diagnosis.removed[k].cause), words(b.diagnosis.removed[k].cause)) << what;
+    ASSERT_EQ(a.diagnosis.removed[k].count, b.diagnosis.removed[k].count) << what;
+  }
   ASSERT_EQ(a.diagnosis.complete, b.diagnosis.complete) << what;
   ASSERT_EQ(a.diagnosis.empty_layers.size(), b.diagnosis.empty_layers.size()) << what;
   for (std::size_t k = 0; k < a.diagnosis.empty_layers.size(); ++k) {
-    ASSERT_EQ(a.diagnosis.empty_layers[k].layer, b.diagnosis.empty_layers[k].layer) << what;
-    ASSERT_EQ(a.diagnosis.empty_layers[k].reason, b.diagnosis.empty_layers[k].reason) << what;
+    ASSERT_EQ(a.diagnosis.empty_layers[k].first, b.diagnosis.empty_layers[k].first) << what;
+    ASSERT_EQ(a.diagnosis.empty_layers[k].last, b.diagnosis.empty_layers[k].last) << what;
+    ASSERT_TRUE(a.diagnosis.empty_layers[k].cause.same_thing(b.diagnosis.empty_layers[k].cause)) << what;
   }
 }
 
@@ -118,12 +125,13 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     } else {
       ++infeasible;
       ASSERT_EQ(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
-      ASSERT_FALSE(results[0].diagnosis.reason.empty()) << what;
+      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
       // Pairs that are near by design cost questions, of which a diagnosis asks so many and no more.
       ASSERT_TRUE(results[0].diagnosis.complete || trial % 8 == 7) << what;
       if (!results[0].diagnosis.complete) continue;
       std::vector<int> empty;
-      for (const EmptyLayer& layer : results[0].diagnosis.empty_layers) empty.push_back(layer.layer);
+      for (const EmptyLayers& run : results[0].diagnosis.empty_layers)
+        for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
       ASSERT_EQ(empty, truth.empty) << what;
     }
   }

@@ -12,6 +12,7 @@
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/campaign.hpp"
@@ -126,7 +127,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
          auto asked = validity();
          eager_dp(lattice, asked, spent, eager);
        }},
-      {"diagnosis", [&] { diagnose(lattice, world, rule, 3, true, spent, diagnosis); }},
+      {"diagnosis", [&] { diagnose(lattice, world, rule, {0, 0, 0, 0}, true, spent, diagnosis); }},
   };
   for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
   EXPECT_EQ(togo.edges(), 0);
@@ -214,7 +215,7 @@ TEST(Budget, NothingIsWorkedOutThatWasNotAskedFor) {
   blocked.resolution = {.ds = 0.02, .dphi = 0.2};
   const PlanResult cause = plan(blocked), evidence = plan(blocked, options);
   ASSERT_EQ(cause.status, PlanStatus::kInfeasible);
-  EXPECT_EQ(cause.diagnosis.reason, evidence.diagnosis.reason);
+  EXPECT_EQ(words(cause.diagnosis.cause), words(evidence.diagnosis.cause));
   EXPECT_EQ(cause.diagnosis.reached_layer, evidence.diagnosis.reached_layer);
   EXPECT_TRUE(cause.diagnosis.complete);
   EXPECT_TRUE(cause.diagnosis.empty_layers.empty());

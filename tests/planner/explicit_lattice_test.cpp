@@ -7,11 +7,13 @@
 
 #include "brute_force.hpp"
 #include "collision_validity.hpp"
+#include "diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/explicit_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/graph/path_first.hpp"
+#include "without.hpp"
 
 namespace swivel::test {
 namespace {
@@ -152,6 +154,79 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
   EXPECT_GE(solved, at_least(count / 10 + 1));
   EXPECT_GE(infeasible, at_least(count / 10 + 1));
   EXPECT_GE(rounds, at_least(2 * count + 1));
+}
+
+/// What ends every path is found among listed nodes as on a grid: without it, brute force goes on.
+TEST(ExplicitLattice, WithoutTheCauseThatIsNamedPathsGoOn) {
+  const std::uint64_t base = seed("ExplicitLattice.Cause");
+  const TestRobot robot = offset_robot();
+  const ArmModel arm = arm_of(robot);
+  int infeasible = 0, named = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robot, random);
+    problem.limits.step_error.reset();
+    problem.limits.joint_step = random.uniform(0.1, 0.5);
+    problem.start.reset();
+    const Config start = random_config(arm.chain, random);
+    Config end = start;
+    for (int j = 0; j < kDof; ++j) end[j] += random.uniform(-0.2, 0.2);
+    problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
+    problem.resolution = {.ds = 0.04, .dphi = 0.3, .dalpha = 0.3};
+    const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
+    const auto points = random_layers(arm.chain, path, start, random);
+    const auto truth_of = [&](const Problem& posed, Diagnosis* diagnosis) {
+      const ExplicitLattice lattice(arm.chain, path, posed, points);
+      const World world(*posed.model, arm, posed);
+      const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
+      const Answer truth = brute_force(lattice, world, rule, [](int, int, int) { return true; });
+      if (diagnosis != nullptr && !truth.solved)
+        diagnose(lattice, world, rule, truth.deepest < 0 ? SlotPath{} : best_path_to(lattice, world, rule, truth.deepest, {}), true,
+                 {}, *diagnosis);
+      return truth;
+    };
+    Diagnosis diagnosis;
+    if (truth_of(problem, &diagnosis).solved) continue;
+    ++infeasible;
+    ASSERT_NE(diagnosis.cause.kind, Cause::Kind::kNone) << what;
+    if (!diagnosis.without_it) continue;
+    const auto relaxed = without(diagnosis.cause, problem);
+    ASSERT_TRUE(relaxed.has_value()) << what;
+    const Answer after = truth_of(*relaxed, nullptr);
+    EXPECT_TRUE(after.solved || after.deepest >= *diagnosis.without_it) << what << ": " << words(diagnosis.cause);
+    ++named;
+  }
+  std::printf("%d infeasible, one thing named in %d\n", infeasible, named);
+  EXPECT_GT(infeasible, count / 10);
+  EXPECT_GT(named, count / 20);
+}
+
+/// Where a curve of self-motion ends because a joint is at its limit, no node is listed past it: the continuation tells.
+TEST(ExplicitLattice, ALimitThatEndsTheNodesIsNamed) {
+  const TestRobot robot = offset_robot();
+  ArmModel arm = arm_of(robot);
+  Config start, end;
+  start << 0.3, 0.5, 0.2, -1.2, 0.1, 0.6, 0.0;
+  end = start;
+  end[1] += 0.5;  // beyond the limit, which is set between
+  Problem problem = problem_for(robot);
+  problem.limits.clearance = 0;
+  problem.waypoints = {waypoint_of(arm.chain.tool(start)), waypoint_of(arm.chain.tool(end))};
+  problem.resolution = {.ds = 0.05, .dphi = 0.3, .dalpha = 0.3};
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, "");
+  std::vector<std::vector<ExplicitLattice::Point>> points(static_cast<std::size_t>(path.size()));
+  points[0].push_back({.q = start});
+  arm.chain.limit[1].upper = start[1] + 1e-3;
+  const ExplicitLattice lattice(arm.chain, path, problem, points);
+  const World world(*robot.model, arm, problem);
+  Diagnosis diagnosis;
+  diagnose(lattice, world, world.edge_rule(motion_radii(arm.chain, world.bodies())), {0}, true, {}, diagnosis);
+  EXPECT_EQ(diagnosis.cause.kind, Cause::Kind::kLimit) << words(diagnosis.cause);
+  EXPECT_EQ(diagnosis.cause.joint, arm.chain.joint_names[1]);
+  EXPECT_EQ(diagnosis.cause.side, Cause::Side::kUpper);
+  EXPECT_GT(diagnosis.cause.by().value_or(0), 0);
 }
 
 TEST(ExplicitLattice, AGridWithAnOpenWindowListedNodeByNodeHasTheSamePath) {

@@ -143,7 +143,8 @@ constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp,
 TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Hooks");
   const auto robots = all_robots();
-  int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0, other_verdict = 0, by_check = 0;
+  int solved = 0, infeasible = 0, with_cost = 0, with_check = 0, with_motions = 0, other_path = 0, other_verdict = 0, by_check = 0,
+      confirmed = 0;
   std::int64_t asked = 0, refused = 0, lazy_costs = 0, eager_costs = 0;
   const int count = trials(200);
   for (int trial = 0; trial < count; ++trial) {
@@ -190,13 +191,14 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
         ASSERT_EQ(result.trajectory[row].branch, lattice.branch(i, truth.slots[row])) << who << " row " << i;
         ASSERT_EQ(result.trajectory[row].q, results[0].trajectory[row].q) << who << " row " << i;
       }
-      ASSERT_EQ(result.diagnosis.reason, results[0].diagnosis.reason) << who;
+      ASSERT_EQ(words(result.diagnosis.cause), words(results[0].diagnosis.cause)) << who;
       ASSERT_EQ(result.diagnosis.removed, results[0].diagnosis.removed) << who;
       if (!truth.solved) {
         ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
-        ASSERT_FALSE(result.diagnosis.reason.empty()) << who;
+        ASSERT_NE(result.diagnosis.cause.kind, Cause::Kind::kNone) << who;
         std::vector<int> empty;
-        for (const EmptyLayer& layer : result.diagnosis.empty_layers) empty.push_back(layer.layer);
+        for (const EmptyLayers& run : result.diagnosis.empty_layers)
+          for (int layer = run.first; layer <= run.last; ++layer) empty.push_back(layer);
         ASSERT_TRUE(!result.diagnosis.complete || empty == truth.empty) << who;
       }
       if (check) {
@@ -208,7 +210,7 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
       if (cost && k == 1) eager_costs += cost->asked;
       if (cost && k == 2) lazy_costs += cost->asked;
     }
-    by_check += results[0].diagnosis.reason.starts_with("check wave");
+    by_check += words(results[0].diagnosis.cause).starts_with("check wave");
     if (truth.solved) {
       const CheckResult checked = check_trajectory(robot, problem, results[0].trajectory);
       ASSERT_TRUE(checked.passed) << what << ": " << (checked.failures.empty() ? "" : checked.failures[0]);
@@ -218,14 +220,20 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
     }
     const PlanResult plain = plan(robot, problem, options_for(PlannerKind::kLazy));
     other_verdict += plain.status != results[0].status;
+    if (const Diagnosis& d = results[0].diagnosis; !truth.solved && check && d.without_it) {
+      ASSERT_EQ(d.cause.kind, Cause::Kind::kCheck) << what;
+      ASSERT_TRUE(plain.status == PlanStatus::kSolved || plain.diagnosis.reached_layer.value_or(-1) >= *d.without_it) << what;
+      ++confirmed;
+    }
     if (truth.solved)
       other_path += !std::equal(plain.trajectory.begin(), plain.trajectory.end(), results[0].trajectory.begin(),
                                 [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
   }
   std::printf(
-      "%d problems: %d solved, %d infeasible (%d by a check); %d with costs, %d with checks, %d of motions; another path %d times, "
+      "%d problems: %d solved, %d infeasible (%d by a check, %d confirmed without it); %d with costs, %d with checks, %d of "
+      "motions; another path %d times, "
       "another verdict %d times; %lld asked, %lld refused; costs asked: %lld lazily, %lld eagerly\n",
-      count, solved, infeasible, by_check, with_cost, with_check, with_motions, other_path, other_verdict,
+      count, solved, infeasible, by_check, confirmed, with_cost, with_check, with_motions, other_path, other_verdict,
       static_cast<long long>(asked), static_cast<long long>(refused), static_cast<long long>(lazy_costs),
       static_cast<long long>(eager_costs));
   EXPECT_GE(solved, count / 4);
@@ -234,6 +242,7 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(other_path, count / 10);
   EXPECT_GE(other_verdict, count / 40);
   EXPECT_GE(by_check, count / 40);
+  EXPECT_GE(confirmed, count / 80);
   EXPECT_GT(refused, asked / 20);
   EXPECT_LT(lazy_costs, eager_costs);
 }
@@ -387,14 +396,22 @@ TEST(Hooks, ACheckThatRefusesIsTheCause) {
     PlanResult result = plan(robot, problem, options);
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
     EXPECT_FALSE(result.diagnosis.reached_layer.has_value());
-    EXPECT_EQ(result.diagnosis.reason, "check of the test");
-    ASSERT_GT(result.diagnosis.empty_layers.size(), 5U);
-    for (const EmptyLayer& layer : result.diagnosis.empty_layers) EXPECT_EQ(layer.reason, "check of the test");
+    EXPECT_EQ(words(result.diagnosis.cause), "check of the test");
+    EXPECT_TRUE(result.diagnosis.without_it.has_value());
+    ASSERT_EQ(result.diagnosis.empty_layers.size(), 1U);
+    const EmptyLayers& run = result.diagnosis.empty_layers[0];
+    EXPECT_EQ(run.first, 0);
+    EXPECT_GT(run.last, 5);
+    EXPECT_EQ(words(run.cause), "check of the test");
     options.hooks.check = std::make_shared<NoMotion>();
     result = plan(robot, problem, options);
     EXPECT_EQ(result.status, PlanStatus::kInfeasible);
     EXPECT_EQ(result.diagnosis.reached_layer, 0);
-    EXPECT_GT(result.diagnosis.removed["check rest between layers"], 0);
+    EXPECT_EQ(words(result.diagnosis.cause), "check rest between layers");
+    const auto& removed = result.diagnosis.removed;
+    EXPECT_TRUE(std::any_of(removed.begin(), removed.end(), [](const Diagnosis::Removed& one) {
+      return words(one.cause) == "check rest between layers" && one.count > 0;
+    }));
   }
 }
 

@@ -45,7 +45,7 @@ void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.counters.certified_colliding, first.counters.certified_colliding);
   EXPECT_EQ(result.counters.nodes_checked, first.counters.nodes_checked);
   EXPECT_EQ(result.counters.edges_checked, first.counters.edges_checked);
-  EXPECT_EQ(result.diagnosis.reason, first.diagnosis.reason);
+  EXPECT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause));
   EXPECT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer);
   ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
   for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);

@@ -70,9 +70,14 @@ class Lattice {
   struct NodeFault {
     NodeStatus status = NodeStatus::kValid;
     std::uint8_t joints = 0;    ///< bit k: joint k is outside its limits
-    Config q = Config::Zero();  ///< of kLimit: the joints of the closed form, of any winding
+    Config q = Config::Zero();  ///< of kLimit: the row as it would be, each joint outside on the side that it is nearer to
   };
   [[nodiscard]] virtual NodeFault fault(int layer, int slot) const = 0;
+  /// How far from the base's end of the arm a layer's pose is, where the arm cannot be so long or so short whatever its joints.
+  struct Reach {
+    double distance = 0, limit = 0;  ///< m
+  };
+  [[nodiscard]] virtual std::optional<Reach> out_of_reach(int) const { return std::nullopt; }
   /// The redundancy coordinate of a node, rad: the carried arm angle of S-R-S arms.
   [[nodiscard]] virtual double phi(int layer, int slot) const = 0;
   /// Signs that name the node's solution, for reports: 0..7.
@@ -108,6 +113,9 @@ class Lattice {
   }
   /// The same of a move between rows, by joint_step and speed limits as they are: part of an edge's validity where has_own_rows().
   [[nodiscard]] bool row_step_allowed(int layer, const Config& delta) const;
+  [[nodiscard]] const Config& row_step_bound(int layer) const {
+    return row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
+  }
   /// By how much a row's joints differ from their node's on this arm, as measured (SrsArm::misfit), rad: 0 where every node is its
   /// own row. Limits and steps of nodes are wider by it, so that few rows are missed.
   [[nodiscard]] const Config& misfit() const { return misfit_; }
@@ -115,6 +123,10 @@ class Lattice {
   [[nodiscard]] double edge_cost(const Config& delta) const;
   /// Tool-path, tool-angle and step-error bounds of the joint-linear move from row q0 (slot a) to row q1 (slot b).
   [[nodiscard]] bool follows_path(int layer, int a, const Config& q0, int b, const Config& q1) const;
+  /// The step error of that move alone is allowed.
+  [[nodiscard]] bool keeps_step_error(int layer, int a, int b) const {
+    return !limits_.step_error || step_error_allowed(layer, a, b);
+  }
   [[nodiscard]] bool asks_path_error() const { return limits_.tool_path_error || limits_.tool_angle_error || limits_.step_error; }
 
   [[nodiscard]] const std::array<bool, kDof>& continuous() const { return continuous_; }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/cause.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
@@ -43,36 +44,36 @@ struct LatticeInfo {
   double cost = 0;  ///< what the search minimised and ties are settled by, of solved problems: of the nodes, not of the rows
 };
 
-/// By how much a layer has no closed form within reach and limits, at the node where that is least.
-struct Shortfall {
-  enum class Kind {
-    kTooFar,      ///< the wrist centre is further from the shoulder than the arm is long
-    kTooNear,     ///< nearer than the arm folds
-    kLowerLimit,  ///< a joint is below its lower limit
-    kUpperLimit
-  };
-  Kind kind = Kind::kTooFar;
-  double value = 0, limit = 0;  ///< m, or rad; limits less the margin
-  std::string joint;            ///< of limits
-  [[nodiscard]] bool is_reach() const { return kind == Kind::kTooFar || kind == Kind::kTooNear; }
-  [[nodiscard]] double by() const { return value > limit ? value - limit : limit - value; }
+/// Layers, one after the other, that have no node left for one cause. docs/model.md.
+struct EmptyLayers {
+  int first = 0, last = 0;
+  double first_s = 0, last_s = 0;               ///< m
+  int first_waypoint = -1, last_waypoint = -1;  ///< 0-based rows of the path file among these layers; -1: none
+  Cause cause;                                  ///< as at the layer that misses least
+  std::optional<double> most = {};              ///< the most that one of these layers misses by
 };
 
-/// Why a layer has no node left, or why the search stopped. docs/model.md.
-struct EmptyLayer {
-  int layer = 0;
-  int waypoint = -1;  ///< 0-based row of the path file when the layer is a waypoint, else -1
-  double s = 0;
-  std::string reason;  ///< "no IK", "joint <name>", "joint limits", "singular", "manipulability", "<body> - <body>", "check <name>"
-  std::optional<Shortfall> shortfall = {};  ///< of "no IK", "joint <name>" and "joint limits"
-};
+/// Why an infeasible problem has no path. docs/model.md.
 struct Diagnosis {
   std::optional<int> reached_layer;  ///< furthest layer that a valid path from layer 0 reaches; null where layer 0 is empty
   std::optional<double> reached_s;
-  std::string reason;                  ///< what stops every path there, one phrase; empty where that was not found in time
-  std::optional<Shortfall> shortfall;  ///< of that reason, where the next layer is empty for it
-  std::vector<EmptyLayer> empty_layers;
-  std::map<std::string, std::int64_t> removed;  ///< reason -> nodes or edges it removed just past the furthest layer
+  /// The one thing that ends every path there: without it, paths would go on to `without_it`. Where no single thing helps, it is
+  /// the first of those that stand in the way, and `without_it` is none. Kind::kNone where it was not found in time.
+  Cause cause;
+  std::optional<double> at_s;            ///< of the layer just past the furthest one, where all paths have ended
+  std::array<int, 2> waypoints{-1, -1};  ///< the last waypoint before that layer and the first from it on; -1: none
+  /// A layer that is reached if this thing alone is removed: at least this. None beside a StateCheck, unless that is the cause: it
+  /// is not asked about what other rules refuse.
+  std::optional<int> without_it;
+  std::optional<double> without_it_s;
+  std::vector<Cause> together;  ///< what must go besides, where no single thing helps
+  std::vector<EmptyLayers> empty_layers;
+  struct Removed {
+    Cause cause;
+    std::int64_t count = 0;
+    bool operator==(const Removed&) const = default;
+  };
+  std::vector<Removed> removed;  ///< nodes and edges removed just past the furthest layer, in the order of words(cause)
   /// False where time ran out, or the layers were too many or too costly to look at all. What is said is true nevertheless.
   bool complete = true;
   int layers_known = 0;  ///< layers, from the first on, of which it is known whether they are empty
@@ -102,6 +103,21 @@ struct SpecialPair {
   double clearance = 0, edge_clearance = 0;  ///< what it keeps on layers and between them, m
 };
 
+/// How near the rows come to a joint's limit.
+struct NearestLimit {
+  double margin = 0;  ///< rad, to the limit itself
+  std::string joint;
+  Cause::Side side = Cause::Side::kLower;
+  int row = 0;
+};
+
+/// The highest constant speed of the tool at which no joint need turn faster than it can.
+struct TopToolSpeed {
+  double speed = 0;   ///< m/s
+  std::string joint;  ///< that bounds it
+  int row = 0;        ///< on the step from it
+};
+
 struct PlanResult {
   PlanStatus status = PlanStatus::kInfeasible;
   double cost = 0;  ///< of the rows
@@ -113,12 +129,16 @@ struct PlanResult {
   std::map<std::string, double> time_ms;  ///< load, prepare, plan, report, and stages
   struct {
     double mean = 0, max = 0;
+    int row = 0;                        ///< the step from it has the largest
+    std::optional<double> allowed;      ///< limits.tool_path_error
   } tool_path_error_mm;                 ///< of solved problems, where asked for; so are the next four
   std::optional<double> min_clearance;  ///< of the nearest pair on any row, m; null when nothing is near
   std::optional<LeastMargin> min_margin;
   double min_manipulability = 0;
-  std::vector<double> arm_angle;          ///< conventional arm angle of each row, rad
-  std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
+  std::optional<NearestLimit> nearest_limit;   ///< of solved problems; null where no joint has limits
+  std::optional<TopToolSpeed> top_tool_speed;  ///< of solved problems; null where the tool rests, or a joint's speed is not known
+  std::vector<double> arm_angle;               ///< conventional arm angle of each row, rad
+  std::vector<TrajectoryRow> trajectory;       ///< empty unless solved
   /// Where there is no answer: rows from the first layer on that are valid, as far as they are known; maybe none.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;

@@ -95,6 +95,8 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool has_own_rows() const override { return !arm_->exact; }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
+  /// The wrist centre from the shoulder.
+  [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int beside(int layer, int slot, int by) const override;

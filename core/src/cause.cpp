@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/cause.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "swivel/core/types.hpp"
+
+namespace swivel {
+
+namespace {
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[128];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+std::string range(double low, double high) {
+  const std::string first = text("%.3g", low), last = text("%.3g", high);
+  return first == last ? first : first + " to " + last;
+}
+
+constexpr double kDegrees = 180 / kPi, kMillimetres = 1e3;
+
+}  // namespace
+
+std::optional<double> Cause::by() const {
+  if (!value || !limit) return std::nullopt;
+  return std::abs(*value - *limit);
+}
+
+const char* Cause::unit() const {
+  switch (kind) {
+    case Kind::kReach:
+    case Kind::kPair:
+    case Kind::kContact:
+    case Kind::kPathError:
+      return "m";
+    case Kind::kLimit:
+    case Kind::kJointStep:
+    case Kind::kSpeed:
+    case Kind::kAngleError:
+    case Kind::kStepError:
+    case Kind::kArmSlope:
+      return "rad";
+    default:
+      return "";
+  }
+}
+
+bool Cause::same_thing(const Cause& other) const {
+  return kind == other.kind && side == other.side && joint == other.joint && other_joints == other.other_joints &&
+         (object.empty() ? bodies == other.bodies : true) && object == other.object && between_layers == other.between_layers &&
+         check == other.check;
+}
+
+const char* to_string(Cause::Kind kind) {
+  switch (kind) {
+    case Cause::Kind::kReach:
+      return "reach";
+    case Cause::Kind::kSingular:
+      return "singular";
+    case Cause::Kind::kLimit:
+      return "limit";
+    case Cause::Kind::kManipulability:
+      return "manipulability";
+    case Cause::Kind::kPair:
+      return "pair";
+    case Cause::Kind::kContact:
+      return "contact";
+    case Cause::Kind::kArmSlope:
+      return "arm_slope";
+    case Cause::Kind::kJointStep:
+      return "joint_step";
+    case Cause::Kind::kSpeed:
+      return "speed";
+    case Cause::Kind::kPathError:
+      return "path_error";
+    case Cause::Kind::kAngleError:
+      return "angle_error";
+    case Cause::Kind::kStepError:
+      return "step_error";
+    case Cause::Kind::kCheck:
+      return "check";
+    case Cause::Kind::kNone:
+      break;
+  }
+  return "none";
+}
+
+const char* to_string(Cause::Side side) {
+  return side == Cause::Side::kLower ? "lower" : side == Cause::Side::kUpper ? "upper" : "";
+}
+
+std::string words(const Cause& cause) {
+  switch (cause.kind) {
+    case Cause::Kind::kReach:
+      return "no IK";
+    case Cause::Kind::kSingular:
+      return "singular";
+    case Cause::Kind::kLimit:
+      return cause.other_joints ? "joint limits" : "joint " + cause.joint;
+    case Cause::Kind::kManipulability:
+      return "manipulability";
+    case Cause::Kind::kPair:
+    case Cause::Kind::kContact:
+      return cause.bodies[0] + " - " + cause.bodies[1] + (cause.between_layers ? " between layers" : "");
+    case Cause::Kind::kArmSlope:
+      return "arm slope";
+    case Cause::Kind::kJointStep:
+      return "joint step";
+    case Cause::Kind::kSpeed:
+      return "tool speed";
+    case Cause::Kind::kPathError:
+      return "tool-path error";
+    case Cause::Kind::kAngleError:
+      return "tool-angle error";
+    case Cause::Kind::kStepError:
+      return "step error";
+    case Cause::Kind::kCheck:
+      return "check " + cause.check + (cause.between_layers ? " between layers" : "");
+    case Cause::Kind::kNone:
+      break;
+  }
+  return "";
+}
+
+std::string figures(const Cause& cause, std::optional<double> most) {
+  const auto by = cause.by();
+  if (!by) return "";
+  const auto misses = [&](double unit) { return range(unit * *by, unit * std::max(*by, most.value_or(*by))); };
+  const auto of = [&](const char* format, double unit) { return text(format, unit * *cause.value, unit * *cause.limit); };
+  switch (cause.kind) {
+    case Cause::Kind::kReach:
+      return (cause.side == Cause::Side::kUpper ? "out of reach by " : "too near to the shoulder by ") + misses(kMillimetres) +
+             " mm";
+    case Cause::Kind::kLimit:
+      return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
+             text("%.2f deg", kDegrees * *cause.limit);
+    case Cause::Kind::kPair:
+      return of("%.3g mm apart, asked %.3g mm", kMillimetres);
+    case Cause::Kind::kContact:
+      return text("they touch, asked %.3g mm", kMillimetres * *cause.limit);
+    case Cause::Kind::kJointStep:
+    case Cause::Kind::kSpeed:
+      return cause.joint + ": " + of("%.3g rad, allowed %.3g rad", 1);
+    case Cause::Kind::kPathError:
+      return of("%.3g mm, allowed %.3g mm", kMillimetres);
+    case Cause::Kind::kArmSlope:
+    case Cause::Kind::kAngleError:
+    case Cause::Kind::kStepError:
+      return of("%.3g rad, allowed %.3g rad", 1);
+    case Cause::Kind::kManipulability:
+      return of("%.3g, asked %.3g", 1);
+    default:
+      return "";
+  }
+}
+
+}  // namespace swivel

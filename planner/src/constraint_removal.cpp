@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraint_removal.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace swivel {
+
+namespace {
+
+/// Bits of a set, lowest first.
+template <class Each>
+void for_each_bit(ConstraintSet set, const Each& each) {
+  for (; set != 0; set &= set - 1) each(std::countr_zero(set));
+}
+
+/// Of two values of one thing: whether the first misses by less.
+bool misses_less(const Cause& a, const Cause& b) {
+  const auto x = a.by(), y = b.by();
+  return x && (!y || *x < *y);
+}
+
+constexpr std::size_t index(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+}  // namespace
+
+ConstraintRemoval::ConstraintRemoval(const Lattice& lattice, Constraints& constraints, const SlotPath& path, const Budget& budget)
+    : lattice_(lattice), constraints_(constraints), path_(path), budget_(budget), deepest_(static_cast<int>(path.size()) - 1) {
+  const int steps = lattice.layers() - 1, further = std::max(1, static_cast<int>(std::ceil(0.05 * steps)));
+  wanted_ = std::min(steps, std::max(0, deepest_) + further);
+}
+
+ConstraintSet ConstraintRemoval::exists(ConstraintSet violated) const {
+  const ConstraintSet left = constraints_.left(violated, waived_);
+  return left == 0 ? kAlways : constraints_.removals(left);
+}
+
+void ConstraintRemoval::enter(int layer) {
+  Layer& here = layers_[index(layer % 2)];
+  here.nodes.assign(index(lattice_.slots(layer)), {});
+  here.reached.assign(here.nodes.size(), 0);
+}
+
+const Constraints::Node& ConstraintRemoval::at(int layer, int slot) {
+  Known& known = layers_[index(layer % 2)].nodes[index(slot)];
+  if (!known.known) {
+    budget_.poll();
+    known = {true, constraints_.node(layer, slot, waived_, Constraints::Until::kNoRemoval)};
+  }
+  return known.node;
+}
+
+void ConstraintRemoval::blame(Pass& pass, ConstraintSet violated) const {
+  ConstraintSet blamed = constraints_.left(violated, waived_);
+  for_each_bit(blamed, [&](int c) {
+    if (const int object = constraints_.object_of(c); object >= 0) blamed |= Constraints::of(object);
+  });
+  for_each_bit(blamed, [&](int c) { ++pass.blamed[index(c)]; });
+}
+
+void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraints::Node& node) {
+  ++pass.votes[index(removal)];
+  Witness& witness = pass.witness[index(removal)];
+  constexpr int kMostMeasured = 16;  // a clearance takes many questions
+  const auto away = [&](int from) { return std::abs(from - deepest_ - 1); };
+  if (witness.found && (away(layer) > away(witness.layer) || (witness.layer == layer && witness.measured >= kMostMeasured))) return;
+  Cause cause = constraints_.measured(std::countr_zero(constraints_.left(node.violated, waived_)), layer, node.q);
+  if (constraints_.is_object(removal)) cause.object = constraints_.cause(removal).object;
+  if (witness.layer != layer) witness = {};
+  if (!witness.found || misses_less(cause, witness.cause)) witness.cause = cause;
+  witness.found = true;
+  witness.layer = layer;
+  witness.measured += cause.kind == Cause::Kind::kPair || cause.kind == Cause::Kind::kContact;
+}
+
+ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waived, bool any_slope) {
+  Pass pass;
+  pass.furthest.fill(-1);
+  waived_ = waived;
+  enter(from);
+  const auto reach = [&](int layer, int slot, ConstraintSet bits) {
+    ConstraintSet& reached = layers_[index(layer % 2)].reached[index(slot)];
+    const ConstraintSet fresh = bits & ~reached;
+    reached |= bits;
+    return fresh;
+  };
+  if (from <= 0) {
+    for (int slot = 0; slot < lattice_.slots(0) && pass.whole; ++slot) {
+      if (!affordable()) pass.whole = false;
+      const Constraints::Node& node = at(0, slot);
+      if (!node.exists) continue;
+      const ConstraintSet bits = exists(node.violated);
+      reach(0, slot, bits);
+      blame(pass, node.violated);
+      if (bits != kAlways) for_each_bit(bits, [&](int c) { see(pass, c, 0, node); });
+    }
+  }
+  std::vector<Lattice::SlotRun> runs;
+  for (int layer = std::max(0, from);; ++layer) {
+    Layer& here = layers_[index(layer % 2)];
+    if (layer <= deepest_) {
+      static_cast<void>(at(layer, path_[index(layer)]));
+      reach(layer, path_[index(layer)], kAlways);
+    }
+    ConstraintSet any = 0;
+    for (const ConstraintSet bits : here.reached) any |= bits;
+    for_each_bit(any, [&](int c) { pass.furthest[index(c)] = layer; });
+    if (any == 0 || layer >= wanted_ || !pass.whole) return pass;
+    if (any & kWithAll) pass.blamed.fill(0);
+    enter(layer + 1);
+    Layer& next = layers_[index((layer + 1) % 2)];
+    const auto move = [&](int a, int b) {
+      const ConstraintSet open = here.reached[index(a)] & ~next.reached[index(b)];
+      if (open == 0) return;
+      const Constraints::Node& tail = at(layer, a);
+      const Constraints::Node& head = at(layer + 1, b);
+      if (!head.exists) return;
+      if (open & kWithAll) blame(pass, head.violated);
+      const ConstraintSet own = exists(head.violated), wanted = open & own;
+      if (wanted == 0) return;
+      const ConstraintSet violated = constraints_.edge(layer, a, tail, b, head, waived_, Constraints::Until::kNoRemoval);
+      if (open & kWithAll) blame(pass, violated);
+      const ConstraintSet on_edge = exists(violated), fresh = reach(layer + 1, b, wanted & on_edge);
+      if (own != kAlways) for_each_bit(fresh & own, [&](int c) { see(pass, c, layer + 1, head); });
+      if (on_edge == kAlways) return;
+      for_each_bit(fresh & on_edge, [&](int c) {
+        ++pass.votes[index(c)];
+        Witness& witness = pass.witness[index(c)];
+        if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_)) return;
+        Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)), layer, a, tail.q, b, head.q);
+        if (constraints_.is_object(c)) cause.object = constraints_.cause(c).object;
+        if (!witness.found || witness.layer != layer + 1 || misses_less(cause, witness.cause))
+          witness = {true, layer + 1, cause, witness.measured};
+      });
+    };
+    // Continuations on the same sheet first: where they exist, most other edges need no question.
+    const int slots = lattice_.slots(layer);
+    for (int a = 0; a < slots; ++a)
+      if (here.reached[index(a)] != 0)
+        if (const int b = lattice_.along(layer, a, 1); b >= 0) move(a, b);
+    for (int a = 0; a < slots && pass.whole; ++a) {
+      if (here.reached[index(a)] == 0) continue;
+      budget_.poll();
+      if (!affordable()) pass.whole = false;
+      if (any_slope)
+        runs.assign(1, {0, lattice_.slots(layer + 1)});
+      else
+        lattice_.successors(layer, a, runs);
+      for (const Lattice::SlotRun& run : runs)
+        for (int b = run.first; b < run.last; ++b) move(a, b);
+    }
+  }
+}
+
+ConstraintRemoval::What ConstraintRemoval::what(int constraint) const {
+  if (constraints_.is_object(constraint)) return What::kObject;
+  return Constraints::bars_nodes(constraint) ? What::kOnNodes : What::kOnMoves;
+}
+
+/// One that lets paths reach `least`, the most often met.
+std::optional<int> ConstraintRemoval::best(const Pass& pass, What kind, int least) const {
+  std::optional<int> best;
+  for (int c = 0; c < Constraints::kCount; ++c) {
+    if (what(c) != kind || pass.furthest[index(c)] < least || !pass.witness[index(c)].found) continue;
+    if (c == Constraints::kCheck) return c;  // proved, where others count on what the check would say
+    if (!best || pass.votes[index(c)] > pass.votes[index(*best)]) best = c;
+  }
+  return best;
+}
+
+/// Where no single one is enough: the one that comes furthest, or else the one met most often where paths end.
+std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes, ConstraintSet waived) const {
+  std::optional<int> best;
+  for (const Pass& pass : passes) {
+    int furthest = pass.furthest[Constraints::kCount];
+    for (const What kind : {What::kOnNodes, What::kObject, What::kOnMoves})
+      for (int c = 0; c < Constraints::kCount; ++c)
+        if (what(c) == kind && pass.witness[index(c)].found && pass.furthest[index(c)] > furthest)
+          best = c, furthest = pass.furthest[index(c)];
+  }
+  if (best) return best;
+  for (const bool on_nodes : {true, false})
+    for (int c = 0; c < Constraints::kCount && (on_nodes || !best); ++c) {
+      if ((what(c) != What::kOnMoves) != on_nodes || passes.back().blamed[index(c)] == 0 || (waived & Constraints::of(c))) continue;
+      if (!best || passes.back().blamed[index(c)] > passes.back().blamed[index(*best)]) best = c;
+    }
+  return best;
+}
+
+std::optional<ConstraintRemoval::Answer> ConstraintRemoval::find(double most_us) {
+  most_us_ = constraints_.spent_us() + most_us;
+  std::vector<int> begins;  // the layers that passes begin at, the nearest first
+  for (const int back : {8, 64})
+    if (deepest_ > back) begins.push_back(deepest_ - back);
+  begins.push_back(0);
+
+  std::vector<Cause> given_up;
+  ConstraintSet waived = 0;
+  constexpr int kMostTogether = 5;
+  while (static_cast<int>(given_up.size()) < kMostTogether) {
+    std::vector<Pass> passes;
+    std::optional<Answer> answer;
+    const auto take = [&](const Pass& pass, What kind) {
+      const auto c = best(pass, kind, wanted_);
+      if (c) answer = {pass.witness[index(*c)].cause, pass.furthest[index(*c)], {}};
+      return c.has_value();
+    };
+    for (const int from : begins) {
+      passes.push_back(run_pass(from, waived, false));
+      if (take(passes.back(), What::kOnNodes) || take(passes.back(), What::kObject)) break;
+    }
+    for (std::size_t k = 0; k < passes.size() && !answer; ++k) take(passes[k], What::kOnMoves);
+    for (const int from : {begins.front(), 0})
+      if (!answer && affordable()) {
+        passes.push_back(run_pass(from, waived, true));
+        take(passes.back(), What::kOnMoves);
+      }
+    if (answer) {
+      if (given_up.empty()) return answer;
+      answer->without_it.reset();
+      given_up.push_back(answer->cause);
+      answer->cause = given_up.front();
+      answer->together.assign(given_up.begin() + 1, given_up.end());
+      return answer;
+    }
+    const auto next = to_give_up(passes, waived);
+    if (!next || !affordable()) break;
+    Cause cause = constraints_.cause(*next);
+    for (const Pass& pass : passes)
+      if (pass.witness[index(*next)].found) cause = pass.witness[index(*next)].cause;
+    waived |= Constraints::of(*next);
+    given_up.push_back(std::move(cause));
+  }
+  if (given_up.empty()) return std::nullopt;
+  return Answer{given_up.front(), {}, {}};
+}
+
+}  // namespace swivel

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "constraints.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "swivel/core/angle.hpp"
+
+namespace swivel {
+
+/// What has been found so far, and whether that is enough.
+struct Constraints::Violations {
+  const Constraints& constraints;
+  ConstraintSet waived = 0;
+  Until until = Until::kNoRemoval;
+  ConstraintSet set = 0;
+  bool uncounted = false;  // violates a constraint that has no number
+  /// True where no more need be found.
+  bool add(int constraint) {
+    if (constraint < 0)
+      uncounted = true;
+    else
+      set |= of(constraint);
+    return done();
+  }
+  [[nodiscard]] bool done() const {
+    const ConstraintSet left = constraints.left(set, waived);
+    return uncounted || (left != 0 && (until == Until::kFirst || constraints.removals(left) == 0));
+  }
+  [[nodiscard]] bool has(int constraint) const { return constraint >= 0 && (set & of(constraint)) != 0; }
+};
+
+Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeRule& rule, const Budget& budget,
+                         const std::shared_ptr<StateCheck>& check)
+    : lattice_(lattice),
+      world_(world),
+      rule_(rule),
+      budget_(budget),
+      check_(check, budget),
+      query_(world, Certificates::kOn),
+      question_us_(world.has_meshes() ? 300 : 3),
+      node_us_(lattice.has_own_rows() ? 5 : 1) {
+  object_of_.fill(-1);
+}
+
+double Constraints::spent_us() const {
+  const CollisionCounters c = query_.counters();
+  return question_us_ *
+             (static_cast<double>(c.certified_free + c.certified_colliding + c.fcl_calls) + 0.1 * static_cast<double>(pairs_)) +
+         node_us_ * static_cast<double>(nodes_) + 0.1 * static_cast<double>(moves_) + 10 * static_cast<double>(checked_);
+}
+
+int Constraints::pair(const BodyPair& pair) {
+  const auto names = world_.names(pair);
+  const auto found = number_.find(names);
+  if (found != number_.end()) return found->second;
+  int object = -1;
+  if (pair.b >= static_cast<int>(world_.bodies().size())) {
+    const auto known = object_number_.find(names[1]);
+    if (known == object_number_.end() && count_ + 1 >= kCount) return -1;
+    object = known != object_number_.end() ? known->second : object_number_.try_emplace(names[1], count_++).first->second;
+    object_name_[static_cast<std::size_t>(object)] = names[1];
+  }
+  if (count_ >= kCount) return -1;
+  names_[static_cast<std::size_t>(count_)] = names;
+  object_of_[static_cast<std::size_t>(count_)] = object;
+  return number_[names] = count_++;
+}
+
+ConstraintSet Constraints::left(ConstraintSet violated, ConstraintSet waived) const {
+  ConstraintSet left = violated & ~waived;
+  if (waived != 0)
+    for (ConstraintSet rest = left; rest != 0; rest &= rest - 1) {
+      const int c = std::countr_zero(rest), object = object_of(c);
+      if (object >= 0 && (waived & of(object))) left &= ~of(c);
+    }
+  return left;
+}
+
+ConstraintSet Constraints::removals(ConstraintSet violated) const {
+  const int object = object_of(std::countr_zero(violated));
+  if (std::has_single_bit(violated)) return violated | (object >= 0 ? of(object) : 0);
+  for (ConstraintSet rest = violated; rest != 0; rest &= rest - 1)
+    if (object < 0 || object_of(std::countr_zero(rest)) != object) return 0;
+  return of(object);
+}
+
+std::pair<double, double> Constraints::limits_of(int k) const {
+  const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(k)];
+  const double margin = lattice_.limits().joint_margin;
+  return {limit.lower + margin, limit.upper - margin};
+}
+
+Cause Constraints::cause(int constraint) const {
+  Cause cause;
+  const Limits& limits = lattice_.limits();
+  if (constraint < kManipulability) {
+    const int k = constraint / 2;
+    const auto [lower, upper] = limits_of(k);
+    const bool high = constraint % 2 == 1;
+    cause.kind = Cause::Kind::kLimit;
+    cause.side = high ? Cause::Side::kUpper : Cause::Side::kLower;
+    cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
+    cause.limit = high ? upper : lower;
+  } else if (is_object(constraint)) {
+    cause.kind = Cause::Kind::kPair;
+    cause.object = object_name_[static_cast<std::size_t>(constraint)];
+    const auto pair = std::find(object_of_.begin(), object_of_.end(), constraint);  // the first that was met
+    if (pair != object_of_.end()) cause.bodies = names_[static_cast<std::size_t>(pair - object_of_.begin())];
+  } else if (constraint >= kFirstPair) {
+    cause.kind = Cause::Kind::kPair;
+    cause.bodies = names_[static_cast<std::size_t>(constraint)];
+  } else if (constraint == kManipulability) {
+    cause.kind = Cause::Kind::kManipulability;
+    cause.limit = limits.manipulability;
+  } else if (constraint == kArmSlope) {
+    cause.kind = Cause::Kind::kArmSlope;
+  } else if (constraint == kJointStep) {
+    cause.kind = Cause::Kind::kJointStep;
+    cause.limit = limits.joint_step;
+  } else if (constraint == kSpeed) {
+    cause.kind = Cause::Kind::kSpeed;
+  } else if (constraint == kPathError) {
+    cause.kind = Cause::Kind::kPathError;
+    cause.limit = limits.tool_path_error;
+  } else if (constraint == kAngleError) {
+    cause.kind = Cause::Kind::kAngleError;
+    cause.limit = limits.tool_angle_error;
+  } else if (constraint == kCheck) {
+    cause.kind = Cause::Kind::kCheck;
+    cause.check = check_.name();
+  } else {
+    cause.kind = Cause::Kind::kStepError;
+    cause.limit = limits.step_error;
+  }
+  return cause;
+}
+
+void Constraints::add_other_pairs(const Config& q, const Level& level, Violations& found) {
+  for (const BodyPair& other : world_.pairs()) {
+    const int number = pair(other);
+    if (found.has(number) || (number >= 0 && left(of(number), found.waived) == 0)) continue;
+    ++pairs_;
+    if (query_.pair_below(q, other, level) && found.add(number)) return;
+  }
+}
+
+Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, Until until) {
+  ++nodes_;
+  Node node;
+  Violations found{*this, waived, until};
+  if (const auto q = lattice_.row(layer, slot)) {
+    node.q = *q;
+  } else {
+    ++nodes_;
+    const Lattice::NodeFault fault = lattice_.fault(layer, slot);
+    if (fault.status != NodeStatus::kLimit) return node;
+    node.q = fault.q;
+    for (int k = 0; k < kDof; ++k)
+      if (fault.joints >> k & 1) found.add(limit_beyond(k, node.q));
+  }
+  node.exists = true;
+  if (!found.done() && !lattice_.manipulable(node.q)) found.add(kManipulability);
+  if (!found.done())
+    if (const auto first = query_.first_below(node.q, Keep::kNode))
+      if (!found.add(pair(*first))) add_other_pairs(node.q, Keep::kNode, found);
+  if (check_ && found.set == 0 && !found.uncounted) {
+    ++checked_;
+    if (!check_.states({&node.q, 1})[0]) found.add(kCheck);
+  }
+  node.exists = !found.uncounted;
+  node.violated = found.set;
+  return node;
+}
+
+ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const Node& to, ConstraintSet waived, Until until) {
+  ++moves_;
+  const Config &qa = from.q, &qb = to.q;
+  Violations found{*this, waived, until};
+  if (!lattice_.in_window(layer, a, b)) found.add(kArmSlope);
+  const Config delta = lattice_.delta(qa, qb);
+  const Limits& limits = lattice_.limits();
+  const Config& bound = lattice_.row_step_bound(layer);
+  const auto add_steps = [&](const Config& moved, const Config& more) {
+    for (int k = 0; k < kDof; ++k) {
+      if (!(std::abs(moved[k]) <= limits.joint_step + more[k])) found.add(kJointStep);
+      if (bound[k] < limits.joint_step && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
+    }
+  };
+  if (!lattice_.row_step_allowed(layer, delta)) {
+    add_steps(delta, Config::Zero());
+  } else if (lattice_.has_own_rows()) {  // nodes must keep a bound of their own
+    const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
+    if (a_node && b_node) add_steps(lattice_.delta(*a_node, *b_node), 2 * lattice_.misfit());
+  }
+  if (found.done()) return found.set;
+  moves_ += 10;
+  const auto beyond = [](const std::array<double, 3>& deviation, double most) {
+    return !std::all_of(deviation.begin(), deviation.end(), [most](double x) { return x <= most; });
+  };
+  if (limits.tool_path_error &&
+      beyond(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta), *limits.tool_path_error))
+    found.add(kPathError);
+  if (!found.done() && limits.tool_angle_error &&
+      beyond(angle_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta), *limits.tool_angle_error))
+    found.add(kAngleError);
+  if (!found.done() && !lattice_.keeps_step_error(layer, a, b)) found.add(kStepError);
+  if (!found.done() && limits.edges == EdgeMode::kContinuous)
+    if (const auto first = edge_blocked(query_, rule_, qa, qa + delta, budget_))
+      if (!found.add(pair(*first)))
+        for (const double t : {0.25, 0.5, 0.75})
+          if (!found.done()) add_other_pairs(qa + t * delta, Keep::kMotion, found);
+  if (check_.checks_motions() && found.set == 0 && !found.uncounted && from.violated == 0 && to.violated == 0) {
+    ++checked_;
+    const StateCheck::Motion motion{qa, qa + delta};
+    if (!check_.motions({&motion, 1})[0]) found.add(kCheck);
+  }
+  return found.uncounted ? of(kCount) - 1 : found.set;  // all: none of them alone would help
+}
+
+std::optional<double> Constraints::clearance(const BodyPair& pair, const Config& q, double most) {
+  double low = 0, high = most;  // below `high`, not below `low`
+  constexpr double kContact = 1e-6;
+  if (query_.pair_below(q, pair, kContact)) return 0;
+  for (int k = 0; k < 12; ++k) {
+    const double middle = (low + high) / 2;
+    (query_.pair_below(q, pair, middle) ? high : low) = middle;
+  }
+  return low;
+}
+
+Cause Constraints::measured(int constraint, int, const Config& q) {
+  Cause cause = this->cause(constraint);
+  if (cause.kind == Cause::Kind::kLimit) {
+    cause.value = q[constraint / 2];
+  } else if (cause.kind == Cause::Kind::kManipulability) {
+    cause.value = lattice_.chain().manipulability(q);
+  } else if (cause.kind == Cause::Kind::kPair) {
+    for (const BodyPair& p : world_.pairs()) {  // links may have several bodies: the nearest of them
+      if (world_.names(p) != cause.bodies || !query_.pair_below(q, p, Keep::kNode)) continue;
+      const double keeps = world_.keeps(p).node;
+      const auto value = clearance(p, q, keeps);
+      if (!cause.value || (value && *value < *cause.value)) {
+        cause.value = value;
+        cause.limit = keeps;
+      }
+    }
+    if (cause.value == 0.0) cause.kind = Cause::Kind::kContact;
+  }
+  return cause;
+}
+
+Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) const {
+  Cause cause = this->cause(constraint);
+  const Config delta = lattice_.delta(qa, qb);
+  const auto most_of = [](const std::array<double, 3>& x) { return *std::max_element(x.begin(), x.end()); };
+  switch (cause.kind) {
+    case Cause::Kind::kJointStep:
+    case Cause::Kind::kSpeed: {
+      const Config& bound = lattice_.row_step_bound(layer);
+      Eigen::Index k = 0;
+      if (cause.kind == Cause::Kind::kJointStep)
+        delta.cwiseAbs().maxCoeff(&k);
+      else
+        delta.cwiseAbs().cwiseQuotient(bound).maxCoeff(&k);
+      cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
+      cause.value = std::abs(delta[k]);
+      if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
+      break;
+    }
+    case Cause::Kind::kPathError:
+      cause.value = most_of(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta));
+      break;
+    case Cause::Kind::kAngleError:
+      cause.value = most_of(angle_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta));
+      break;
+    case Cause::Kind::kArmSlope:
+      cause.value = std::abs(wrap_angle(lattice_.phi(layer + 1, b) - lattice_.phi(layer, a)));
+      break;
+    case Cause::Kind::kPair:
+    case Cause::Kind::kCheck:
+      cause.between_layers = true;
+      break;
+    default:
+      break;
+  }
+  return cause;
+}
+
+}  // namespace swivel
