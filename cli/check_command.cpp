@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "search_options.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/motion.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -32,6 +33,14 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   if (result.min_clearance)
     std::printf(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);
   std::printf(", cost %.9g\n", result.cost);
+  if (!result.motion) return;
+  const char* const names[] = {"speed", "acceleration", "jerk"};
+  std::printf("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration, 1e3 * result.motion->tool_speed,
+              result.motion->turn_speed);
+  for (std::size_t k = 0; k < 3; ++k)
+    std::printf(", %s at most %.2f %% of what '%s' can do", names[k], 100 * result.motion->peaks[k].ratio,
+                chain.joint_names[static_cast<std::size_t>(result.motion->peaks[k].joint)].c_str());
+  std::printf("\n");
 }
 
 int run(const CheckArguments& arguments) {
@@ -39,8 +48,9 @@ int run(const CheckArguments& arguments) {
   arguments.lattice.apply(problem);
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
-  const auto rows = io::load_trajectory(arguments.trajectory, chain.joint_names);
-  const CheckResult result = check_trajectory(robot, problem, rows);
+  const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
+  const auto& rows = file.rows;
+  const CheckResult result = file.timed.empty() ? check_trajectory(robot, problem, rows) : check_motion(robot, problem, file.timed);
   for (const std::string& failure : result.failures) std::printf("%s\n", failure.c_str());
   const auto shown = static_cast<std::int64_t>(result.failures.size());
   if (result.failure_count > shown) std::printf("and %lld more\n", static_cast<long long>(result.failure_count - shown));
@@ -58,7 +68,7 @@ void add_check(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Verify a trajectory, independently of the planners");
   auto arguments = std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("trajectory", arguments->trajectory, "trajectory file (CSV)")->required();
+  command->add_option("trajectory", arguments->trajectory, "trajectory or motion file (CSV)")->required();
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -19,6 +19,7 @@ enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 
 void add_plan(CLI::App& app, int& exit_code);
 void add_campaign(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
+void add_time(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 
 /// The episode of a campaign that plan and check can be asked for.

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   add_plan(app, exit_code);
   add_campaign(app, exit_code);
   add_check(app, exit_code);
+  add_time(app, exit_code);
   add_info(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -6,6 +6,7 @@
 
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 
@@ -32,8 +33,7 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
 PathMotion::PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows)
     : chain_(&chain), arm_(&arm), path_(&path), rows_(rows) {
   constexpr double kSame = 1e-9;  // m
-  for (int i = 0; i < path.size(); ++i)
-    planes_.push_back(i == 0 ? first_plane(arm, path.layer(i).tool) : carry_plane(arm, planes_.back(), path.layer(i).tool));
+  planes_ = carried_planes(arm, path);
   still_ = clearest_direction(planes_);
   int layer = 0;
   std::vector<double> angles;

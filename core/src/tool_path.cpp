@@ -205,8 +205,10 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   std::erase_if(corners_, [](const Corner& corner) { return corner.layer <= 0; });
 }
 
-ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget) {
-  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget, problem.smooth);
+ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
+                      const std::optional<PathSmoothing>& otherwise) {
+  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
+                problem.smooth ? problem.smooth : otherwise);
   if (problem.start) {
     const Pose tool = chain.tool(*problem.start);
     path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);

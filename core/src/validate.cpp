@@ -197,6 +197,10 @@ void validate_numbers(const Field& root, const Problem& problem) {
     number(root("smooth")("position"), problem.smooth->position, kNonNegative);
     number(root("smooth")("angle"), problem.smooth->angle, kNonNegative);
   }
+  const Field refine = root("refine");
+  number(refine("smoothing"), problem.refinement.smoothing, kNonNegative);
+  number(refine("joint_margin"), problem.refinement.joint_margin, kNonNegative);
+  number(refine("singular_margin"), problem.refinement.singular_margin, kNonNegative);
   if (problem.start) numbers(root("start"), *problem.start, Range::kFinite);
   if (problem.start_at && !problem.start) fail(root("start_at"), "is given without a start", "a number beside a start");
   number(root("start_at"), problem.start_at, kNonNegative);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "csv.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
@@ -55,8 +56,9 @@ std::string joined(const std::vector<std::string>& names) {
 
 }  // namespace
 
-CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::string>& header)
-    : file_(file.string()), columns_(header.size()) {
+CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers) : file_(file.string()) {
+  std::string allowed;
+  for (const std::vector<std::string>& header : headers) allowed += (allowed.empty() ? "" : " or ") + joined(header);
   constexpr std::size_t kMostRows = 1'000'000;
   const std::string text = read_file(file, "CSV file", kMostTableBytes);
   std::string_view rest = text;
@@ -69,8 +71,11 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
     if (line.empty()) continue;
     const std::vector<std::string> fields = fields_of(line);
     if (!header_seen) {
-      if (!std::equal(fields.begin(), fields.end(), header.begin(), header.end()))
-        bad_input(at_line(file_, line_number), "header is '" + std::string(line) + "'", "the header " + joined(header));
+      const auto found = std::find(headers.begin(), headers.end(), fields);
+      if (found == headers.end())
+        bad_input(at_line(file_, line_number), "header is '" + std::string(line) + "'", "the header " + allowed);
+      header_ = static_cast<std::size_t>(found - headers.begin());
+      columns_ = found->size();
       header_seen = true;
       continue;
     }
@@ -78,15 +83,15 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::str
     lines_.push_back(line_number);
     if (fields.size() != columns_)
       bad_input(where(rows() - 1), "has " + std::to_string(fields.size()) + " columns",
-                std::to_string(columns_) + " columns: " + joined(header));
+                std::to_string(columns_) + " columns: " + joined(headers[header_]));
     for (std::size_t k = 0; k < columns_; ++k) {
       const auto value = to_number<double>(fields[k]);
       if (!value || !std::isfinite(*value))
-        bad_input(where(rows() - 1) + ": " + header[k], "'" + fields[k] + "' is not a number", "a finite number");
+        bad_input(where(rows() - 1) + ": " + headers[header_][k], "'" + fields[k] + "' is not a number", "a finite number");
       values_.push_back(*value);
     }
   }
-  if (!header_seen) bad_input(file_, "is empty", "the header " + joined(header) + " and at least two data rows");
+  if (!header_seen) bad_input(file_, "is empty", "the header " + allowed + " and at least two data rows");
   if (rows() < 2) bad_input(file_, "has " + std::to_string(rows()) + " data row(s)", "at least two data rows after the header");
 }
 

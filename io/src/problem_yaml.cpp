@@ -97,8 +97,8 @@ class ProblemReader {
  public:
   explicit ProblemReader(const fs::path& file)
       : file_(file),
-        root_(load_yaml(file).section(
-            {"robot", "path", "scene", "resolution", "limits", "start", "start_at", "start_tolerance", "cost", "vary"})) {}
+        root_(load_yaml(file).section({"robot", "path", "scene", "resolution", "limits", "start", "start_at", "start_tolerance",
+                                       "cost", "refine", "vary"})) {}
 
   Problem read() {
     problem_.source = file_.string();
@@ -110,6 +110,7 @@ class ProblemReader {
     if (const auto value = root_.find_filled("start")) read_start(*value);
     read_start_place();
     if (const auto value = root_.find_filled("cost")) read_cost(*value);
+    if (const auto value = root_.find_filled("refine")) read_refine(*value);
     if (const auto value = root_.find_filled("vary")) read_vary(*value);
     return std::move(problem_);
   }
@@ -253,7 +254,8 @@ class ProblemReader {
   }
 
   void read_path(const YamlValue& value) {
-    const YamlSection section = value.section({"frame", "waypoints", "file"});
+    const YamlSection section = value.section({"frame", "waypoints", "file", "smooth"});
+    if (const auto smooth = section.find("smooth")) read_smooth(*smooth);
     problem_.path_frame = problem_.base_link;
     if (const auto frame = section.find_filled("frame")) {
       problem_.path_frame = frame->text();
@@ -273,6 +275,22 @@ class ProblemReader {
       waypoints->fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
   }
 
+  /// null: the polyline, whatever the default of the command is.
+  void read_smooth(const YamlValue& value) {
+    problem_.smooth = value.is_null() ? PathSmoothing{0, 0} : PathSmoothing{};
+    if (value.is_null()) return;
+    const YamlSection section = value.section({"position", "angle"});
+    set(section, "position", Range::kExtent, problem_.smooth->position);
+    set(section, "angle", Range::kNonNegative, problem_.smooth->angle);
+  }
+
+  void read_refine(const YamlValue& value) {
+    const YamlSection section = value.section({"smoothing", "joint_margin", "singular_margin"});
+    set(section, "smoothing", Range::kNonNegative, problem_.refinement.smoothing);
+    set(section, "joint_margin", Range::kNonNegative, problem_.refinement.joint_margin);
+    set(section, "singular_margin", Range::kNonNegative, problem_.refinement.singular_margin);
+  }
+
   void read_resolution(const YamlValue& value) {
     const YamlSection section = value.section({"ds", "dphi", "dalpha", "arc"});
     Resolution& resolution = problem_.resolution;
@@ -284,9 +302,10 @@ class ProblemReader {
   }
 
   void read_limits(const YamlValue& value) {
-    const YamlSection section = value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step",
-                                               "arm_slope", "step_error", "tool_path_error", "tool_angle_error", "tool_speed",
-                                               "tool_turn_speed", "edges", "edge_clearance", "edge_tolerance"});
+    const YamlSection section =
+        value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "step_error",
+                       "tool_path_error", "tool_angle_error", "tool_speed", "tool_turn_speed", "edges", "edge_clearance",
+                       "edge_tolerance", "joint_speed", "joint_acceleration", "joint_jerk"});
     Limits& limits = problem_.limits;
     set(section, "clearance", Range::kExtent, limits.clearance);
     set(section, "self_clearance", Range::kExtent, limits.self_clearance);
@@ -301,6 +320,9 @@ class ProblemReader {
     set(section, "tool_turn_speed", Range::kPositive, limits.tool_turn_speed);
     set(section, "edge_clearance", Range::kExtent, limits.edge_clearance);
     set(section, "edge_tolerance", Range::kPositive, limits.edge_tolerance);
+    set(section, "joint_speed", limits.joint_speed);
+    set(section, "joint_acceleration", limits.joint_acceleration);
+    set(section, "joint_jerk", limits.joint_jerk);
     if (const auto edges = section.find("edges"))
       limits.edges = choice<EdgeMode>(*edges, {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
   }
@@ -350,6 +372,18 @@ class ProblemReader {
   /// The same; an explicit null means "no such limit".
   static void set(const YamlSection& section, const char* key, Range range, std::optional<double>& target) {
     if (const auto value = section.find(key)) target = value->is_null() ? std::nullopt : std::optional(value->number(range));
+  }
+
+  /// A number for all joints, or one each.
+  static void set(const YamlSection& section, const char* key, std::optional<std::array<double, kDof>>& target) {
+    const auto value = section.find(key);
+    if (!value) return;
+    target.reset();
+    if (value->is_null()) return;
+    target.emplace();
+    if (!value->is_sequence()) return target->fill(value->number(Range::kPositive));
+    const std::vector<double> values = value->numbers(kDof, Range::kPositive);
+    std::copy(values.begin(), values.end(), target->begin());
   }
 
   template <class Enum>

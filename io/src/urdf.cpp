@@ -18,6 +18,7 @@
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "text_number.hpp"
 #include "xml.hpp"
 
 namespace swivel::io {
@@ -75,8 +76,10 @@ void for_each_child(tinyxml2::XMLElement& element, const char* name, const Visit
   for (auto* child = element.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
 }
 
-/// Leaves only what a planner reads: urdfdom rejects whole files for materials used twice or an odd inertia.
+/// Leaves only what a planner reads: urdfdom rejects whole files for materials used twice or an odd inertia, and older ones for
+/// version 1.2, whose limits of acceleration and jerk are read here.
 void strip(tinyxml2::XMLElement& robot) {
+  robot.DeleteAttribute("version");
   keep_children(robot, {"link", "joint"});
   for_each_child(robot, "link", [](tinyxml2::XMLElement& link) {
     keep_children(link, {"collision"});
@@ -255,6 +258,7 @@ class ModelBuilder {
       if (!(length > 1e-9)) bad_input(at, "axis is zero", "an axis of positive length on a joint that moves");
       joint.axis = to_eigen(parsed.axis) / length;
       read_limits(parsed, at, joint);
+      read_rates(element, at, joint);
     }
     model_->links[joint.child_link].parent_joint = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
@@ -290,6 +294,24 @@ class ModelBuilder {
     joint.lower = parsed.limits->lower;
     joint.upper = parsed.limits->upper;
     if (!(joint.lower <= joint.upper)) bad_input(at, "limit lower is above upper", "lower <= upper");
+  }
+
+  /// Attributes of URDF 1.2, whatever version the file says it is. What slows down a joint is not told from what speeds it up: the
+  /// smaller of acceleration and deceleration holds for both.
+  static void read_rates(const tinyxml2::XMLElement& element, const std::string& at, Joint& joint) {
+    const auto* const limit = element.FirstChildElement("limit");
+    if (limit == nullptr) return;
+    const auto rate = [&](const char* name) {
+      const char* const text = limit->Attribute(name);
+      if (text == nullptr) return 0.0;
+      const auto value = to_number<double>(text);
+      if (!value || !(*value > 0)) bad_input(at, std::string("limit ") + name + " is '" + text + "'", "a number > 0");
+      return std::isinf(*value) ? 0.0 : *value;
+    };
+    joint.acceleration = rate("acceleration");
+    if (const double slowing = rate("deceleration"); slowing > 0)
+      joint.acceleration = joint.acceleration > 0 ? std::min(joint.acceleration, slowing) : slowing;
+    joint.jerk = rate("jerk");
   }
 
   void add_mimic(const tinyxml2::XMLElement& element) {

@@ -79,12 +79,15 @@ class Contacts {
 
 class Check {
  public:
-  Check(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows)
+  /// `timed`: the same rows in time, or null.
+  Check(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+        const std::vector<TimedRow>* timed = nullptr)
       : problem_(problem),
         limits_(problem.limits),
         chain_(robot.arm().chain),
         arm_(robot.srs()),
         rows_(rows),
+        timed_(timed),
         path_(problem_path(problem, chain_)),
         allowed_(allowed_moves(problem, chain_, path_)),
         planes_(carried_planes(arm_, path_)),
@@ -108,6 +111,7 @@ class Check {
       if (k > 0 && examined(k - 1)) examine_move(k);
     }
     examine_travel();
+    if (timed_) examine_rates(*timed_);
     result_.fcl_calls = contacts_.fcl_calls();
     result_.passed = result_.failure_count == 0;
     return std::move(result_);
@@ -190,12 +194,34 @@ class Check {
       double t = ((tool.translation() - step.tool.translation()).dot(along) + turn.angle() * turn.axis().dot(step.step_rotation)) /
                  (along.squaredNorm() + step.step_rotation.squaredNorm());
       if (step.step_length > 0) t = std::clamp(t, (s - kSame - step.s) / step.step_length, (s + kSame - step.s) / step.step_length);
-      try_place(i + std::clamp(t, 0.0, 1.0));
+      t = std::clamp(t, 0.0, 1.0);
+      if (problem_.smooth && step.step_length == 0) t = nearest_on_curve(i, t, tool);
+      try_place(i + t);
     }
     result_.worst_position = std::max(result_.worst_position, position);
     result_.worst_angle = std::max(result_.worst_angle, angle);
     if (found.empty()) fail("row %zu: the tool is %.3g m and %.3g rad from the path at s = %.9g", k, position, angle, s);
     return found;
+  }
+
+  /// Where on a rounded step the pose is nearest: by secants, from what a straight step would say.
+  [[nodiscard]] double nearest_on_curve(int i, double t, const Pose& tool) const {
+    const double weight = path_.layer(i).step_angle > 0 ? path_.layer(i).step_angle : 1;
+    const auto off = [&](const Pose& from, const Pose& to) {
+      const Eigen::AngleAxisd turn(from.linear().transpose() * to.linear());
+      Eigen::Matrix<double, 6, 1> d;
+      d << (to.translation() - from.translation()), turn.angle() * turn.axis() / weight;
+      return d;
+    };
+    constexpr double kStep = 1e-4;
+    for (int round = 0; round < 8; ++round) {
+      const Pose here = path_.at(i, t);
+      const Eigen::Matrix<double, 6, 1> slope =
+          (off(here, path_.at(i, t + kStep)) - off(here, path_.at(i, t - kStep))) / (2 * kStep);
+      if (slope.squaredNorm() == 0) break;
+      t = std::clamp(t + off(here, tool).dot(slope) / slope.squaredNorm(), 0.0, 1.0);
+    }
+    return t;
   }
 
   /// The first step that ends at s or later.
@@ -348,8 +374,11 @@ class Check {
     ++result_.moves_examined;
     if (end < begin)
       return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k, rows_[k - 1].s, rows_[k].s);
-    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(chain_.tool(from), chain_.tool(to)) <= 1e-9)
+    if (timed_ && begin == end && may_rest(end)) return;
+    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(chain_.tool(from), chain_.tool(to)) <= 1e-9) {
+      if (timed_ && may_rest(end)) return;
       return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
+    }
     if (!may_move(k)) return;
     examine_path(k);
     examine_step_error(k);
@@ -357,6 +386,66 @@ class Check {
     if (const auto pair = contacts_.on_the_way(from, to))
       fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(),
            1e3 * contacts_.keeps(*pair).motion);
+  }
+
+  /// At the ends of the path and at its corners.
+  [[nodiscard]] bool may_rest(double place) const {
+    constexpr double kNear = 1e-3;  // of a step
+    const auto near = [&](int layer) { return std::abs(place - layer) <= kNear; };
+    return near(0) || near(path_.size() - 1) ||
+           std::any_of(path_.corners().begin(), path_.corners().end(), [&](const ToolPath::Corner& c) { return near(c.layer); });
+  }
+
+  void examine_rates(const std::vector<TimedRow>& rows) {
+    if (rows.size() < 2) return;
+    const JointRates rates = joint_rates(chain_, limits_, problem_.source);
+    CheckResult::Motion& motion = result_.motion.emplace();
+    motion.duration = rows.back().t - rows.front().t;
+    // Two rows of rest on both sides, as far apart as the rows there.
+    const auto n = static_cast<std::ptrdiff_t>(rows.size());
+    const auto at = [&](std::ptrdiff_t k) -> const TimedRow& {
+      return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))];
+    };
+    const auto time = [&](std::ptrdiff_t k) {
+      if (k < 0) return at(0).t + static_cast<double>(k) * (at(1).t - at(0).t);
+      return k < n ? at(k).t : at(n - 1).t + static_cast<double>(k - n + 1) * (at(n - 1).t - at(n - 2).t);
+    };
+    const char* const names[] = {"speed", "acceleration", "jerk"};
+    const Config* const bounds[] = {&rates.speed, &rates.acceleration, &rates.jerk};
+    for (std::ptrdiff_t k = -2; k < n + 2; ++k) {
+      const auto difference = [&](std::ptrdiff_t i) -> Config { return (at(i + 1).row.q - at(i).row.q) / (time(i + 1) - time(i)); };
+      const auto second = [&](std::ptrdiff_t i) -> Config {
+        return 2 * (difference(i + 1) - difference(i)) / (time(i + 2) - time(i));
+      };
+      const Config by_order[] = {difference(k), second(k), 3 * (second(k + 1) - second(k)) / (time(k + 3) - time(k))};
+      for (std::size_t order = 0; order < 3; ++order)
+        for (int j = 0; j < kDof; ++j) {
+          const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
+          if (!(ratio <= 1 + 1e-6))
+            fail("t = %.6g s: %s of joint '%s' is %.6g times what it can do", time(k), names[order],
+                 joint_name(static_cast<std::size_t>(j)), ratio);
+          if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, time(k)};
+        }
+      if (k < 1 || k + 1 >= n) continue;
+      const double dt = std::max(time(k + 1) - time(k), time(k) - time(k - 1));
+      const Config v = (at(k + 1).row.q - at(k - 1).row.q) / (time(k + 1) - time(k - 1)), a = second(k - 1);
+      for (int j = 0; j < kDof; ++j) {
+        if (!(std::abs(at(k).v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
+            !(std::abs(at(k).a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
+          fail("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", time(k),
+               joint_name(static_cast<std::size_t>(j)), at(k).v[j], at(k).a[j], v[j], a[j]);
+      }
+    }
+    for (std::ptrdiff_t k = 1; k < n; ++k) {
+      const double dt = time(k) - time(k - 1);
+      const Pose from = chain_.tool(at(k - 1).row.q), to = chain_.tool(at(k).row.q);
+      motion.tool_speed = std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
+      motion.turn_speed = std::max(motion.turn_speed, angle_between(from, to) / dt);
+    }
+    if (limits_.tool_speed && !(motion.tool_speed <= 1.001 * *limits_.tool_speed))
+      fail("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed, *limits_.tool_speed);
+    if (limits_.tool_turn_speed && !(motion.turn_speed <= 1.001 * *limits_.tool_turn_speed))
+      fail("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g", motion.turn_speed, *limits_.tool_turn_speed);
   }
 
   bool may_move(std::size_t k) {
@@ -471,6 +560,7 @@ class Check {
   const Chain& chain_;
   const SrsArm& arm_;
   const std::vector<TrajectoryRow>& rows_;
+  const std::vector<TimedRow>* timed_;
   ToolPath path_;
   std::vector<Config> allowed_;
   std::vector<ArmPlane> planes_;
@@ -489,6 +579,16 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   validate(problem);
   robot.require_prepared_for(problem);
   return Check(robot, problem, rows).run();
+}
+
+CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows) {
+  validate(problem);
+  robot.require_prepared_for(problem);
+  Problem smoothed = problem;
+  smoothed.smooth = problem.smooth.value_or(PathSmoothing{});
+  std::vector<TrajectoryRow> places;
+  for (const TimedRow& row : rows) places.push_back(row.row);
+  return Check(robot, smoothed, places, &rows).run();
 }
 
 CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows) {

@@ -60,7 +60,8 @@ class Pieces {
   bool next() {
     const int step = static_cast<int>(std::floor(to_));
     if (step + 1 >= path_->size()) return false;
-    const double parts = std::max(1.0, std::ceil(path_->layer(step).step_angle / kTurn));
+    double parts = std::max(1.0, std::ceil(path_->layer(step).step_angle / kTurn));
+    if (rounded_near(step)) parts = std::max(parts, kBend);
     const double part = std::floor((to_ - step) * parts + 1e-9) + 1;
     from_ = to_;
     start_ = end_;
@@ -78,7 +79,17 @@ class Pieces {
   }
 
  private:
+  /// Whether a corner at one of the step's ends is rounded.
+  [[nodiscard]] bool rounded_near(int step) const {
+    const auto& corners = path_->corners();
+    const auto first = std::lower_bound(corners.begin(), corners.end(), step,
+                                        [](const ToolPath::Corner& corner, int layer) { return corner.layer < layer; });
+    return std::any_of(first, corners.end() - first > 2 ? first + 2 : corners.end(),
+                       [&](const ToolPath::Corner& corner) { return corner.layer <= step + 1 && corner.reach > 0; });
+  }
+
   static constexpr double kTurn = 0.05;  // rad
+  static constexpr double kBend = 32;    // parts of a step that is rounded
   const ToolPath* path_;
   double from_ = 0, to_;
   Pose start_, end_;

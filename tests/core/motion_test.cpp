@@ -2,7 +2,6 @@
 // Smooth tool paths, splines, motions in time, and the smooth minimum, each against what is plainly right.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 

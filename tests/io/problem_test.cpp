@@ -28,6 +28,29 @@ TEST(ProblemFile, Defaults) {
   EXPECT_TRUE(problem.scene.empty() && problem.vary.empty() && problem.hold.empty() && problem.attached.empty());
 }
 
+TEST(ProblemFile, WhatMotionsKeep) {
+  const ProblemFolder folder;
+  const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
+  EXPECT_FALSE(folder.load({}).smooth);
+  EXPECT_FALSE(folder.load({}).limits.joint_jerk);
+  const Problem problem = folder.load({{"path", "{smooth: {position: 0.0002}, " + waypoints + "}"},
+                                       {"limits", "{joint_speed: 2, joint_acceleration: [1, 2, 3, 4, 5, 6, 7], joint_jerk: null}"},
+                                       {"refine", "{smoothing: 0.02, joint_margin: 0.03, singular_margin: 0.04}"}});
+  ASSERT_TRUE(problem.smooth && problem.limits.joint_speed && problem.limits.joint_acceleration);
+  EXPECT_EQ(problem.smooth->position, 0.0002);
+  EXPECT_EQ(problem.smooth->angle, PathSmoothing{}.angle);
+  EXPECT_EQ((*problem.limits.joint_speed)[6], 2);
+  EXPECT_EQ((*problem.limits.joint_acceleration)[6], 7);
+  EXPECT_FALSE(problem.limits.joint_jerk);
+  EXPECT_EQ(problem.refinement.smoothing, 0.02);
+  EXPECT_EQ(problem.refinement.joint_margin, 0.03);
+  EXPECT_EQ(problem.refinement.singular_margin, 0.04);
+  const Problem sharp = folder.load({{"path", "{smooth: null, " + waypoints + "}"}});
+  ASSERT_TRUE(sharp.smooth);
+  EXPECT_EQ(sharp.smooth->position, 0);
+  EXPECT_EQ(sharp.smooth->angle, 0);
+}
+
 TEST(ProblemFile, EveryKey) {
   const ProblemFolder folder;
   const Problem problem = folder.load({

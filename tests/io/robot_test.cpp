@@ -20,6 +20,25 @@ std::string mesh_link(const std::string& name, const std::string& mesh) {
 
 const char* const kLimit = "<limit lower='-1' upper='2' velocity='3' effort='4'/>";
 
+TEST(Robot, RatesOfUrdf12WhateverVersionTheFileSays) {
+  const TempFolder folder;
+  for (const char* version : {"", " version='1.0'", " version='1.2'"}) {
+    const std::string text = "<?xml version='1.0'?>\n<robot name='r'" + std::string(version) +
+                             "><link name='a'/><link name='b'/><link name='c'/><link name='d'/>" +
+                             joint("j", "revolute", "a", "b",
+                                   "<limit lower='-1' upper='2' velocity='3' effort='4' acceleration='5' "
+                                   "deceleration='2.5' jerk='60'/>") +
+                             joint("k", "continuous", "b", "c", "<limit velocity='3' deceleration='7'/>") +
+                             joint("l", "revolute", "c", "d", kLimit) + "</robot>\n";
+    const auto model = load_robot(folder.write("r.urdf", text));
+    EXPECT_EQ(model->joints[0].acceleration, 2.5) << version;
+    EXPECT_EQ(model->joints[0].jerk, 60);
+    EXPECT_EQ(model->joints[1].acceleration, 7);
+    EXPECT_EQ(model->joints[1].jerk, 0);
+    EXPECT_EQ(model->joints[2].acceleration, 0);
+  }
+}
+
 TEST(Robot, LinksAndJointsInTheOrderOfTheFile) {
   const TempFolder folder;
   const fs::path file = folder.write(
@@ -262,6 +281,12 @@ TEST(Robot, BadUrdf) {
       {"velocity negative",
        robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='-1'/>")),
        {"r.urdf:5", "'j'", "velocity"}},
+      {"acceleration negative",
+       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='1' acceleration='-1'/>")),
+       {"r.urdf:5", "'j'", "acceleration"}},
+      {"jerk no number",
+       robot(ab + joint("j", "continuous", "a", "b", "<limit velocity='1' jerk='1x'/>")),
+       {"r.urdf:5", "'j'", "jerk"}},
       {"zero axis",
        robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 0 0'/>")),
        {"r.urdf:5", "'j'", "axis"}},

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "io_support.hpp"
+#include "swivel/io/motion.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -23,6 +24,36 @@ PlanResult random_result(int rows) {
   }
   result.trajectory[0].q << 0.1, -0.0, 1e-300, 5e-324, 1e300, kPi, 1.0 / 3;
   return result;
+}
+
+TEST(Trajectory, MotionKeepsEveryBitAndTheHeaderTellsWhatAFileIs) {
+  const TempFolder folder;
+  const PlanResult result = random_result(40);
+  TimedPath motion;
+  for (std::size_t k = 0; k < result.trajectory.size(); ++k) {
+    TimedRow row;
+    row.t = static_cast<double>(k) / 30;
+    row.row = result.trajectory[k];
+    row.v = row.row.q * 1.1;
+    row.a = row.row.q * 1.3;
+    motion.rows.push_back(row);
+  }
+  const std::string text = to_timed_csv(motion, kNames);
+  EXPECT_TRUE(text.starts_with("t,s,phi,branch,a,b,c,d,e,f,g,a_v,b_v,c_v,d_v,e_v,f_v,g_v,a_a,b_a,c_a,d_a,e_a,f_a,g_a\n"));
+  const TrajectoryFile file = load_trajectory_file(folder.write("m.csv", text), kNames);
+  ASSERT_EQ(file.timed.size(), motion.rows.size());
+  ASSERT_EQ(file.rows.size(), motion.rows.size());
+  for (std::size_t k = 0; k < file.timed.size(); ++k) {
+    EXPECT_EQ(file.timed[k].t, motion.rows[k].t);
+    EXPECT_EQ(file.timed[k].v, motion.rows[k].v);
+    EXPECT_EQ(file.timed[k].a, motion.rows[k].a);
+    EXPECT_EQ(file.rows[k].q, motion.rows[k].row.q);
+    EXPECT_EQ(file.timed[k].row.s, motion.rows[k].row.s);
+  }
+  const TrajectoryFile plain = load_trajectory_file(folder.write("t.csv", to_csv(result)), kNames);
+  EXPECT_TRUE(plain.timed.empty());
+  EXPECT_EQ(plain.rows.size(), result.trajectory.size());
+  EXPECT_THROW(load_trajectory(folder.write("m.csv", text), kNames), InputError);
 }
 
 TEST(Trajectory, RoundTripKeepsEveryBit) {

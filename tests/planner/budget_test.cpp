@@ -127,7 +127,10 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
          auto asked = validity();
          eager_dp(lattice, asked, spent, eager);
        }},
-      {"diagnosis", [&] { diagnose(lattice, world, rule, {0, 0, 0, 0}, true, spent, diagnosis); }},
+      {"diagnosis",
+       [&] {
+         diagnose(lattice, world, rule, {0, 0, 0, 0}, true, spent, diagnosis);
+       }},
   };
   for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
   EXPECT_EQ(togo.edges(), 0);

@@ -46,6 +46,14 @@ struct PathSmoothing {
   bool operator==(const PathSmoothing&) const = default;
 };
 
+/// What refinement keeps besides the limits, and how it weighs smoothness against cost.
+struct Refinement {
+  double smoothing = 0.01;  ///< m: the length over which a change of direction of the joints costs as much as a way of its size
+  double joint_margin = 0;  ///< rad, kept from the limits in addition to Limits::joint_margin
+  double singular_margin = 0.02;  ///< rad, kept from singular angles of shoulder, elbow and wrist, as far as the path refined does
+  bool operator==(const Refinement&) const = default;
+};
+
 /// docs/model.md. Unset optionals mean "no such limit".
 struct Limits {
   double clearance = 0.005;                       ///< d_safe, m
@@ -114,6 +122,7 @@ struct Task {
   /// first layer has the pose that it has, and the first step leads from there to the path's next layer.
   double start_tolerance = 1e-6;
   Cost cost;
+  Refinement refinement;
   bool operator==(const Task&) const = default;
 };
 

@@ -89,8 +89,9 @@ class ToolPath {
   int merged_ = 0;
 };
 
-/// The layers of a problem: of its whole path, or from its start on. Throws InputError as ToolPath does, and for a start_at beyond
-/// the path. Throws Stopped.
-[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {});
+/// The layers of a problem: of its whole path, or from its start on. Corners are rounded by `problem.smooth`, by `otherwise` where
+/// that is unset. Throws InputError as ToolPath does, and for a start_at beyond the path. Throws Stopped.
+[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {},
+                                    const std::optional<PathSmoothing>& otherwise = {});
 
 }  // namespace swivel

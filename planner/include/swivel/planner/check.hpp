@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
+#include "swivel/core/time_path.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
@@ -30,6 +32,18 @@ struct CheckResult {
     std::size_t row = 0;
   };
   std::optional<LimitDistance> nearest_limit;  ///< none where all joints are continuous
+  /// Of motions in time, by differences between samples, at rest before the first and after the last.
+  struct Motion {
+    struct Peak {
+      double ratio = 0;  ///< of what the joint can do
+      int joint = 0;     ///< 0..6
+      double t = 0;      ///< s
+    };
+    std::array<Peak, 3> peaks;              ///< speed, acceleration, jerk
+    double duration = 0;                    ///< s, from the first row to the last
+    double tool_speed = 0, turn_speed = 0;  ///< m/s and rad/s, the highest between two rows
+  };
+  std::optional<Motion> motion;
   // Work: a row that fails by its values, its pose or its limits is not examined further, nor are moves from or to it.
   std::int64_t rows_examined = 0, moves_examined = 0, fcl_calls = 0;
 };
@@ -61,5 +75,10 @@ struct CheckResult {
 /// (PreparedRobot::require_prepared_for).
 [[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
                                            const std::vector<TrajectoryRow>& rows);
+/// A motion in time: the same, and that speeds, accelerations and jerks of all joints are within joint_rates() (1e-6 of them) by
+/// divided differences of the joints, that v and a of the rows are those of the joints (within what acceleration and jerk change in
+/// a sample), and that limits.tool_speed and tool_turn_speed, where given, are kept (0.1 %). The tool may rest at both ends and at
+/// corners. It follows the path that problem.smooth describes, PathSmoothing's defaults where that is unset.
+[[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows);
 
 }  // namespace swivel

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a lattice's path to a motion, on random poses: what refining and timing bring, and what they take.
+//   motion_benchmark PROBLEM.yaml [EPISODES]    default 100 episodes of seed 1; a problem without `vary` is planned once
+// One line for each pose, medians and 95th percentiles below.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "swivel/core/input_error.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine.hpp"
+
+namespace {
+
+using namespace swivel;
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+double percentile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+}
+
+int run(const std::string& file, std::uint64_t episodes) {
+  Problem base = io::load_problem(file);
+  base.smooth = base.smooth.value_or(PathSmoothing{});
+  base.limits.joint_acceleration.emplace().fill(10);
+  base.limits.joint_jerk.emplace().fill(100);
+  const PreparedRobot robot(base);
+  std::map<std::string, std::vector<double>> all;
+  int solved = 0, kinked = 0, failed = 0;
+  if (base.vary.empty()) episodes = 1;
+  for (std::uint64_t episode = 0; episode < episodes; ++episode) {
+    const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    auto start = std::chrono::steady_clock::now();
+    const PlanResult found = plan(robot, problem, options);
+    if (found.status != PlanStatus::kSolved) continue;
+    ++solved;
+    all["plan ms"].push_back(ms_since(start));
+    start = std::chrono::steady_clock::now();
+    const Refined one = refine(robot, problem, found.trajectory, {.second_seed = false});
+    const double refine_ms = ms_since(start);
+    start = std::chrono::steady_clock::now();
+    const Refined both = refine(robot, problem, found.trajectory);
+    all["refine ms"].push_back(refine_ms);
+    all["refine ms, two seeds"].push_back(ms_since(start));
+    all["rounds"].push_back(one.rounds);
+    all["nodes"].push_back(static_cast<double>(one.nodes_asked));
+    all["cost over lattice"].push_back(one.cost / one.cost_before);
+    all["cost over lattice, two seeds"].push_back(both.cost / both.cost_before);
+    if (both.bend_before > 400) ++kinked, all["smoother, kinked"].push_back(both.bend_before / both.bend);
+    const CheckResult check = check_trajectory(robot, problem, both.rows);
+    std::printf("%3d: cost %.4f %.4f %.4f, bend %.0f %.0f, %d rounds, %.1f ms%s%s", static_cast<int>(episode), one.cost_before,
+                one.cost, both.cost, both.bend_before, both.bend, one.rounds, refine_ms, one.refined ? "" : ", NOT REFINED",
+                check.passed ? "" : ", CHECK FAILS");
+    if (!check.passed) ++failed, std::printf(": %s", check.failures[0].c_str());
+    for (const double speed : {0.05, 0.25}) {
+      const MotionResult timed = time_trajectory(robot, problem, both.rows, {.speed = speed, .turn_speed = {}, .rate = 250});
+      const std::string at = " at " + std::to_string(static_cast<int>(1e3 * speed)) + " mm/s";
+      all["timing ms" + at].push_back(timed.time_ms);
+      all["proof ms" + at].push_back(timed.check_ms);
+      if (timed.failure) {
+        ++failed;
+        std::printf("; %s at %.4f", timed.failure->reason.c_str(), timed.failure->s);
+        continue;
+      }
+      const TimedPath& motion = *timed.motion;
+      double worst = 0;
+      for (const auto& peaks : motion.peaks)
+        for (const auto& peak : peaks) worst = std::max(worst, peak.ratio);
+      all["time over ideal" + at].push_back(motion.duration / motion.ideal);
+      all["worst ratio" + at].push_back(worst);
+      all["between, um" + at].push_back(1e6 * motion.between_position);
+      all["rounds of timing" + at].push_back(motion.rounds);
+      std::printf("; %.3f of ideal, %d rounds", motion.duration / motion.ideal, motion.rounds);
+    }
+    std::printf("\n");
+  }
+  std::printf("%d solved, %d kinked, %d failures\n%-34s %10s %10s %10s\n", solved, kinked, failed, "", "median", "95 %", "most");
+  for (const auto& [name, values] : all)
+    std::printf("%-34s %10.4g %10.4g %10.4g\n", name.c_str(), percentile(values, 0.5), percentile(values, 0.95),
+                percentile(values, 1));
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 2) throw InputError("motion_benchmark PROBLEM.yaml [EPISODES]");
+    return run(argv[1], argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 100);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion_output.hpp"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "search_options.hpp"
+#include "swivel/core/input_error.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+std::string ending(const std::string& file) {
+  return std::filesystem::path(file).extension().string();
+}
+
+}  // namespace
+
+void MotionOptions::add_to(CLI::App& command) {
+  command.add_option("--speed", speed, "speed of the tool along its path, m/s");
+  command.add_option("--turn-speed", turn_speed, "its speed of rotation, rad/s");
+  command.add_option("--rate", rate, "samples a second")->capture_default_str();
+}
+
+TimingOptions MotionOptions::timing(const Problem& problem) const {
+  TimingOptions options;
+  if (!speed && !problem.limits.tool_speed)
+    throw InputError("--speed: is not given, nor limits.tool_speed: allowed is the speed of the tool in m/s");
+  options.speed = speed ? positive(*speed, "--speed") : *problem.limits.tool_speed;
+  options.turn_speed = problem.limits.tool_turn_speed;
+  if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
+  constexpr double kMostRate = 1e5;
+  if (!(rate > 0 && rate <= kMostRate)) throw InputError("--rate: " + shortest(rate) + ": allowed are numbers > 0, at most 100000");
+  options.rate = rate;
+  return options;
+}
+
+void require_motion_format(const std::string& file) {
+  for (const char* known : {"", ".csv", ".json", ".yaml", ".mcap"})
+    if (ending(file) == known && (*known != '\0' || file.empty())) return;
+  throw InputError("--out: " + file + ": unknown format: allowed are names that end in .csv, .json, .yaml or .mcap");
+}
+
+std::string motion_text(const TimedPath& motion, const io::JointNames& joint_names, const std::string& frame_id,
+                        const std::string& file) {
+  const std::string format = ending(file);
+  if (format == ".json") return io::to_trajectory_json(motion, joint_names, frame_id);
+  if (format == ".yaml") return io::to_trajectory_yaml(motion, joint_names, frame_id);
+  if (format == ".mcap") return io::to_mcap(motion, joint_names, frame_id);
+  return io::to_timed_csv(motion, joint_names);
+}
+
+void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names) {
+  const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
+  std::printf("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration,
+              1e3 * options.speed, motion.ideal, motion.rows.size(), motion.rate);
+  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
+    const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
+    const TimedPath::Peak* most = &peaks[0];
+    for (const TimedPath::Peak& peak : peaks)
+      if (peak.ratio > most->ratio) most = &peak;
+    std::printf("  %s at most %.0f %% of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), 100 * most->ratio,
+                name(most->joint), most->s, most->t);
+  }
+  for (const TimedPath::Slow& slow : motion.slow) {
+    std::printf("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %.0f %% of the speed at least, for the %s of '%s'",
+                slow.from_s, slow.to_s, slow.from_t, slow.to_t, 100 * slow.share, to_string(slow.reason), name(slow.joint));
+    if (!slow.singular.empty())
+      std::printf("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
+    std::printf("\n");
+  }
+  if (motion.rounded > 0)
+    std::printf("  %d corner%s rounded, within %.3g mm and %.3g mrad\n", motion.rounded, motion.rounded == 1 ? "" : "s",
+                1e3 * motion.rounded_position, 1e3 * motion.rounded_angle);
+  for (const TimedPath::Stop& stop : motion.stops)
+    std::printf("  stops at waypoint %d, s = %.4f m, t = %.3f s: the corner may not be rounded\n", stop.waypoint, stop.s, stop.t);
+  std::printf("  between samples the tool is within %.3g um and %.3g urad of its path\n", 1e6 * motion.between_position,
+              1e6 * motion.between_angle);
+  for (const std::string& warning : motion.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+}
+
+}  // namespace swivel::cli

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "swivel/core/time_path.hpp"
+#include "swivel/io/motion.hpp"
+
+namespace swivel::cli {
+
+/// How fast, and how a motion is written: the same words for `time` and `plan`.
+struct MotionOptions {
+  std::optional<double> speed, turn_speed;
+  double rate = 250;
+  void add_to(CLI::App& command);
+  /// The problem's tool speeds where none are given. Throws InputError where there is no speed.
+  [[nodiscard]] TimingOptions timing(const Problem& problem) const;
+};
+
+/// The text of a motion in the format that the file name's ending names: .csv, .json, .yaml or .mcap.
+[[nodiscard]] std::string motion_text(const TimedPath& motion, const io::JointNames& joint_names, const std::string& frame_id,
+                                      const std::string& file);
+/// Throws InputError for another ending; nothing is said of an empty name.
+void require_motion_format(const std::string& file);
+
+/// What is worth knowing of a motion, on standard output; warnings on standard error.
+void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names);
+
+}  // namespace swivel::cli

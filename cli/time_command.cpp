@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "motion_output.hpp"
+#include "search_options.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+struct TimeArguments {
+  std::string problem, trajectory, out;
+  MotionOptions motion;
+  LatticeOptions lattice;
+  EpisodeChoice episode;
+  bool quiet = false, refine = false;
+};
+
+/// Arm angles off the grid, on the path that the motion follows.
+std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                                   bool quiet) {
+  Problem smoothed = problem;
+  smoothed.smooth = problem.smooth.value_or(PathSmoothing{});
+  const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {}, Budget(std::nullopt, &interrupted));
+  if (!quiet && result.refined)
+    std::printf("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n", result.cost_before,
+                result.cost, result.bend_before, result.bend);
+  else if (!quiet)
+    std::printf("not refined: %s\n", result.reason.c_str());
+  return result.rows;
+}
+
+int run(const TimeArguments& arguments) {
+  require_motion_format(arguments.out);
+  std::optional<io::InputFiles> noted(std::in_place);
+  Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
+  arguments.lattice.apply(problem);
+  const TimingOptions options = arguments.motion.timing(problem);
+  const PreparedRobot robot(problem);
+  const io::JointNames& names = robot.arm().chain.joint_names;
+  auto rows = io::load_trajectory(arguments.trajectory, names);
+  io::OutputFiles outputs(noted->files());
+  noted.reset();
+  outputs.add("--out", arguments.out);
+  catch_interrupts();
+  std::optional<MotionResult> timed;
+  try {
+    timed = in_the_name_of(arguments.trajectory, [&] {
+      if (arguments.refine) rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
+      return time_trajectory(robot, problem, rows, options, Budget(std::nullopt, &interrupted));
+    });
+  } catch (const Stopped&) {
+    outputs.remove("--out");
+  }
+  if (timed && timed->motion)
+    outputs.write("--out", motion_text(*timed->motion, names, problem.base_link, arguments.out));
+  else
+    outputs.remove("--out");
+  outputs.stage();
+  if (!timed)
+    std::printf("stopped\n");
+  else if (timed->failure)
+    std::printf("not executable: s = %.4f m: %s\n", timed->failure->s, timed->failure->reason.c_str());
+  else if (!arguments.quiet && !outputs.takes_standard_output())
+    print_motion(*timed->motion, options, names);
+  flush_standard_output();
+  report_removed(outputs.commit(), !timed ? "the work was stopped" : "there is no motion now");
+  return !timed ? kStopped : timed->motion ? kOk : kNo;
+}
+
+}  // namespace
+
+void add_time(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
+  auto arguments = std::make_shared<TimeArguments>();  // shared: lives as long as the callback that reads it
+  command->add_option("problem", arguments->problem, "problem file")->required();
+  command->add_option("trajectory", arguments->trajectory, "trajectory file (CSV)")->required();
+  arguments->motion.add_to(*command);
+  command->add_flag("--refine", arguments->refine, "move the arm angles off the grid first: cheaper and smoother, never dearer");
+  command->add_option("--out", arguments->out, "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
+  arguments->lattice.add_to(*command);
+  arguments->episode.add_to(*command);
+  command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace swivel::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions in time, out and in. docs/formats.md "Motion".
+#pragma once
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "swivel/core/time_path.hpp"
+
+namespace swivel::io {
+
+using JointNames = std::array<std::string, kDof>;
+
+/// Header t,s,phi,branch, joints, joints with _v (rad/s), joints with _a (rad/s^2); 17 significant digits.
+[[nodiscard]] std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names);
+/// ROS 2's trajectory_msgs/msg/JointTrajectory. frame_id: the arm's base link.
+[[nodiscard]] std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+[[nodiscard]] std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+/// A log of ROS 2's sensor_msgs/msg/JointState on the topic /joint_states, log time = t: MCAP, profile ros2, CDR, one uncompressed
+/// chunk, with index and summary. https://mcap.dev/spec
+[[nodiscard]] std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+
+/// A trajectory as a file has it.
+struct TrajectoryFile {
+  std::vector<TrajectoryRow> rows;
+  std::vector<TimedRow> timed;  ///< the same rows where the file has times, else empty
+};
+/// TRAJ.csv, or a motion's CSV: the header tells. Times must ascend.
+[[nodiscard]] TrajectoryFile load_trajectory_file(const std::filesystem::path& csv, const JointNames& joint_names);
+
+}  // namespace swivel::io

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "files.hpp"
+#include "stamp.hpp"
+#include "swivel/io/motion.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// In quotes, as JSON has it, which YAML reads too.
+std::string quoted(const std::string& text) {
+  return nlohmann::json(text).dump();
+}
+
+std::string list(const Config& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "[" : ", ") + format_double(value);
+  return text + "]";
+}
+
+std::string list(const JointNames& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "[" : ", ") + quoted(name);
+  return text + "]";
+}
+
+}  // namespace
+
+std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
+  std::string text = "{\"header\": {\"stamp\": {\"sec\": 0, \"nanosec\": 0}, \"frame_id\": " + quoted(frame_id) +
+                     "},\n \"joint_names\": " + list(joint_names) + ",\n \"points\": [";
+  const char* before = "\n";
+  for (const TimedRow& row : motion.rows) {
+    const Stamp stamp = stamp_of(row.t);
+    text += before;
+    text += "  {\"positions\": " + list(row.row.q) + ", \"velocities\": " + list(row.v) + ", \"accelerations\": " + list(row.a) +
+            ", \"effort\": [], \"time_from_start\": {\"sec\": " + std::to_string(stamp.sec) +
+            ", \"nanosec\": " + std::to_string(stamp.nanosec) + "}}";
+    before = ",\n";
+  }
+  return text + "\n ]}\n";
+}
+
+std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
+  std::string text = "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: " + quoted(frame_id) +
+                     "\njoint_names: " + list(joint_names) + "\npoints:\n";
+  for (const TimedRow& row : motion.rows) {
+    const Stamp stamp = stamp_of(row.t);
+    text += "- positions: " + list(row.row.q) + "\n  velocities: " + list(row.v) + "\n  accelerations: " + list(row.a) +
+            "\n  effort: []\n  time_from_start: {sec: " + std::to_string(stamp.sec) +
+            ", nanosec: " + std::to_string(stamp.nanosec) + "}\n";
+  }
+  return text;
+}
+
+}  // namespace swivel::io

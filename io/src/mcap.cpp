@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+#include <type_traits>
+
+#include "stamp.hpp"
+#include "swivel/io/motion.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+/// Numbers little-endian, as MCAP and CDR have them.
+class Bytes {
+ public:
+  template <class Number>
+  Bytes& add(Number value) {
+    using Unsigned = std::conditional_t<sizeof(Number) == 1, std::uint8_t,
+                                        std::conditional_t<sizeof(Number) == 2, std::uint16_t,
+                                                           std::conditional_t<sizeof(Number) == 4, std::uint32_t, std::uint64_t>>>;
+    Unsigned bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    for (std::size_t k = 0; k < sizeof bits; ++k) text_ += static_cast<char>(static_cast<unsigned char>(bits >> (8 * k)));
+    return *this;
+  }
+  Bytes& raw(std::string_view text) {
+    text_ += text;
+    return *this;
+  }
+  /// Its length in 32 bits before it: MCAP's strings, arrays, maps.
+  Bytes& counted(std::string_view text) { return add(static_cast<std::uint32_t>(text.size())).raw(text); }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] std::uint64_t size() const { return text_.size(); }
+
+ private:
+  std::string text_;
+};
+
+enum Opcode : std::uint8_t {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kStatistics = 0x0B,
+  kSummaryOffset = 0x0E,
+  kDataEnd = 0x0F
+};
+
+std::string record(Opcode opcode, const Bytes& content) {
+  return Bytes().add(static_cast<std::uint8_t>(opcode)).add(content.size()).raw(content.text()).text();
+}
+
+/// The message's definition with those it is made of.
+constexpr const char* kJointState =
+    "std_msgs/Header header\n"
+    "string[] name\n"
+    "float64[] position\n"
+    "float64[] velocity\n"
+    "float64[] effort\n"
+    "================================================================================\n"
+    "MSG: std_msgs/Header\n"
+    "builtin_interfaces/Time stamp\n"
+    "string frame_id\n"
+    "================================================================================\n"
+    "MSG: builtin_interfaces/Time\n"
+    "int32 sec\n"
+    "uint32 nanosec\n";
+
+/// Common Data Representation, little-endian: every number stands at a multiple of its size.
+class Cdr {
+ public:
+  template <class Number>
+  Cdr& add(Number value) {
+    while (bytes_.size() % sizeof value != 0) bytes_.add(std::uint8_t{0});
+    bytes_.add(value);
+    return *this;
+  }
+  Cdr& add(const std::string& text) {
+    add(static_cast<std::uint32_t>(text.size() + 1));
+    bytes_.raw(text).add(std::uint8_t{0});
+    return *this;
+  }
+  Cdr& add(const Config& values) {
+    add(static_cast<std::uint32_t>(values.size()));
+    for (const double value : values) add(value);
+    return *this;
+  }
+  /// Behind the four bytes that name the representation.
+  [[nodiscard]] std::string message() const { return std::string("\0\1\0\0", 4) + bytes_.text(); }
+
+ private:
+  Bytes bytes_;
+};
+
+std::string joint_state(const TimedRow& row, const JointNames& joint_names, const std::string& frame_id) {
+  const Stamp stamp = stamp_of(row.t);
+  Cdr cdr;
+  cdr.add(stamp.sec).add(stamp.nanosec).add(frame_id);
+  cdr.add(static_cast<std::uint32_t>(joint_names.size()));
+  for (const std::string& name : joint_names) cdr.add(name);
+  cdr.add(row.row.q).add(row.v).add(std::uint32_t{0});
+  return cdr.message();
+}
+
+std::uint64_t nanoseconds(double t) {
+  const Stamp stamp = stamp_of(t);
+  return static_cast<std::uint64_t>(stamp.sec) * 1'000'000'000u + stamp.nanosec;
+}
+
+}  // namespace
+
+std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
+  constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
+  const std::string magic("\x89MCAP0\r\n", 8);
+  const std::uint64_t begin = nanoseconds(motion.rows.front().t), end = nanoseconds(motion.rows.back().t);
+  const std::string schema =
+      record(kSchema, Bytes().add(kSchemaId).counted("sensor_msgs/msg/JointState").counted("ros2msg").counted(kJointState));
+  const std::string channel =
+      record(kChannel, Bytes().add(kChannelId).add(kSchemaId).counted("/joint_states").counted("cdr").counted(""));
+
+  std::string chunk = schema + channel;
+  Bytes index;
+  std::uint32_t sequence = 0;
+  for (const TimedRow& row : motion.rows) {
+    const std::uint64_t time = nanoseconds(row.t);
+    index.add(time).add(static_cast<std::uint64_t>(chunk.size()));
+    chunk +=
+        record(kMessage, Bytes().add(kChannelId).add(sequence++).add(time).add(time).raw(joint_state(row, joint_names, frame_id)));
+  }
+
+  std::string file = magic + record(kHeader, Bytes().counted("ros2").counted("swivel"));
+  const std::uint64_t chunk_at = file.size();
+  const auto chunk_size = static_cast<std::uint64_t>(chunk.size());
+  file += record(kChunk, Bytes().add(begin).add(end).add(chunk_size).add(std::uint32_t{0}).counted("").add(chunk_size).raw(chunk));
+  const std::uint64_t index_at = file.size();
+  file += record(kMessageIndex, Bytes().add(kChannelId).counted(index.text()));
+  const std::uint64_t index_end = file.size();
+  file += record(kDataEnd, Bytes().add(std::uint32_t{0}));
+
+  const std::uint64_t summary_at = file.size();
+  file += schema;
+  const std::uint64_t channels_at = file.size();
+  file += channel;
+  const std::uint64_t statistics_at = file.size();
+  file += record(kStatistics, Bytes()
+                                  .add(static_cast<std::uint64_t>(motion.rows.size()))
+                                  .add(std::uint16_t{1})  // schemas
+                                  .add(std::uint32_t{1})  // channels
+                                  .add(std::uint32_t{0})  // attachments
+                                  .add(std::uint32_t{0})  // metadata
+                                  .add(std::uint32_t{1})  // chunks
+                                  .add(begin)
+                                  .add(end)
+                                  .counted(Bytes().add(kChannelId).add(static_cast<std::uint64_t>(motion.rows.size())).text()));
+  const std::uint64_t chunk_indexes_at = file.size();
+  file += record(kChunkIndex, Bytes()
+                                  .add(begin)
+                                  .add(end)
+                                  .add(chunk_at)
+                                  .add(index_at - chunk_at)
+                                  .counted(Bytes().add(kChannelId).add(index_at).text())
+                                  .add(index_end - index_at)
+                                  .counted("")
+                                  .add(chunk_size)
+                                  .add(chunk_size));
+  const std::uint64_t offsets_at = file.size();
+  const auto group = [&](Opcode opcode, std::uint64_t from, std::uint64_t to) {
+    file += record(kSummaryOffset, Bytes().add(static_cast<std::uint8_t>(opcode)).add(from).add(to - from));
+  };
+  group(kSchema, summary_at, channels_at);
+  group(kChannel, channels_at, statistics_at);
+  group(kStatistics, statistics_at, chunk_indexes_at);
+  group(kChunkIndex, chunk_indexes_at, offsets_at);
+  file += record(kFooter, Bytes().add(summary_at).add(offsets_at).add(std::uint32_t{0}));
+  return file + magic;
+}
+
+}  // namespace swivel::io

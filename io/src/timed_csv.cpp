@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bad_input.hpp"
+#include "files.hpp"
+#include "swivel/io/motion.hpp"
+#include "trajectory_columns.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+std::vector<std::string> timed_header(const JointNames& joint_names) {
+  std::vector<std::string> header = trajectory_header(joint_names);
+  header.insert(header.begin(), "t");
+  for (const char* suffix : {"_v", "_a"})
+    for (const std::string& name : joint_names) header.push_back(name + suffix);
+  return header;
+}
+
+}  // namespace
+
+std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names) {
+  std::string text;
+  for (const std::string& name : timed_header(joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
+  text += '\n';
+  for (const TimedRow& row : motion.rows) {
+    text += format_double(row.t) + ',' + trajectory_fields(row.row);
+    for (const Config* values : {&row.v, &row.a})
+      for (const double value : *values) text += ',' + format_double(value);
+    text += '\n';
+  }
+  return text;
+}
+
+TrajectoryFile load_trajectory_file(const std::filesystem::path& csv, const JointNames& joint_names) {
+  const CsvTable table(csv, {trajectory_header(joint_names), timed_header(joint_names)});
+  const bool timed = table.header() == 1;
+  TrajectoryFile file;
+  for (std::size_t k = 0; k < table.rows(); ++k) {
+    file.rows.push_back(read_trajectory_row(table, k, timed ? 1 : 0));
+    if (!timed) continue;
+    const std::span<const double> values = table.row(k);
+    TimedRow row;
+    row.t = values[0];
+    row.row = file.rows.back();
+    row.v = Config::Map(values.data() + 11);
+    row.a = Config::Map(values.data() + 18);
+    if (k > 0 && !(row.t > file.timed.back().t))
+      bad_input(table.where(k) + ": t", "is " + format_double(row.t), "times that ascend from row to row");
+    file.timed.push_back(row);
+  }
+  return file;
+}
+
+}  // namespace swivel::io

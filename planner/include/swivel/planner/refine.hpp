@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+
+struct RefineOptions {
+  /// Try as well from a path of a lattice that is coarse along the path and fine in the arm angle, and keep the cheaper.
+  bool second_seed = true;
+};
+
+/// A lattice's path and what became of it.
+struct Refined {
+  std::vector<TrajectoryRow> rows;  ///< refined, or those given
+  bool refined = false;
+  std::string reason;                ///< why they are those given
+  double cost_before = 0, cost = 0;  ///< by the problem's metric
+  double bend_before = 0, bend = 0;  ///< the largest second divided difference of the joints over the tool's travel, rad/m^2
+  int rounds = 0;                    ///< of optimising and asking
+  std::int64_t nodes_asked = 0, edges_asked = 0;
+  bool from_second_seed = false;
+};
+
+/// Makes a valid path of the lattice cheaper and smoother: the arm angles of its layers, off the grid, branches and joint images
+/// kept. Least is sum |W dq| + l^3 sum h |q''|^2, q'' the second divided difference over the travel and l = Refinement::smoothing;
+/// metrics other than l2 are approached by it. Newton's method with a banded Hessian, Levenberg's shift and an active set of bounds
+/// (Nocedal & Wright 2006, 16.7). Nodes and motions are asked as the planners do, of the optimum alone: where one fails, the
+/// layers' intervals shrink towards the path given, which is valid, and the optimum is sought again.
+///
+/// The result is valid and never dearer by the problem's metric; else it is the path given, and the reason. A given start is kept.
+/// `rows`: a trajectory of this problem that plan() found. Throws InputError and InvalidArgument as plan() does, and Stopped.
+[[nodiscard]] Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                             const RefineOptions& options = {}, const Budget& budget = {});
+
+}  // namespace swivel

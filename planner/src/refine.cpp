@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/refine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/path_motion.hpp"
+#include "swivel/core/smooth_path.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/validate.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kFarthest = 1;  // rad, that an arm angle may move
+
+/// The arm angle of each layer, about the angle that it had; branches and joint images stay.
+class ArmAngles final : public LayerSolver {
+ public:
+  ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows) : lattice_(&lattice), rows_(&rows) {
+    for (int i = 0; i < layers(); ++i) {
+      const Pose& tool = lattice.path().layer(i).tool;
+      reachable_.push_back(reach_status(lattice.arm(), lattice.plane(i).reach) == ReachStatus::kReachable);
+      circles_.push_back(reachable_.back() ? elbow_circles(lattice.arm(), lattice.plane(i), tool) : std::array<ElbowCircle, 2>{});
+    }
+  }
+  [[nodiscard]] int layers() const override { return lattice_->layers(); }
+  [[nodiscard]] double travel(int layer) const override { return lattice_->path().layer(layer).travel; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double angle) const override {
+    const auto i = static_cast<std::size_t>(layer);
+    const TrajectoryRow& row = (*rows_)[i];
+    if (!reachable_[i]) return std::nullopt;
+    std::optional<Config> q = srs_ik(lattice_->arm(), circles_[i], angle, row.branch);
+    if (!lattice_->arm().exact)
+      q = polish(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), lattice_->path().layer(layer).tool, angle, *q);
+    if (!q) return std::nullopt;
+    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
+    return q;
+  }
+
+ private:
+  const SrsLattice* lattice_;
+  const std::vector<TrajectoryRow>* rows_;
+  std::vector<bool> reachable_;
+  std::vector<std::array<ElbowCircle, 2>> circles_;
+};
+
+/// Sine of the angle nearest to singular.
+double singular_sine(const SrsArm& arm, const Config& q) {
+  return std::min(
+      {std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))), std::abs(std::sin(arm.wrist_angle(q)))});
+}
+
+/// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
+class Judge {
+ public:
+  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, const Budget& budget)
+      : problem_(&problem),
+        lattice_(&lattice),
+        world_(robot.world(), problem, budget),
+        rule_(world_.edge_rule(robot.radii())),
+        at_(world_, Certificates::kOn),
+        between_(world_, Certificates::kOn),
+        budget_(budget) {}
+
+  /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded.
+  /// `extra`: m, of clearance. Optima lie on the bound, and the motion between layers comes a little nearer.
+  [[nodiscard]] bool node(const Config& q, const Config& given, double extra = 0.1e-3) {
+    budget_.poll();
+    ++nodes_asked;
+    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
+    if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
+    const SrsArm& arm = lattice_->arm();
+    if (singular_sine(arm, q) < std::min(std::sin(problem_->refinement.singular_margin), singular_sine(arm, given) - 1e-9))
+      return false;
+    if (!lattice_->manipulable(q)) return false;
+    return !at_.next_below(q, Level(Keep::kNode, extra));
+  }
+
+  [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
+    budget_.poll();
+    ++edges_asked;
+    const Limits& limits = lattice_->limits();
+    const Config move = b.q - a.q;
+    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > most_change()) return false;
+    const auto within = [](const std::array<double, 3>& deviation, double limit) {
+      return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
+    };
+    const Chain& chain = lattice_->chain();
+    if (limits.tool_path_error && !within(path_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_path_error))
+      return false;
+    if (limits.tool_angle_error && !within(angle_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_angle_error))
+      return false;
+    if (limits.step_error)
+      for (const int end : {0, 1})
+        if (!(step_error(*lattice_, layer, end, (end == 0 ? a : b).branch, (end == 0 ? a : b).phi, b.phi - a.phi) <=
+              *limits.step_error))
+          return false;
+    return limits.edges == EdgeMode::kNodes || !edge_blocked(between_, rule_, a.q, b.q, budget_);
+  }
+
+  /// rad, what the lattice's window allows.
+  [[nodiscard]] double most_change() const { return lattice_->window() * kTwoPi / lattice_->angles() + 1e-9; }
+
+  std::int64_t nodes_asked = 0, edges_asked = 0;
+
+ private:
+  [[nodiscard]] bool inside(const Config& q, const Config& given, double margin) const {
+    constexpr double kLimit = 1e-9;  // rad
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = lattice_->chain().limit[j];
+      if (limit.continuous) continue;
+      const auto joint = static_cast<Eigen::Index>(j);
+      const double keep = lattice_->limits().joint_margin;
+      const double by = std::min(q[joint] - limit.lower, limit.upper - q[joint]) - keep;
+      const double given_by = std::min(given[joint] - limit.lower, limit.upper - given[joint]) - keep;
+      if (by < std::min(margin, given_by) - kLimit) return false;
+    }
+    return true;
+  }
+
+  const Problem* problem_;
+  const SrsLattice* lattice_;
+  World world_;
+  EdgeRule rule_;
+  World::Query at_, between_;
+  Budget budget_;
+};
+
+double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
+  double sum = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) sum += lattice.edge_cost(rows[i].q - rows[i - 1].q);
+  return sum;
+}
+
+/// The largest second divided difference over the travel, rad/m^2.
+double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+  double most = 0;
+  for (int i = 1; i + 1 < path.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double h0 = path.layer(i).travel - path.layer(i - 1).travel, h1 = path.layer(i + 1).travel - path.layer(i).travel;
+    most = std::max(most, (2 / (h0 + h1) * ((rows[k + 1].q - rows[k].q) / h1 - (rows[k].q - rows[k - 1].q) / h0)).norm());
+  }
+  return most;
+}
+
+/// One path given, refined at one weight of smoothness.
+class Refinery {
+ public:
+  Refinery(const SrsLattice& lattice, Judge& judge, const std::vector<TrajectoryRow>& given, bool fixed_start, const Budget& budget)
+      : lattice_(&lattice), judge_(&judge), given_(given), solver_(lattice, given_), fixed_start_(fixed_start), budget_(budget) {
+    for (std::size_t i = 1; i < given_.size(); ++i)
+      given_[i].phi = given_[i - 1].phi + wrap_angle(given_[i].phi - given_[i - 1].phi);
+  }
+
+  /// Valid rows, or none within the rounds.
+  std::optional<std::vector<TrajectoryRow>> run(const SmoothObjective& objective, int& rounds) {
+    constexpr int kRounds = 40;
+    const std::size_t n = given_.size();
+    std::vector<double> x(n);
+    std::vector<CoordinateBox> boxes(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = given_[i].phi;
+      boxes[i] = {x[i] - kFarthest, x[i] + kFarthest};
+    }
+    if (fixed_start_) boxes[0] = {x[0], x[0]};
+    std::vector<double> node_known(n, std::nan(""));
+    std::vector<std::array<double, 2>> edge_known(n, {std::nan(""), std::nan("")});
+    for (int round = 0; round < kRounds; ++round) {
+      ++rounds;
+      x = smooth_minimum(solver_, objective, boxes, std::move(x), budget_);
+      std::vector<TrajectoryRow> rows = rows_at(x);
+      if (rows.empty()) return std::nullopt;
+      bool fails = false;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (x[i] == given_[i].phi || x[i] == node_known[i]) continue;
+        if (!judge_->node(rows[i].q, given_[i].q)) {
+          x[i] = shrink(i, x[i], boxes[i]);
+          fails = true;
+        }
+        node_known[i] = x[i];
+      }
+      if (fails) continue;
+      for (std::size_t i = 0; i + 1 < n; ++i) {
+        if ((x[i] == given_[i].phi && x[i + 1] == given_[i + 1].phi) || (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1]))
+          continue;
+        if (judge_->edge(static_cast<int>(i), rows[i], rows[i + 1])) {
+          edge_known[i] = {x[i], x[i + 1]};
+          continue;
+        }
+        for (const std::size_t k : {i, i + 1}) halve(k, x[k], boxes[k]);
+        fails = true;
+      }
+      if (!fails) return rows;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::vector<TrajectoryRow> rows_at(const std::vector<double>& x) const {
+    std::vector<TrajectoryRow> rows = given_;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (x[i] == given_[i].phi) continue;  // verbatim
+      const auto q = solver_.joints(static_cast<int>(i), x[i]);
+      if (!q) return {};
+      rows[i].phi = x[i];
+      rows[i].q = *q;
+    }
+    return rows;
+  }
+
+  /// The node at x fails: the interval ends at the furthest coordinate that is found valid. Returns it.
+  double shrink(std::size_t i, double x, CoordinateBox& box) {
+    constexpr int kQueries = 10;
+    double good = given_[i].phi, bad = x;
+    for (int k = 0; k < kQueries; ++k) {
+      const double middle = (good + bad) / 2;
+      const auto q = solver_.joints(static_cast<int>(i), middle);
+      (q && judge_->node(*q, given_[i].q) ? good : bad) = middle;
+    }
+    (x > given_[i].phi ? box.high : box.low) = good;
+    return good;
+  }
+
+  /// A motion from or to the node at x fails.
+  void halve(std::size_t i, double x, CoordinateBox& box) const {
+    constexpr double kLeast = 1e-5;  // rad
+    const double given = given_[i].phi, off = std::abs(x - given) / 2;
+    if (off < kLeast)
+      box = {given, given};
+    else
+      box = {std::max(box.low, given - off), std::min(box.high, given + off)};
+  }
+
+  const SrsLattice* lattice_;
+  Judge* judge_;
+  std::vector<TrajectoryRow> given_;  // arm angles unwrapped
+  ArmAngles solver_;
+  bool fixed_start_;
+  Budget budget_;
+};
+
+/// A path of a lattice that is up to four times as coarse along the path and finer in the arm angle, laid over the layers. None
+/// where there is none, where even its optimum without obstacles is not cheaper than `to_beat`, and where it is not valid on the
+/// layers.
+std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice,
+                                                      Judge& judge, const SmoothObjective& objective, double to_beat,
+                                                      const Budget& budget) {
+  Problem coarse = problem;
+  // Longer steps than 20 mm reach so many angles that the search takes longer than it is worth.
+  constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
+  const double times = std::min(kMostTimes, kLongest / problem.resolution.ds);
+  if (times < 2) return std::nullopt;
+  coarse.resolution.ds *= times;
+  coarse.resolution.dalpha *= times;  // so that travels are the same
+  coarse.resolution.dphi = std::min(problem.resolution.dphi, kAngle);
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const PlanResult found = plan(robot, coarse, options);
+  budget.poll();
+  if (found.status != PlanStatus::kSolved) return std::nullopt;
+  const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
+  const PathMotion motion(robot.arm().chain, robot.srs(), path, found.trajectory);
+  if (!motion.jumps().empty()) return std::nullopt;
+  std::vector<TrajectoryRow> rows;
+  for (int i = 0; i < lattice.layers(); ++i) {
+    TrajectoryRow row;
+    row.s = lattice.path().layer(i).s;
+    const auto q = i == 0 ? found.trajectory[0].q : motion.joints(lattice.path().layer(i).travel);
+    if (!q) return std::nullopt;
+    row.q = *q;
+    row.phi = lattice.plane(i).angle_of(lattice.arm().elbow_axis(*q));
+    if (i > 0) row.phi = rows.back().phi + wrap_angle(row.phi - rows.back().phi);
+    row.branch = found.trajectory[0].branch;
+    rows.push_back(row);
+  }
+
+  const ArmAngles solver(lattice, rows);
+  std::vector<double> x;
+  std::vector<CoordinateBox> boxes;
+  for (const TrajectoryRow& row : rows) {
+    x.push_back(row.phi);
+    boxes.push_back({row.phi - kFarthest, row.phi + kFarthest});
+  }
+  if (problem.start) boxes[0] = {x[0], x[0]};
+  x = smooth_minimum(solver, objective, boxes, std::move(x), budget);
+  std::vector<TrajectoryRow> best = rows;
+  for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver.joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
+  if (cost_of(lattice, best) >= to_beat) return std::nullopt;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (!judge.node(rows[i].q, rows[i].q, 0) || (i > 0 && !judge.edge(static_cast<int>(i) - 1, rows[i - 1], rows[i])))
+      return std::nullopt;
+  return rows;
+}
+
+}  // namespace
+
+Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+               const RefineOptions& options, const Budget& budget) {
+  validate(problem);
+  robot.require_prepared_for(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain, budget);
+  if (rows.size() != static_cast<std::size_t>(path.size()))
+    throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
+                          std::to_string(path.size()) + ", one for each layer");
+  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  Judge judge(robot, problem, lattice, budget);
+  Refined result;
+  result.rows = rows;
+  result.cost_before = result.cost = cost_of(lattice, rows);
+  result.bend_before = result.bend = largest_bend(path, rows);
+  SmoothObjective objective;
+  objective.weights = lattice.cost_scale();
+  objective.most_change = 0.98 * judge.most_change();
+  result.reason = "no valid path was found that is not dearer";
+  const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
+    Refinery refinery(lattice, judge, from, problem.start.has_value(), budget);
+    const double length = problem.refinement.smoothing;
+    objective.bending = length * length * length;
+    for (int attempt = 0; attempt < 3; ++attempt, objective.bending /= 10) {
+      auto refined = refinery.run(objective, result.rounds);
+      if (!refined) continue;
+      const double cost = cost_of(lattice, *refined);
+      if (!(cost <= result.cost)) continue;
+      result.rows = std::move(*refined);
+      result.cost = cost;
+      result.refined = true;
+      result.from_second_seed = second;
+      result.reason.clear();
+      return;
+    }
+  };
+  improve(rows, false);
+  if (options.second_seed) {
+    constexpr double kWorthIt = 1 - 1e-4;
+    const double length = problem.refinement.smoothing;
+    objective.bending = length * length * length;
+    if (const auto second = second_path(robot, problem, lattice, judge, objective, kWorthIt * result.cost, budget))
+      improve(*second, true);
+  }
+  for (TrajectoryRow& row : result.rows) row.phi = wrap_angle(row.phi);
+  if (!result.refined) result.rows = rows;
+  result.bend = largest_bend(path, result.rows);
+  result.nodes_asked = judge.nodes_asked;
+  result.edges_asked = judge.edges_asked;
+  return result;
+}
+
+}  // namespace swivel

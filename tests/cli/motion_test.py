@@ -1,0 +1,279 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motions in time from outside: every format read by a reader that is not Swivel's, and rates of the joints by differences."""
+import csv
+import json
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SWIVEL = os.environ["SWIVEL"]
+PROBLEMS = pathlib.Path(os.environ["SWIVEL_DATA"]) / "problems"
+COARSE = ("--ds", "0.02", "--dphi", "0.1")
+ACCELERATION, JERK = 10, 100  # what is assumed where nobody says
+
+
+def run(*arguments):
+    return subprocess.run([SWIVEL, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+class Mcap:
+    """Reads a file without compression, by https://mcap.dev/spec: nothing of Swivel's."""
+
+    MAGIC = b"\x89MCAP0\r\n"
+
+    def __init__(self, data):
+        assert data[:8] == self.MAGIC and data[-8:] == self.MAGIC
+        self.data = data
+        self.schemas, self.channels, self.messages, self.profile = {}, {}, [], None
+        self.statistics, self.summary = None, []
+        self.records(8, len(data) - 8)
+        summary_start, offset_start, _ = struct.unpack_from("<QQI", data, len(data) - 8 - 20)
+        at = summary_start
+        while at < offset_start:
+            opcode, length = struct.unpack_from("<BQ", data, at)
+            self.summary.append((opcode, at, length))
+            at += 9 + length
+        assert at == offset_start
+
+    @staticmethod
+    def text(data, at):
+        (n,) = struct.unpack_from("<I", data, at)
+        return data[at + 4:at + 4 + n].decode(), at + 4 + n
+
+    def records(self, at, end):
+        while at < end:
+            opcode, length = struct.unpack_from("<BQ", self.data, at)
+            self.record(opcode, at + 9, length)
+            at += 9 + length
+        assert at == end
+
+    def record(self, opcode, at, length):
+        data = self.data
+        if opcode == 0x01:
+            self.profile, _ = self.text(data, at)
+        elif opcode == 0x03:
+            (number,) = struct.unpack_from("<H", data, at)
+            name, k = self.text(data, at + 2)
+            encoding, k = self.text(data, k)
+            definition, k = self.text(data, k)
+            assert k == at + length
+            self.schemas[number] = (name, encoding, definition)
+        elif opcode == 0x04:
+            number, schema = struct.unpack_from("<HH", data, at)
+            topic, k = self.text(data, at + 4)
+            encoding, k = self.text(data, k)
+            self.channels[number] = (schema, topic, encoding)
+        elif opcode == 0x05:
+            channel, sequence, log, published = struct.unpack_from("<HIQQ", data, at)
+            self.messages.append((channel, sequence, log, published, data[at + 22:at + length], at - 9))
+        elif opcode == 0x06:
+            start, end, size, _ = struct.unpack_from("<QQQI", data, at)
+            compression, k = self.text(data, at + 28)
+            (n,) = struct.unpack_from("<Q", data, k)
+            assert compression == "" and n == size
+            self.chunk = (start, end, k + 8, n)
+            self.records(k + 8, k + 8 + n)
+        elif opcode == 0x07:
+            channel, n = struct.unpack_from("<HI", data, at)
+            self.index = [struct.unpack_from("<QQ", data, at + 6 + k) for k in range(0, n, 16)]
+        elif opcode == 0x0B:
+            self.statistics = struct.unpack_from("<QHIIIIQQ", data, at)
+
+
+class Cdr:
+    def __init__(self, data):
+        assert data[:4] == b"\0\1\0\0"
+        self.data, self.at = data[4:], 0
+
+    def take(self, kind):
+        size = struct.calcsize(kind)
+        self.at += -self.at % size
+        (value,) = struct.unpack_from("<" + kind, self.data, self.at)
+        self.at += size
+        return value
+
+    def text(self):
+        n = self.take("I")
+        value = self.data[self.at:self.at + n]
+        self.at += n
+        assert value[-1:] == b"\0"
+        return value[:-1].decode()
+
+    def numbers(self):
+        return [self.take("d") for _ in range(self.take("I"))]
+
+
+class Motion(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.holder = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.holder.name)
+        cls.problem = PROBLEMS / "experiment_a.yaml"
+        cls.trajectory = cls.folder / "t.csv"
+        assert run("plan", cls.problem, "--out", cls.trajectory, *COARSE).returncode == 0
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.holder.cleanup()
+
+    def timed(self, name, *options):
+        out = self.folder / name
+        done = run("time", self.problem, self.trajectory, "--out", out, *COARSE, *options)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return out, done
+
+    def table(self, file):
+        with open(file) as lines:
+            rows = list(csv.reader(lines))
+        return rows[0], [[float(x) for x in row] for row in rows[1:]]
+
+    def test_csv_keeps_the_rates_and_passes_check(self):
+        for speed in ("0.05", "0.25"):
+            out, done = self.timed("m.csv", "--speed", speed, "--rate", "1000")
+            header, rows = self.table(out)
+            self.assertEqual(header[:4], ["t", "s", "phi", "branch"])
+            self.assertEqual([name + "_v" for name in header[4:11]], header[11:18])
+            self.assertEqual([name + "_a" for name in header[4:11]], header[18:25])
+            dt = rows[1][0] - rows[0][0]
+            self.assertAlmostEqual(dt, 1e-3)
+            q = [rows[0][4:11]] * 3 + [row[4:11] for row in rows] + [rows[-1][4:11]] * 3
+            most = [0, 0]
+            for k in range(3, len(q)):
+                for j in range(7):
+                    a, b, c, d = (q[k - i][j] for i in range(4))
+                    most[0] = max(most[0], abs(a - 2 * b + c) / dt**2 / ACCELERATION)
+                    most[1] = max(most[1], abs(a - 3 * b + 3 * c - d) / dt**3 / JERK)
+            self.assertLessEqual(max(most), 1 + 1e-9)
+            self.assertGreater(most[1], 0.5 if speed == "0.25" else 0.05)
+            self.assertAlmostEqual(rows[-1][1], 0.5)
+            self.assertIn("acceleration", done.stderr)
+            check = run("check", self.problem, out, *COARSE)
+            self.assertEqual(check.returncode, 0, check.stdout)
+            self.assertIn("motion:", check.stdout)
+
+    def test_check_finds_what_is_wrong(self):
+        out, _ = self.timed("good.csv", "--speed", "0.1")
+        lines = out.read_text().splitlines()
+        bad = self.folder / "bad.csv"
+
+        def checked(changed):
+            bad.write_text("\n".join(changed) + "\n")
+            return run("check", self.problem, bad, *COARSE)
+
+        def with_field(line, column, change):
+            fields = line.split(",")
+            fields[column] = repr(change(float(fields[column])))
+            return ",".join(fields)
+
+        self.assertEqual(checked(lines).returncode, 0)
+        middle = len(lines) // 2
+        # Twice as fast; a sample left out of time; a velocity that is not the joints'; a joint that is moved.
+        fast = checked(lines[:1] + [with_field(line, 0, lambda t: t / 3) for line in lines[1:]])
+        self.assertEqual(fast.returncode, 1)
+        self.assertIn("jerk", fast.stdout)
+        skipped = checked(lines[:middle] + [with_field(line, 0, lambda t: t - 0.004) for line in lines[middle + 1:]])
+        self.assertEqual(skipped.returncode, 1)
+        said = checked(lines[:middle] + [with_field(lines[middle], 11, lambda v: v + 0.2)] + lines[middle + 1:])
+        self.assertEqual(said.returncode, 1)
+        self.assertIn("is said to have", said.stdout)
+        moved = checked(lines[:middle] + [with_field(lines[middle], 4, lambda q: q + 1e-4)] + lines[middle + 1:])
+        self.assertEqual(moved.returncode, 1)
+        back = checked(lines[:middle] + [lines[middle + 1], lines[middle]] + lines[middle + 2:])
+        self.assertEqual(back.returncode, 2)
+        self.assertIn("ascend", back.stderr)
+
+    def test_joint_trajectory(self):
+        table = self.table(self.timed("m.csv", "--speed", "0.1", "--rate", "100")[0])
+        trajectory = json.loads(self.timed("m.json", "--speed", "0.1", "--rate", "100")[0].read_text())
+        read = [trajectory]
+        text = self.timed("m.yaml", "--speed", "0.1", "--rate", "100")[0].read_text()
+        try:
+            import yaml
+            read.append(yaml.safe_load(text))
+        except ImportError:
+            self.assertIn("joint_names: [", text)
+        for message in read:
+            self.assertEqual(message["header"], {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "base_link"})
+            self.assertEqual(message["joint_names"], table[0][4:11])
+            self.assertEqual(len(message["points"]), len(table[1]))
+            for point, row in zip(message["points"], table[1]):
+                time = point["time_from_start"]
+                self.assertAlmostEqual(time["sec"] + 1e-9 * time["nanosec"], row[0], delta=1e-9)
+                self.assertLess(time["nanosec"], 1000000000)
+                self.assertEqual([float(x) for x in point["positions"]], row[4:11])
+                self.assertEqual([float(x) for x in point["velocities"]], row[11:18])
+                self.assertEqual([float(x) for x in point["accelerations"]], row[18:25])
+                self.assertEqual(point["effort"], [])
+
+    def test_mcap(self):
+        header, rows = self.table(self.timed("m.csv", "--speed", "0.1", "--rate", "100")[0])
+        log = Mcap(self.timed("m.mcap", "--speed", "0.1", "--rate", "100")[0].read_bytes())
+        self.assertEqual(log.profile, "ros2")
+        self.assertEqual(len(log.schemas), 1)
+        (name, encoding, definition), = log.schemas.values()
+        self.assertEqual((name, encoding), ("sensor_msgs/msg/JointState", "ros2msg"))
+        self.assertIn("MSG: std_msgs/Header", definition)
+        (schema, topic, message_encoding), = log.channels.values()
+        self.assertEqual((topic, message_encoding), ("/joint_states", "cdr"))
+        self.assertEqual(len(log.messages), len(rows))
+        self.assertEqual(log.statistics[0], len(rows))
+        self.assertEqual([opcode for opcode, _, _ in log.summary], [0x03, 0x04, 0x0B, 0x08])
+        self.assertEqual(len(log.index), len(rows))
+        for (channel, sequence, logged, published, data, at), row, entry in zip(log.messages, rows, log.index):
+            self.assertAlmostEqual(logged * 1e-9, row[0], delta=1e-9)
+            self.assertEqual(entry, (logged, at - log.chunk[2]))
+            cdr = Cdr(data)
+            self.assertEqual(cdr.take("i") * 1000000000 + cdr.take("I"), logged)
+            self.assertEqual(cdr.text(), "base_link")
+            self.assertEqual([cdr.text() for _ in range(cdr.take("I"))], header[4:11])
+            self.assertEqual(cdr.numbers(), row[4:11])
+            self.assertEqual(cdr.numbers(), row[11:18])
+            self.assertEqual(cdr.numbers(), [])
+            self.assertEqual(cdr.at, len(cdr.data))
+
+    def test_refine(self):
+        plain, _ = self.timed("p.csv", "--speed", "0.1")
+        refined, done = self.timed("r.csv", "--speed", "0.1", "--refine")
+        self.assertIn("refined: cost", done.stdout)
+        self.assertEqual(run("check", self.problem, refined, *COARSE).returncode, 0)
+
+        def way(file):
+            rows = [row[4:11] for row in self.table(file)[1]]
+            return sum(sum((x - y) ** 2 for x, y in zip(a, b)) ** 0.5 for a, b in zip(rows, rows[1:]))
+
+        self.assertLess(way(refined), way(plain))
+
+    def test_bad_input(self):
+        for options, word in (((), "--speed"), (("--speed", "0"), "--speed"), (("--speed", "0.1", "--rate", "-1"), "--rate"),
+                              (("--speed", "0.1", "--out", self.folder / "m.bag"), ".mcap"),
+                              (("--speed", "0.1", "--out", self.trajectory), "--out")):
+            done = run("time", self.problem, self.trajectory, *COARSE, *options)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn(word, done.stderr)
+            self.assertEqual(len(done.stderr.splitlines()), 1)
+        # Rows of another resolution are at no layers of this one.
+        done = run("time", self.problem, self.trajectory, "--speed", "0.1", "--ds", "0.03", "--dphi", "0.1")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("at no layer", done.stderr)
+
+    def test_limits_of_the_problem_file_come_first(self):
+        text = self.problem.read_text().replace("../", str(PROBLEMS.parent) + "/")
+        gentle = self.folder / "gentle.yaml"
+        gentle.write_text(text.replace("limits: {", "limits: {joint_acceleration: 0.5, joint_jerk: [5, 5, 5, 5, 5, 5, 5], "))
+        self.assertNotEqual(gentle.read_text(), text)
+        done = run("time", gentle, self.trajectory, "--speed", "0.25", "--out", self.folder / "g.csv", *COARSE)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("are stated neither", done.stderr)
+        quick, _ = self.timed("q.csv", "--speed", "0.25")
+        self.assertGreater(self.table(self.folder / "g.csv")[1][-1][0], self.table(quick)[1][-1][0])
+        self.assertEqual(run("check", gentle, self.folder / "g.csv", *COARSE).returncode, 0)
+        self.assertEqual(run("check", gentle, quick, *COARSE).returncode, 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
