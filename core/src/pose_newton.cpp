@@ -11,6 +11,36 @@ constexpr double kRank = 1e-9;      // pivot below which the Jacobian has lost r
 constexpr double kSettled = 4e-6;   // rad: after so small a step the error is its square
 constexpr double kParallel = 1e-9;  // sine below which neighbouring axes have no common normal of their own
 constexpr double kLongest = 1;      // rad, of one step
+constexpr std::size_t kLanes = 8;   // joints and one more, for vector units
+
+/// Sines and cosines of angles of some turns, to about 1 ulp: a loop without branches, which compilers turn into vector code.
+/// Reduction to an eighth of a turn in two parts (Cody & Waite 1980), polynomials of fdlibm's k_sin and k_cos.
+void sines_cosines(const std::array<double, kLanes>& angle, std::array<double, kLanes>& sine, std::array<double, kLanes>& cosine) {
+  constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
+  constexpr double kHigh = 0x1.921fb544p0,
+                   kLow = 0x1.0b4611a626331p-34;  // of half pi; times a small integer the high part is exact
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    const double x = angle[k], quarters = (x * (2 / kPi) + kRound) - kRound;
+    const double r = (x - quarters * kHigh) - quarters * kLow, z = r * r;
+    const double s =
+        r + r * z *
+                (-1.66666666666666324348e-01 +
+                 z * (8.33333333332248946124e-03 +
+                      z * (-1.98412698298579493134e-04 +
+                           z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+    const double c = 1 - (0.5 * z - z * z *
+                                        (4.16666666666666019037e-02 +
+                                         z * (-1.38888888888741095749e-03 +
+                                              z * (2.48015872894767294178e-05 +
+                                                   z * (-2.75573143513906633035e-07 +
+                                                        z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))))));
+    const double m = quarters - 4 * ((quarters * 0.25 + kRound) - kRound);  // -2 ... 2
+    const bool odd = m * m == 1;
+    const double a = odd ? c : s, b = odd ? s : c;
+    sine[k] = m == -1 || m * m == 4 ? -a : a;
+    cosine[k] = m > 0 || m == -2 ? -b : b;
+  }
+}
 
 }  // namespace
 
@@ -52,14 +82,16 @@ PoseNewton::PoseNewton(const Chain& chain) {
 }
 
 bool PoseNewton::linear(const Config& q, const Pose& tool, Linear& out) const {
+  std::array<double, kLanes> angle{}, sine, cosine;
+  for (std::size_t k = 0; k < kDof; ++k) angle[k] = q[static_cast<Eigen::Index>(k)] + link_[k].turn;
+  sines_cosines(angle, sine, cosine);
   Vector3d X = first_.linear().col(0), Y = first_.linear().col(1), Z = first_.linear().col(2), P = first_.translation();
   std::array<Vector3d, kDof> axis, point;
   for (std::size_t k = 0; k < kDof; ++k) {
     axis[k] = Z;
     point[k] = P;
     const Link& link = link_[k];
-    const double angle = q[static_cast<Eigen::Index>(k)] + link.turn, c = std::cos(angle), s = std::sin(angle);
-    const Vector3d x = c * X + s * Y, y = c * Y - s * X;
+    const Vector3d x = cosine[k] * X + sine[k] * Y, y = cosine[k] * Y - sine[k] * X;
     P += link.height * Z + link.width * x;
     X = x;
     Y = link.twist_cosine * y + link.twist_sine * Z;
@@ -73,49 +105,47 @@ bool PoseNewton::linear(const Config& q, const Pose& tool, Linear& out) const {
   const Vector3d miss = tool.translation() - P;
   const Vector3d turn = 0.5 * (tx.cross(tool.linear().col(0)) + ty.cross(tool.linear().col(1)) + tz.cross(tool.linear().col(2)));
 
-  double A[6][8];
+  using Row = Eigen::Array<double, kLanes, 1>;
+  std::array<Row, 6> A;  // the Jacobian and what is missing
   for (std::size_t k = 0; k < kDof; ++k) {
     const Vector3d v = axis[k].cross(P - point[k]);
-    for (int r = 0; r < 3; ++r) {
-      A[r][k] = v[r];
-      A[r + 3][k] = axis[k][r];
+    const auto column = static_cast<Eigen::Index>(k);
+    for (std::size_t r = 0; r < 3; ++r) {
+      A[r][column] = v[static_cast<Eigen::Index>(r)];
+      A[r + 3][column] = axis[k][static_cast<Eigen::Index>(r)];
     }
   }
-  for (int r = 0; r < 3; ++r) {
-    A[r][7] = miss[r];
-    A[r + 3][7] = turn[r];
+  for (std::size_t r = 0; r < 3; ++r) {
+    A[r][kDof] = miss[static_cast<Eigen::Index>(r)];
+    A[r + 3][kDof] = turn[static_cast<Eigen::Index>(r)];
   }
-  // Gauss and Jordan; each row takes the largest column that is left.
-  int pivot[6];
-  unsigned left = 0x7f;
-  for (int r = 0; r < 6; ++r) {
+  // Gauss; each row takes the largest column that is left.
+  std::array<int, 6> pivot;
+  Row left;
+  left << 1, 1, 1, 1, 1, 1, 1, 0;
+  for (std::size_t r = 0; r < 6; ++r) {
+    const Row size = A[r].abs() * left;
     int column = 0;
-    double largest = -1;
-    for (int c = 0; c < kDof; ++c) {
-      const double size = std::abs(A[r][c]);
-      if ((left >> c & 1) != 0 && size > largest) {
-        largest = size;
-        column = c;
-      }
-    }
-    if (!(largest > kRank)) return false;
-    left &= ~(1u << column);
+    for (int c = 1; c < kDof; ++c) column = size[c] > size[column] ? c : column;
+    if (!(size[column] > kRank)) return false;
+    left[column] = 0;
     pivot[r] = column;
-    const double inverse = 1 / A[r][column];
-    for (double& a : A[r]) a *= inverse;
-    for (int i = 0; i < 6; ++i) {
-      if (i == r) continue;
-      const double factor = A[i][column];
-      for (int c = 0; c < 8; ++c) A[i][c] -= factor * A[r][c];
-    }
+    A[r] *= 1 / A[r][column];
+    for (std::size_t i = r + 1; i < 6; ++i) A[i] -= A[i][column] * A[r];
   }
   int free = 0;
-  while ((left >> free & 1) == 0) ++free;
+  while (left[free] == 0) ++free;
   out.particular[free] = 0;
   out.null[free] = 1;
-  for (int r = 0; r < 6; ++r) {
-    out.particular[pivot[r]] = A[r][7];
-    out.null[pivot[r]] = -A[r][free];
+  for (std::size_t r = 6; r-- > 0;) {
+    double particular = A[r][kDof], null = -A[r][free];
+    for (std::size_t i = r + 1; i < 6; ++i) {
+      const double a = A[r][pivot[i]];
+      particular -= a * out.particular[pivot[i]];
+      null -= a * out.null[pivot[i]];
+    }
+    out.particular[pivot[r]] = particular;
+    out.null[pivot[r]] = null;
   }
   return true;
 }

@@ -20,6 +20,8 @@ constexpr double kStep = 0.2;          // rad, Euclidean: longest step of tracin
 constexpr double kLeastStep = 1e-7;    // rad: below this a curve is singular
 constexpr double kLongChord = 0.7;     // rad: joined directly; longer ones are traced
 constexpr double kNear = 0.02;         // rad from a chord: a seed there is known
+constexpr double kSeed = 5e-3;         // rad: a start this near a seed is the seed
+constexpr double kFar = 1;             // rad: more than a chord and what is near it
 constexpr double kFarSlack = 1;        // relative discriminant of complex roots that give seeds
 constexpr int kMostPoints = 4000;      // of one curve
 constexpr double kSingular = 1e-6;     // rad from alignment of a triple
@@ -30,9 +32,16 @@ constexpr int kImageSteps = 6;         // Newton steps from a node to its image
 const Config kPlain = Config::Ones();
 
 Config difference(const Config& a, const Config& b) {
-  Config d;
-  for (int j = 0; j < kDof; ++j) d[j] = wrap_angle(a[j] - b[j]);
+  constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
+  Config d = a - b;
+  for (int j = 0; j < kDof; ++j) d[j] -= kTwoPi * ((d[j] * (1 / kTwoPi) + kRound) - kRound);
   return d;
+}
+
+/// False only where they are further apart than `within` in this joint alone: cheap, and true of few.
+bool maybe_near(const Config& a, const Config& b, int joint, double within) {
+  const double apart = std::abs(a[joint] - b[joint]);
+  return apart < within || apart > kTwoPi - within;
 }
 
 /// Where the outer axes of a triple are one line, so that they swing against each other while the middle one stands. A curve comes
@@ -71,7 +80,7 @@ double turned_away(const Config& direction, const Config& chord, double length) 
 struct SelfMotionData {
   explicit SelfMotionData(const Chain& chain) : newton(chain) {}
   PoseNewton newton;
-  int lock = -1;
+  int lock = -1, other = 0;  // a joint that is not the lock
   std::array<double, kDof> lower{}, upper{};
   std::array<bool, kDof> circle{};
   Config scale, scale2;
@@ -192,6 +201,7 @@ void Curves::add_seeds() {
 std::optional<double> Curves::misfit(int half, int other) const {
   constexpr double kBend = 0.06;    // 1 - cosine of tangent and chord: 0.35 rad
   constexpr double kUneven = 0.02;  // part of the chord by which a parabola with the tangents may miss it
+  if (!maybe_near(at(other).q, at(half).q, data_.other, kLongChord)) return std::nullopt;
   const Config chord = difference(at(other).q, at(half).q);
   const double length2 = chord.squaredNorm();
   if (!(length2 > 0 && length2 < kLongChord * kLongChord)) return std::nullopt;
@@ -289,6 +299,7 @@ void Curves::trace(int half) {
     for (const int other : open_) {
       if (!open(other) || other == here || (other == half && count < 4)) continue;
       const Vertex& v = at(other);
+      if (!maybe_near(v.q, p.q, data_.other, 2 * kStep)) continue;
       const Config way = difference(v.q, p.q);
       const double along = way.dot(move) / length2;
       if (!(along > 1e-6 && along <= 1.05) || along >= first) continue;
@@ -319,6 +330,7 @@ bool Curves::known(const Config& q, const Config& tangent) const {
       // Each chord once, from the point with the smaller number.
       const Vertex& w = at(next);
       if (&w < &v) continue;
+      if (!maybe_near(v.q, q, data_.lock, kFar)) continue;
       const Config chord = difference(w.q, v.q);
       const double length = chord.norm();
       const Config way = difference(q, v.q);
@@ -357,8 +369,12 @@ void Curves::find(std::span<const Config> known_points) {
     if (few_[k] == 0) continue;
     const auto& [value, form] = data_.forms[k];
     for (const Config6& six : form.starts(tool_, kFarSlack)) {
-      const auto p = data_.newton.nearest(with_joint(six, data_.lock, value), tool_, kPlain, 8);
-      if (p) add_hidden(p->q);
+      const Config start = with_joint(six, data_.lock, value);
+      const auto seed = [&](const Vertex& v) {
+        return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;
+      };
+      if (std::any_of(vertices_.begin() + first_[k], vertices_.begin() + first_[k + 1], seed)) continue;
+      if (const auto p = data_.newton.nearest(start, tool_, kPlain, 8)) add_hidden(p->q);
     }
   }
 }
@@ -471,6 +487,8 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
       // A cubic leaves the range of its ends by 4/27 of the misfit of its tangents at most.
       const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
       const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
+      // Images by a turn of the limits lie beyond them.
+      if (least > data_.lower[at] && most < data_.upper[at]) continue;
       for (const bool upper : {true, false})
         for (const double turn : {-kTwoPi, 0.0, kTwoPi}) {
           const double value = (upper ? data_.upper[at] : data_.lower[at]) + turn;
@@ -669,6 +687,7 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
 SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
   auto data = std::make_unique<SelfMotionData>(chain);
   data->lock = method.best;
+  data->other = method.best == 0 ? 1 : 0;
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
