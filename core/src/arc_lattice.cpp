@@ -234,7 +234,11 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
     const Pose& tool = path.layer(i).tool;
-    std::vector<SelfMotionArc> arcs = motion.arcs(tool);
+    // Without a closed form the arcs of the layer before are followed.
+    std::vector<Config> followed;
+    for (std::size_t slot = 0; method.best < 0 && slot < before.size(); ++slot)
+      if (const auto q = motion.image(before[slot].q, tool)) followed.push_back(*q);
+    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed);
     std::vector<std::vector<Image>> images;
     std::vector<Config> strays;
     const auto place_images = [&] {
@@ -259,6 +263,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     };
     place_images();
     if (!strays.empty()) {  // they lie on arcs of which the closed form shows nothing
+      strays.insert(strays.end(), followed.begin(), followed.end());
       arcs = motion.arcs(tool, strays);
       place_images();
     }
@@ -308,9 +313,11 @@ ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolP
 int ArcLattice::branch(int layer, int slot) const {
   const Config& q = point(layer, slot).q;
   const auto J = chain().jacobian(q);
+  const int left_out = method_.best >= 0 ? method_.best : 2;
   Matrix6 rest;
-  rest << J.leftCols(method_.best), J.rightCols(kSix - method_.best);
+  rest << J.leftCols(left_out), J.rightCols(kSix - left_out);
   const bool whole = rest.determinant() < 0;
+  if (method_.best < 0) return whole ? 1 : 0;
   const ClosedFormFit& fit = *method_.by_joint[static_cast<std::size_t>(method_.best)];
   // The triple, or the last of three parallel axes and the two behind it.
   const int first = fit.structure == Structure::kParallel ? (fit.first == 1 ? 3 : 0) : fit.first;

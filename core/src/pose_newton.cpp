@@ -165,6 +165,22 @@ std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const 
   return std::nullopt;
 }
 
+std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const Pose& tool, int steps) const {
+  constexpr double kStride = 0.5;  // rad
+  Config q = start;
+  Linear at;
+  for (int step = 0; step < steps; ++step) {
+    if (!linear(q, tool, at)) return std::nullopt;
+    Config move = at.particular - (at.null.dot(at.particular) / at.null.squaredNorm()) * at.null;
+    const double length2 = move.squaredNorm();
+    if (!(length2 < 1e12)) return std::nullopt;
+    if (length2 > kStride * kStride) move *= kStride / std::sqrt(length2);
+    q += move;
+    if (length2 < kSettled * kSettled) return Point{q, at.null / at.null.norm()};
+  }
+  return std::nullopt;
+}
+
 std::optional<PoseNewton::Point> PoseNewton::with_joint_at(const Config& start, const Pose& tool, int joint, double value) const {
   constexpr int kSteps = 8;
   Config q = start;

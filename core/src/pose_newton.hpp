@@ -27,7 +27,9 @@ class PoseNewton {
   /// The point near q at which Newton steps of least norm, sum (scale_j dq_j)^2, end; `scale2` has the squares. Within 1e-10 of the
   /// pose. None after `steps` steps, or where a step would be longer than 1 rad.
   [[nodiscard]] std::optional<Point> nearest(const Config& q, const Pose& tool, const Config& scale2, int steps) const;
-  /// The same with the joint at the value, bit for bit.
+  /// The same from far away: steps are cut to half a radian.
+  [[nodiscard]] std::optional<Point> approach(const Config& q, const Pose& tool, int steps) const;
+  /// `nearest` with the joint at the value, bit for bit.
   [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
 
  private:

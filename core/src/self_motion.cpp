@@ -28,6 +28,8 @@ constexpr double kSingular = 1e-6;     // rad from alignment of a triple
 constexpr double kMeets = 1e-4;        // m, rad: axes this near a common point or direction make a triple
 constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
 constexpr double kLeastWeight = 1e-2;  // of the largest
+constexpr int kStarts = 96;            // of Newton, where there is no closed form
+constexpr int kApproachSteps = 30;     // from such a start
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
 const Config kPlain = Config::Ones();
 
@@ -85,7 +87,8 @@ struct SelfMotionData {
   std::array<bool, kDof> circle{};
   Config scale, scale2;
   std::vector<Alignment> alignments;
-  std::vector<std::pair<double, ClosedForm>> forms;  // by lock value
+  std::vector<std::pair<double, ClosedForm>> forms;  // by lock value; none without a lock
+  std::vector<Config> starts;                        // of Newton, without a lock
 
   [[nodiscard]] double image(double angle, std::size_t j) const {
     if (circle[j]) return wrap_angle(angle);
@@ -364,6 +367,11 @@ void Curves::find(std::span<const Config> known_points) {
   for (const int half : ends)
     if (open(half)) trace(half);
   for (const Config& q : known_points) add_hidden(q);
+  if (data_.forms.empty()) {
+    for (const Config& start : data_.starts)
+      if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden(p->q);
+    return;
+  }
   // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
   for (std::size_t k = 0; k < data_.forms.size(); ++k) {
     if (few_[k] == 0) continue;
@@ -686,8 +694,9 @@ std::vector<Alignment> alignments_of(const Chain& chain) {
 
 SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
   auto data = std::make_unique<SelfMotionData>(chain);
-  data->lock = method.best;
-  data->other = method.best == 0 ? 1 : 0;
+  // Without a lock any joint does: it settles where closed arcs begin.
+  data->lock = method.best >= 0 ? method.best : 2;
+  data->other = data->lock == 0 ? 1 : 0;
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
@@ -701,8 +710,17 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
     data->scale2[static_cast<Eigen::Index>(j)] = weight * weight;
   }
   data->alignments = alignments_of(chain);
+  for (int k = 1; method.best < 0 && k <= kStarts; ++k) {
+    constexpr std::array<double, kDof> kPrime = {2, 3, 5, 7, 11, 13, 17};  // Kronecker points: multiples of square roots
+    Config& start = data->starts.emplace_back();
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const double turns = k * std::sqrt(kPrime[j]), part = turns - std::floor(turns);
+      const double low = data->circle[j] ? -kPi : data->lower[j], high = data->circle[j] ? kPi : data->upper[j];
+      start[static_cast<Eigen::Index>(j)] = low + part * (high - low);
+    }
+  }
   // Half a cell from 0, so that no value is a multiple of 90 degrees.
-  for (int k = 0; k < kSeeds; ++k) {
+  for (int k = 0; method.best >= 0 && k < kSeeds; ++k) {
     const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
     if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
   }

@@ -241,6 +241,32 @@ TEST(ArcLattice, PathsCostLittleMoreThanTheBestKnown) {
   EXPECT_LE(all[all.size() * 19 / 20], 1.1);
 }
 
+TEST(ArcLattice, WithoutAClosedFormArcsAreFollowedFromLayerToLayer) {
+  Random random(seed("ArcLattice.WithoutAClosedFormArcsAreFollowedFromLayerToLayer"));
+  std::int64_t all = 0, found = 0;
+  int solved = 0;
+  for (const ArmTable& table : {arms_7r()[0], arms_7r()[3]}) {
+    const Chain chain = chain_of(table);
+    for (int trial = 0; trial < trials(4); ++trial) {
+      const Problem problem = random_path(chain, 0.2, 0.02, random);
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
+      const ArcLattice whole(chain, lock_method(chain), path, problem), sampled(chain, LockMethod{}, path, problem);
+      all += whole.arcs();
+      found += sampled.arcs();
+      for (int i = 0; i < sampled.layers(); ++i)
+        for (int slot = 0; slot < sampled.slots(i); ++slot)
+          EXPECT_LT((chain.tool(sampled.point(i, slot).q).matrix() - path.layer(i).tool.matrix()).norm(), 1e-9);
+      const Found best = cheapest(whole), other = cheapest(sampled);
+      if (best.cost == kNone) continue;
+      ++solved;
+      EXPECT_LE(other.cost, 1.05 * best.cost);
+    }
+  }
+  std::printf("  %d arcs of %d, %d paths\n", static_cast<int>(found), static_cast<int>(all), solved);
+  EXPECT_GE(solved, at_least(3));
+  EXPECT_GE(static_cast<double>(found), 0.98 * static_cast<double>(all));
+}
+
 TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
   Random random(seed("ArcLattice.UnwrapsByValueOrNamesTheJoints"));
   int unwrapped = 0, wound = 0;

@@ -18,10 +18,12 @@ namespace swivel {
 /// circle here: unwrap() finds the values.
 class ArcLattice final : public ExplicitLattice {
  public:
-  /// `method` must have a lock. Throws Stopped.
+  /// A method without a lock gives the arcs that turn up (self_motion.hpp), and those of the layer before: "no path" then means
+  /// none found. Throws Stopped.
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, const Budget& budget = {});
 
-  /// Two bits, for reports: sign of the determinant of the triple (0 where there is none), and of that of the other three joints.
+  /// Two bits, for reports: sign of the determinant of the triple, and of that of the other three joints. Without a lock the sign
+  /// of the determinant without joint 3.
   [[nodiscard]] int branch(int layer, int slot) const override;
   /// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on axis 2 nearest axis 1 to the
   /// foot on axis 6 nearest axis 7, measured from the base's vertical.

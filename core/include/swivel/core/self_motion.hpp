@@ -33,9 +33,11 @@ struct SelfMotionData;
 /// neighbouring values are joined by their tangents; folds between them are traced. Curves between two lock values are found from
 /// complex roots. Pieces end where a joint meets its limit, and where a triple is within 1e-6 rad of alignment. A bounded joint
 /// with a range of more than a turn is a circle here.
+/// Without a lock curves are those to which Newton leads from 96 points spread over the joints' ranges, and from configurations
+/// known: not all are found.
 class SelfMotion {
  public:
-  /// `method` must have a lock. Limits are kept with `margin` (rad). Lengths and images are weighted by `weights`, in proportion;
+  /// Limits are kept with `margin` (rad). Lengths and images are weighted by `weights`, in proportion;
   /// a weight below a hundredth of the largest counts as that.
   SelfMotion(const Chain& chain, const LockMethod& method, double margin,
              const std::array<double, kDof>& weights = {1, 1, 1, 1, 1, 1, 1});
