@@ -258,6 +258,12 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   coarse.resolution.ds *= times;
   coarse.resolution.dalpha *= times;  // so that travels are the same
   coarse.resolution.dphi = std::min(problem.resolution.dphi, kAngle);
+  // It is a seed alone, and asked about on the layers themselves: what moves between its own are asked takes most of the time.
+  coarse.limits.edges = EdgeMode::kNodes;
+  coarse.limits.tool_path_error.reset();
+  coarse.limits.tool_angle_error.reset();
+  coarse.limits.step_error.reset();
+  coarse.limits.joint_step *= times;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   const PlanResult found = plan(robot, coarse, options);
