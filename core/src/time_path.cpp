@@ -283,7 +283,8 @@ class Piece {
   double filter_ = 0, end_ = 0, stretch_ = 1;
 };
 
-/// Places from one rest to the next: at least four a step, eight over what a corner is rounded.
+/// Places from one rest to the next: at least four a step, eight over what a corner is rounded, and finer ones next to the rests,
+/// since a speed that rises from place to place rises the more slowly the farther the first one is.
 std::vector<double> places_between(const ToolPath& path, double from, double to) {
   std::vector<double> knots;  // of the tool's curve and of the arm angle
   for (int i = path.step_at(from); i < path.size() && path.layer(i).travel <= to; ++i)
@@ -316,7 +317,14 @@ std::vector<double> places_between(const ToolPath& path, double from, double to)
     }
     places.swap(finer);
   }
-  return places;
+  constexpr int kHalvings = 5;
+  const double first = places[1] - from, last = to - places[places.size() - 2];
+  std::vector<double> graded{from};
+  for (int k = kHalvings; k > 0; --k) graded.push_back(from + std::ldexp(first, -k));
+  graded.insert(graded.end(), places.begin() + 1, places.end() - 1);
+  for (int k = 1; k <= kHalvings; ++k) graded.push_back(to - std::ldexp(last, -k));
+  graded.push_back(to);
+  return graded;
 }
 
 /// Joints and tool at the places, and their derivatives by the travel.
