@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,7 +34,7 @@ double percentile(std::vector<double> values, double share) {
 
 int run(const std::string& file, std::uint64_t episodes) {
   Problem base = io::load_problem(file);
-  base.smooth = base.smooth.value_or(PathSmoothing{});
+  base = with_motion_defaults(base);
   base.limits.joint_acceleration.emplace().fill(10);
   base.limits.joint_jerk.emplace().fill(100);
   const PreparedRobot robot(base);
@@ -44,16 +45,19 @@ int run(const std::string& file, std::uint64_t episodes) {
     const Problem problem = base.vary.empty() ? base : episode_problem(base, 1, episode);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
+    Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
     auto start = std::chrono::steady_clock::now();
-    const PlanResult found = plan(robot, problem, options);
-    if (found.status != PlanStatus::kSolved) continue;
+    const MotionPlan whole = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+    if (whole.result.status != PlanStatus::kSolved) continue;
     ++solved;
-    all["plan ms"].push_back(ms_since(start));
+    all["plan, refine and time ms"].push_back(ms_since(start));
+    all["plan ms"].push_back(whole.result.time_ms.at("plan"));
+    const std::vector<TrajectoryRow>& path = whole.lattice_path;
     start = std::chrono::steady_clock::now();
-    const Refined one = refine(robot, problem, found.trajectory, {.second_seed = false});
+    const Refined one = refine(robot, problem, path, {.second_seed = false});
     const double refine_ms = ms_since(start);
     start = std::chrono::steady_clock::now();
-    const Refined both = refine(robot, problem, found.trajectory);
+    const Refined both = refine(robot, problem, path);
     all["refine ms"].push_back(refine_ms);
     all["refine ms, two seeds"].push_back(ms_since(start));
     all["rounds"].push_back(one.rounds);
@@ -65,6 +69,8 @@ int run(const std::string& file, std::uint64_t episodes) {
     std::printf("%3d: cost %.4f %.4f %.4f, bend %.0f %.0f, %d rounds, %.1f ms%s%s", static_cast<int>(episode), one.cost_before,
                 one.cost, both.cost, both.bend_before, both.bend, one.rounds, refine_ms, one.refined ? "" : ", NOT REFINED",
                 check.passed ? "" : ", CHECK FAILS");
+    for (const std::string& warning : whole.result.warnings)
+      if (warning.find("branch") != std::string::npos) std::printf(", %s", warning.c_str());
     if (!check.passed) ++failed, std::printf(": %s", check.failures[0].c_str());
     for (const double speed : {0.05, 0.25}) {
       const MotionResult timed = time_trajectory(robot, problem, both.rows, {.speed = speed, .turn_speed = {}, .rate = 250});
@@ -80,6 +86,10 @@ int run(const std::string& file, std::uint64_t episodes) {
       double worst = 0;
       for (const auto& peaks : motion.peaks)
         for (const auto& peak : peaks) worst = std::max(worst, peak.ratio);
+      start = std::chrono::steady_clock::now();
+      const CheckResult proved = check_motion(robot, problem, motion.rows);
+      all["check ms" + at].push_back(ms_since(start));
+      if (!proved.passed) ++failed, std::printf("; CHECK OF MOTION FAILS: %s", proved.failures[0].c_str());
       all["time over ideal" + at].push_back(motion.duration / motion.ideal);
       all["worst ratio" + at].push_back(worst);
       all["between, um" + at].push_back(1e6 * motion.between_position);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "between_samples.hpp"
 #include "collision_validity.hpp"
 #include "path_following.hpp"
 #include "swivel/core/angle.hpp"
@@ -584,11 +585,10 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
 CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows) {
   validate(problem);
   robot.require_prepared_for(problem);
-  Problem smoothed = problem;
-  smoothed.smooth = problem.smooth.value_or(PathSmoothing{});
+  const Problem of_samples = problem_of_samples(problem);
   std::vector<TrajectoryRow> places;
   for (const TimedRow& row : rows) places.push_back(row.row);
-  return Check(robot, smoothed, places, &rows).run();
+  return Check(robot, of_samples, places, &rows).run();
 }
 
 CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows) {

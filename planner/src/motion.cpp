@@ -5,9 +5,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "between_samples.hpp"
+#include "measure.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
+#include "swivel/planner/refine.hpp"
 
 namespace swivel {
 
@@ -38,7 +41,9 @@ class Proof {
   std::optional<NoMotion> first_fault() {
     for (const TimedRow& row : *rows_)
       if (auto fault = joints_at(row.row)) return fault;
-    return collision(0, rows_->size() - 1);
+    auto fault = collision(0, rows_->size() - 1);
+    if (fault) fault->too_near = true;
+    return fault;
   }
 
  private:
@@ -96,6 +101,16 @@ class Proof {
 
 }  // namespace
 
+void keep_clearance_between_layers(Limits& limits) {
+  if (!limits.edge_clearance && !limits.self_clearance) limits.edge_clearance = limits.clearance;
+}
+
+Problem with_motion_defaults(Problem problem) {
+  if (!problem.smooth) problem.smooth.emplace();
+  keep_clearance_between_layers(problem.limits);
+  return problem;
+}
+
 MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                              const TimingOptions& options, const Budget& budget) {
   validate(problem);
@@ -118,10 +133,102 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   result.failure = timed.failure;
   if (!timed.motion) return result;
   start = std::chrono::steady_clock::now();
-  result.failure = Proof(robot, problem, timed.motion->rows, budget).first_fault();
+  const Problem of_samples = problem_of_samples(problem);
+  result.failure = Proof(robot, of_samples, timed.motion->rows, budget).first_fault();
   result.check_ms = ms_since(start);
   if (!result.failure) result.motion = std::move(timed.motion);
   return result;
+}
+
+namespace {
+
+/// Refuses steps from a branch to another, whatever made the lattice cross a singularity there.
+class KeepsBranch final : public StateCheck {
+ public:
+  explicit KeepsBranch(const SrsArm& arm) : arm_(&arm) {}
+  [[nodiscard]] std::string name() const override { return "branch"; }
+  [[nodiscard]] bool concurrent() const override { return true; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    std::fill_n(allowed.begin(), states.size(), true);
+  }
+  [[nodiscard]] bool checks_motions() const override { return true; }
+  void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
+    for (std::size_t k = 0; k < motions.size(); ++k) allowed[k] = arm_->branch(motions[k].from) == arm_->branch(motions[k].to);
+  }
+
+ private:
+  const SrsArm* arm_;
+};
+
+bool changes_branch(const std::vector<TrajectoryRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.branch != rows[0].branch; });
+}
+
+/// A path that never changes branch, where there is one: else the one there is.
+PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool one_branch) {
+  PlanResult found = planner.plan(options);
+  if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) || options.hooks.check) return found;
+  PlanOptions keeping = options;
+  keeping.hooks.check = std::make_shared<KeepsBranch>(planner.view().robot.srs());
+  PlanResult other = planner.plan(keeping);
+  if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: this is the cheapest "
+                "that does not",
+                found.cost);
+  other.warnings.emplace_back(text);
+  return other;
+}
+
+/// Puts refined rows in the place of the lattice's.
+void take(const Refined& refined, const PlanView& view, PlanResult& result) {
+  if (!refined.refined) return;
+  result.trajectory = refined.rows;
+  result.cost = refined.cost;
+  measure_margins(view.robot.arm().chain, view.lattice.path(), result);
+}
+
+}  // namespace
+
+MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined, const std::optional<TimingOptions>& timing) {
+  const Budget budget = options.budget();
+  // Of the path that is executed, later.
+  PlanOptions first = options;
+  if (refined) first.evidence.tool_path_error = first.evidence.postures = false;
+  MotionPlan plan;
+  PlanResult& result = plan.result;
+  result = plan_executable(planner, first, timing.has_value());
+  if (result.status != PlanStatus::kSolved) return plan;
+  plan.lattice_path = result.trajectory;
+  const PlanView view = planner.view();
+  RefineOptions margins;
+  constexpr double kMostExtra = 2e-3;  // m
+  auto start = std::chrono::steady_clock::now();
+  try {
+    for (;; margins.extra_clearance *= 4) {
+      if (refined) {
+        plan.refinement = refine(view.robot, view.problem, plan.lattice_path, margins, budget);
+        result.time_ms["refine"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
+      }
+      if (!timing) break;
+      plan.motion = time_trajectory(view.robot, view.problem, refined ? plan.refinement->rows : plan.lattice_path, *timing, budget);
+      result.time_ms["time"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
+      if (!refined || !plan.motion->failure || !plan.motion->failure->too_near || margins.extra_clearance > kMostExtra) break;
+    }
+  } catch (const Stopped&) {
+    plan.stopped = true;
+    if (refined && !plan.refinement)
+      plan.refinement = Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = result.cost, .cost = result.cost};
+    if (timing && (!plan.motion || !plan.motion->motion)) plan.motion.emplace().failure = NoMotion{0, "stopped"};
+  }
+  if (!refined) return plan;
+  take(*plan.refinement, view, result);
+  try {
+    measure(view.robot, view.lattice.path(), view.world, options.evidence, budget, result);
+  } catch (const Stopped&) {
+  }
+  return plan;
 }
 
 std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Problem& problem,

@@ -58,9 +58,11 @@ double singular_sine(const SrsArm& arm, const Config& q) {
 /// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
 class Judge {
  public:
-  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, const Budget& budget)
+  /// `extra`: RefineOptions::extra_clearance.
+  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, double extra, const Budget& budget)
       : problem_(&problem),
         lattice_(&lattice),
+        extra_(extra),
         world_(robot.world(), problem, budget),
         rule_(world_.edge_rule(robot.radii())),
         at_(world_, Certificates::kOn),
@@ -68,18 +70,14 @@ class Judge {
         budget_(budget) {}
 
   /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded.
-  /// `extra`: m, of clearance. Optima lie on the bound, and the motion between layers comes a little nearer.
-  [[nodiscard]] bool node(const Config& q, const Config& given, double extra = 0.1e-3) {
-    budget_.poll();
-    ++nodes_asked;
-    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
-    if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
-    const SrsArm& arm = lattice_->arm();
-    if (singular_sine(arm, q) < std::min(std::sin(problem_->refinement.singular_margin), singular_sine(arm, given) - 1e-9))
-      return false;
-    if (!lattice_->manipulable(q)) return false;
-    return !at_.next_below(q, Level(Keep::kNode, extra));
+  [[nodiscard]] bool node(const Config& q, const Config& given) {
+    if (!valid(q, given) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
+    // What the motions from and to it will have to keep: a node that is bisected ends where it should, a motion that fails only
+    // where it had better.
+    return problem_->limits.edges == EdgeMode::kNodes || !at_.next_below(q, Keep::kMidpoint);
   }
+  /// Without any clearance besides.
+  [[nodiscard]] bool bare_node(const Config& q) { return valid(q, q) && !at_.next_below(q, Keep::kNode); }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
     budget_.poll();
@@ -109,6 +107,17 @@ class Judge {
   std::int64_t nodes_asked = 0, edges_asked = 0;
 
  private:
+  /// But for collisions.
+  [[nodiscard]] bool valid(const Config& q, const Config& given) {
+    budget_.poll();
+    ++nodes_asked;
+    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
+    if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
+    const SrsArm& arm = lattice_->arm();
+    if (singular_sine(arm, q) < std::min(std::sin(problem_->refinement.singular_margin), singular_sine(arm, given) - 1e-9))
+      return false;
+    return lattice_->manipulable(q);
+  }
   [[nodiscard]] bool inside(const Config& q, const Config& given, double margin) const {
     constexpr double kLimit = 1e-9;  // rad
     for (std::size_t j = 0; j < kDof; ++j) {
@@ -125,6 +134,7 @@ class Judge {
 
   const Problem* problem_;
   const SrsLattice* lattice_;
+  double extra_;
   World world_;
   EdgeRule rule_;
   World::Query at_, between_;
@@ -266,6 +276,10 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   coarse.limits.joint_step *= times;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
+  options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
+    budget.poll();
+    if (now.stage == Stage::kReach || now.stage == Stage::kDiagnosis) throw Stopped();  // there is no path: why does not matter
+  };
   const PlanResult found = plan(robot, coarse, options);
   budget.poll();
   if (found.status != PlanStatus::kSolved) return std::nullopt;
@@ -298,8 +312,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver.joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
   if (cost_of(lattice, best) >= to_beat) return std::nullopt;
   for (std::size_t i = 0; i < rows.size(); ++i)
-    if (!judge.node(rows[i].q, rows[i].q, 0) || (i > 0 && !judge.edge(static_cast<int>(i) - 1, rows[i - 1], rows[i])))
-      return std::nullopt;
+    if (!judge.bare_node(rows[i].q) || (i > 0 && !judge.edge(static_cast<int>(i) - 1, rows[i - 1], rows[i]))) return std::nullopt;
   return rows;
 }
 
@@ -314,7 +327,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  Judge judge(robot, problem, lattice, budget);
+  Judge judge(robot, problem, lattice, options.extra_clearance, budget);
   Refined result;
   result.rows = rows;
   result.cost_before = result.cost = cost_of(lattice, rows);

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/refine.hpp"
 
@@ -162,6 +164,136 @@ TEST(Motion, PassesTheCheckOfMotions) {
   std::printf("%d solved, %d timed, %d not executable, %zu samples\n", solved, timed, not_executable, samples);
   EXPECT_GE(timed, 10);
   EXPECT_LE(not_executable, solved / 3);
+}
+
+TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
+  constexpr double kForgiven = kVerdictBand + 1e-6;
+  int executed = 0, refused = 0, near = 0;
+  std::int64_t asked = 0;
+  double least = 1;
+  const std::uint64_t base = seed("Between");
+  const std::vector<TestRobot> robots = all_robots();
+  for (int trial = 0; trial < trials(30); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = some_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    problem = with_motion_defaults(problem);
+    EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
+    if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
+    if (random.coin(0.3)) problem.resolution.ds = 0.04, problem.limits.tool_path_error.reset();
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    options.evidence.postures = true;
+    // As large a ball as leaves a path.
+    MotionPlan plan;
+    for (double radius = 0.15; plan.result.status != PlanStatus::kSolved && radius > 0.05; radius -= 0.02) {
+      problem.scene[0].shape = Sphere{radius};
+      Planner planner(problem);
+      plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+    }
+    if (plan.result.status != PlanStatus::kSolved) continue;
+    ASSERT_TRUE(plan.refinement);
+    ASSERT_TRUE(plan.motion);
+    EXPECT_FALSE(plan.stopped);
+    EXPECT_NEAR(plan.result.cost, plan.refinement->cost, 1e-9);
+    EXPECT_LE(plan.result.cost, plan.result.lattice.cost + 0.05);  // of rows, of nodes
+    ASSERT_EQ(plan.result.trajectory.size(), plan.lattice_path.size());
+    if (!plan.motion->motion) {
+      ++refused;
+      std::printf("trial %d: %s at s = %.4f\n", trial, plan.motion->failure->reason.c_str(), plan.motion->failure->s);
+      continue;
+    }
+    ++executed;
+    const PreparedRobot robot(problem);
+    const World world(robot.world(), problem);
+    World::Query query(world);
+    // Margins are told of the path that is executed.
+    double margin = std::numeric_limits<double>::infinity();
+    for (const TrajectoryRow& row : plan.result.trajectory)
+      if (const auto clearance = query.clearance(row.q)) margin = std::min(margin, clearance->margin());
+    if (plan.result.min_margin) {
+      EXPECT_NEAR(plan.result.min_margin->margin, margin, 1e-9);
+    }
+    const auto& rows = plan.motion->motion->rows;
+    bool comes_near = false;
+    for (std::size_t k = 0; k + 1 < rows.size(); k += 7)
+      for (int part = 0; part <= (problem.limits.edges == EdgeMode::kNodes ? 0 : 10); ++part) {
+        const Config q = rows[k].row.q + part / 10. * (rows[k + 1].row.q - rows[k].row.q);
+        const auto clearance = query.clearance(q);
+        if (!clearance) continue;
+        ++asked;
+        least = std::min(least, clearance->margin());
+        EXPECT_GE(clearance->margin(), -kForgiven) << "trial " << trial << " t = " << rows[k].t << " part " << part;
+        comes_near = comes_near || clearance->margin() < 1e-3;
+      }
+    near += comes_near;
+    EXPECT_TRUE(check_motion(robot, problem, rows).passed);
+  }
+  std::printf("%d executed, %d refused, %lld points, %d motions within 1 mm of the clearance, least margin %.4f mm\n", executed,
+              refused, static_cast<long long>(asked), near, 1e3 * least);
+  EXPECT_GE(executed, at_least(10));
+  EXPECT_GE(near, at_least(2));
+  EXPECT_LE(refused, executed / 4);
+}
+
+TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
+  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  int jumps = 0;
+  for (const std::uint64_t episode : {60u, 88u}) {
+    Planner planner(episode_problem(base, 1, episode));
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    const auto branches = [](const std::vector<TrajectoryRow>& rows) {
+      std::set<int> found;
+      for (const TrajectoryRow& row : rows) found.insert(row.branch);
+      return found.size();
+    };
+    const MotionPlan path = plan_motion(planner, options, true, {});
+    ASSERT_EQ(path.result.status, PlanStatus::kSolved);
+    jumps += branches(path.result.trajectory) > 1;
+    EXPECT_FALSE(path.motion);
+    const MotionPlan motion = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 100});
+    ASSERT_TRUE(motion.motion && motion.motion->motion) << motion.motion->failure->reason;
+    EXPECT_EQ(branches(motion.result.trajectory), 1u);
+    EXPECT_GE(motion.result.lattice.cost, path.result.lattice.cost);
+    EXPECT_EQ(branches(motion.lattice_path) < branches(path.lattice_path),
+              std::any_of(motion.result.warnings.begin(), motion.result.warnings.end(),
+                          [](const std::string& warning) { return warning.find("branch") != std::string::npos; }));
+  }
+  EXPECT_EQ(jumps, 2);
+}
+
+TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
+  const Problem problem = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
+  // Stopped as soon as the lattice's path is known.
+  std::stop_source stop;
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.stop = stop.get_token();
+  Planner planner(problem);
+  const PlanResult lattice = planner.plan(options);
+  ASSERT_EQ(lattice.status, PlanStatus::kSolved);
+  int stopped = 0, whole = 0;
+  for (double timeout = 1e-4; timeout < 4; timeout *= 1.5) {
+    options.timeout_s = timeout;
+    const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+    if (plan.result.status != PlanStatus::kSolved) {
+      EXPECT_FALSE(plan.refinement || plan.motion);
+      continue;
+    }
+    ASSERT_TRUE(plan.refinement && plan.motion);
+    (plan.stopped ? stopped : whole)++;
+    EXPECT_EQ(plan.stopped, !plan.motion->motion);
+    EXPECT_EQ(plan.result.trajectory.size(), lattice.trajectory.size());
+    if (!plan.stopped) continue;
+    EXPECT_EQ(plan.motion->failure->reason, "stopped");
+    if (!plan.refinement->refined) {
+      EXPECT_EQ(plan.refinement->reason, "stopped");
+      EXPECT_EQ(plan.result.trajectory[1].q, lattice.trajectory[1].q);
+      EXPECT_EQ(plan.result.cost, lattice.cost);
+    }
+  }
+  std::printf("%d stopped after the path was known, %d not\n", stopped, whole);
+  EXPECT_GT(whole, 0);
 }
 
 TEST(Motion, RefusesSpeedsThatMakeNoSense) {

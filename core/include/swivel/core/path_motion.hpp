@@ -15,6 +15,7 @@ namespace swivel {
 struct NoMotion {
   double s = 0;  ///< m along the path
   std::string reason;
+  bool too_near = false;  ///< bodies come too near: other joints might do
 };
 
 /// The joints of an S-R-S arm as a function of the tool's travel along its path: the tool is exactly on the path, and the arm angle

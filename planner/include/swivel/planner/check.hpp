@@ -78,7 +78,7 @@ struct CheckResult {
 /// A motion in time: the same, and that speeds, accelerations and jerks of all joints are within joint_rates() (1e-6 of them) by
 /// divided differences of the joints, that v and a of the rows are those of the joints (within what acceleration and jerk change in
 /// a sample), and that limits.tool_speed and tool_turn_speed, where given, are kept (0.1 %). The tool may rest at both ends and at
-/// corners. It follows the path that problem.smooth describes, PathSmoothing's defaults where that is unset.
+/// corners. The problem counts with_motion_defaults(), and nothing comes nearer between rows than d_edge (0.05 mm).
 [[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows);
 
 }  // namespace swivel

@@ -4,25 +4,46 @@
 #include <optional>
 #include <vector>
 
+#include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
 
+/// The problem with what motions assume where it says nothing: the tool rounds corners (PathSmoothing's defaults), and pairs keep
+/// between layers what they keep at them, Limits::clearance in place of half of it; where self_clearance is set, halves stay.
+[[nodiscard]] Problem with_motion_defaults(Problem problem);
+/// The second of these alone.
+void keep_clearance_between_layers(Limits& limits);
+
 /// A trajectory made into a motion that a controller can run, or why that cannot be.
-struct MotionResult {
-  std::optional<TimedPath> motion;
-  std::optional<NoMotion> failure;   ///< unless there is a motion
+struct MotionResult : TimingResult {
   double time_ms = 0, check_ms = 0;  ///< of timing, and of looking for collisions
 };
 
 /// Times a trajectory of the problem (rows at its layers), and proves what a controller does with it: joints move straight from
 /// sample to sample. At samples limits, manipulability and clearance hold (0.05 mm); between them, with `edges: continuous`, every
-/// pair keeps its clearance of motions. The tool follows the smoothed path of problem.smooth, PathSmoothing's defaults where that
-/// is unset. Throws InvalidArgument and InputError as plan() does, and for rows that are at no layer; Stopped.
+/// pair keeps its clearance of motions (0.05 mm). The problem counts with_motion_defaults(). Throws InvalidArgument and InputError
+/// as plan() does, and for rows that are at no layer; Stopped.
 [[nodiscard]] MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
                                            const std::vector<TrajectoryRow>& rows, const TimingOptions& options,
                                            const Budget& budget = {});
+
+/// A path, and what is made of it.
+struct MotionPlan {
+  /// Of a solved problem: trajectory, cost and measures are those of the path that is executed; lattice.cost stays the lattice's.
+  PlanResult result;
+  std::vector<TrajectoryRow> lattice_path;  ///< what was refined
+  std::optional<Refined> refinement;        ///< where it was asked for and there is a path
+  std::optional<MotionResult> motion;       ///< the same; a `failure` where the time was up
+  bool stopped = false;                     ///< with a path, before all that was asked for was done
+};
+/// Plans the planner's problem, refines the path if asked to, and times it if asked to. With timing, a path that jumps from branch
+/// to branch at a singularity is planned again without such steps, where that can be; and where bodies come too near between
+/// layers, the path is refined again with more clearance at them. The time-out is for everything; what is known when it passes
+/// stays. The problem should be one with_motion_defaults(). Throws as Planner::plan().
+[[nodiscard]] MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
+                                     const std::optional<TimingOptions>& timing);
 
 /// The rows of a trajectory solved again at their arm angles where the tool's path is another one than they were planned on,
 /// because problem.smooth has changed. Throws InputError where an arm angle has no solution there.

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <cstdint>
-#include <string>
 #include <vector>
 
+#include "swivel/core/refined.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
@@ -11,18 +10,9 @@ namespace swivel {
 struct RefineOptions {
   /// Try as well from a path of a lattice that is coarse along the path and fine in the arm angle, and keep the cheaper.
   bool second_seed = true;
-};
-
-/// A lattice's path and what became of it.
-struct Refined {
-  std::vector<TrajectoryRow> rows;  ///< refined, or those given
-  bool refined = false;
-  std::string reason;                ///< why they are those given
-  double cost_before = 0, cost = 0;  ///< by the problem's metric
-  double bend_before = 0, bend = 0;  ///< the largest second divided difference of the joints over the tool's travel, rad/m^2
-  int rounds = 0;                    ///< of optimising and asking
-  std::int64_t nodes_asked = 0, edges_asked = 0;
-  bool from_second_seed = false;
+  /// m, kept besides the clearance at layers, as far as the path given does: optima lie on the bound, and the motion between
+  /// layers comes a little nearer.
+  double extra_clearance = 0.1e-3;
 };
 
 /// Makes a valid path of the lattice cheaper and smoother: the arm angles of its layers, off the grid, branches and joint images

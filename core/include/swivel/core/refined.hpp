@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "swivel/core/plan.hpp"
+
+namespace swivel {
+
+/// A lattice's path and what became of it.
+struct Refined {
+  std::vector<TrajectoryRow> rows;  ///< refined, or those given
+  bool refined = false;
+  std::string reason;                ///< why they are those given
+  double cost_before = 0, cost = 0;  ///< by the problem's metric
+  double bend_before = 0, bend = 0;  ///< the largest second divided difference of the joints over the tool's travel, rad/m^2
+  int rounds = 0;                    ///< of optimising and asking
+  std::int64_t nodes_asked = 0, edges_asked = 0;
+  bool from_second_seed = false;
+};
+
+}  // namespace swivel
