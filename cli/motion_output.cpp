@@ -20,7 +20,14 @@ std::string ending(const std::string& file) {
 void MotionOptions::add_to(CLI::App& command) {
   command.add_option("--speed", speed, "speed of the tool along its path, m/s");
   command.add_option("--turn-speed", turn_speed, "its speed of rotation, rad/s");
-  command.add_option("--rate", rate, "samples a second")->capture_default_str();
+  command.add_option("--rate", rate, "samples a second, default 250");
+}
+
+std::optional<TimingOptions> MotionOptions::asked_timing(const Problem& problem) const {
+  if (speed) return timing(problem);
+  for (const auto& [given, option] : {std::pair(turn_speed, "--turn-speed"), std::pair(rate, "--rate")})
+    if (given) throw InputError(std::string(option) + ": is of motions: allowed with --speed");
+  return std::nullopt;
 }
 
 TimingOptions MotionOptions::timing(const Problem& problem) const {
@@ -31,8 +38,9 @@ TimingOptions MotionOptions::timing(const Problem& problem) const {
   options.turn_speed = problem.limits.tool_turn_speed;
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
   constexpr double kMostRate = 1e5;
-  if (!(rate > 0 && rate <= kMostRate)) throw InputError("--rate: " + shortest(rate) + ": allowed are numbers > 0, at most 100000");
-  options.rate = rate;
+  if (rate) options.rate = *rate;
+  if (!(options.rate > 0 && options.rate <= kMostRate))
+    throw InputError("--rate: " + shortest(options.rate) + ": allowed are numbers > 0, at most 100000");
   return options;
 }
 
@@ -49,6 +57,36 @@ std::string motion_text(const TimedPath& motion, const io::JointNames& joint_nam
   if (format == ".yaml") return io::to_trajectory_yaml(motion, joint_names, frame_id);
   if (format == ".mcap") return io::to_mcap(motion, joint_names, frame_id);
   return io::to_timed_csv(motion, joint_names);
+}
+
+void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names) {
+  if (const Refined* refined = aftermath.refinement) {
+    if (refined->refined)
+      std::printf("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n",
+                  refined->cost_before, refined->cost, refined->bend_before, refined->bend);
+    else
+      std::printf("not refined: %s\n", refined->reason.c_str());
+  }
+  if (aftermath.motion == nullptr) return;
+  if (const auto& failure = aftermath.motion->failure) {
+    std::printf("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
+    return;
+  }
+  const TimedPath& motion = *aftermath.motion->motion;
+  const TimedPath::Peak* most = &motion.peaks[0][0];
+  JointRate rate = JointRate::kSpeed;
+  for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})
+    for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(one)])
+      if (peak.ratio > most->ratio) most = &peak, rate = one;
+  std::printf(
+      "motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool within %.2g um of its path "
+      "between; %s of '%s' at %.0f %% of its limit, s = %.4f m",
+      motion.duration, 1e3 * aftermath.timing.speed, motion.ideal, motion.rows.size(), motion.rate, 1e6 * motion.between_position,
+      to_string(rate), joint_names[static_cast<std::size_t>(most->joint)].c_str(), 100 * most->ratio, most->s);
+  if (!motion.slow.empty()) std::printf("; slower on %zu stretch%s", motion.slow.size(), motion.slow.size() == 1 ? "" : "es");
+  if (!motion.stops.empty()) std::printf("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
+  std::printf("\n");
+  for (const std::string& warning : motion.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
 void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names) {

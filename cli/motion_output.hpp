@@ -12,8 +12,10 @@ namespace swivel::cli {
 /// How fast, and how a motion is written: the same words for `time` and `plan`.
 struct MotionOptions {
   std::optional<double> speed, turn_speed;
-  double rate = 250;
+  std::optional<double> rate;
   void add_to(CLI::App& command);
+  /// What is asked for where --speed is given; the other two are bad input without it.
+  [[nodiscard]] std::optional<TimingOptions> asked_timing(const Problem& problem) const;
   /// The problem's tool speeds where none are given. Throws InputError where there is no speed.
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;
 };
@@ -23,6 +25,9 @@ struct MotionOptions {
                                       const std::string& file);
 /// Throws InputError for another ending; nothing is said of an empty name.
 void require_motion_format(const std::string& file);
+
+/// What became of a plan's path, in a line each, on standard output; warnings on standard error.
+void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names);
 
 /// What is worth knowing of a motion, on standard output; warnings on standard error.
 void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names);

@@ -14,11 +14,13 @@
 
 #include "commands.hpp"
 #include "diagnosis_text.hpp"
+#include "motion_output.hpp"
 #include "progress.hpp"
 #include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
@@ -30,8 +32,9 @@ namespace {
 struct PlanArguments {
   std::string problem, out, json, trace, map_svg, report;
   std::optional<double> timeout;
-  bool quiet = false, map = false, full_map = false;
+  bool quiet = false, map = false, full_map = false, refine = false;
   SearchOptions search;
+  MotionOptions motion;
   EpisodeChoice episode;
 };
 
@@ -85,6 +88,13 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     return arguments.episode.apply(loaded);
   }();
   arguments.search.apply(problem);
+  const std::optional<TimingOptions> timing = arguments.motion.asked_timing(problem);
+  if (timing) {
+    require_motion_format(arguments.out);
+    problem = with_motion_defaults(std::move(problem));
+  } else if (arguments.refine) {
+    keep_clearance_between_layers(problem.limits);
+  }
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
   const double load = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 
@@ -105,15 +115,18 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
   const Budget budget = options.budget();  // of what is drawn; plan() begins with it
   Planner planner(problem);
-  PlanResult result = planner.plan(options);
+  MotionPlan plan = plan_motion(planner, options, arguments.refine, timing);
+  PlanResult& result = plan.result;
   result.time_ms["load"] = load;
+  const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
+                                timing.value_or(TimingOptions{})};
   std::optional<LatticeMap> map;
   std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
     try {
       const PlanView view = planner.view();
       map = make_map(view, arguments.full_map, budget);
-      if (!arguments.report.empty()) page = to_page(view, *map, io::to_json(result), budget);
+      if (!arguments.report.empty()) page = to_page(view, *map, io::to_json(result, aftermath), budget);
     } catch (const Stopped&) {
       map.reset();
       result.warnings.push_back("stopped before the map was drawn: there is none, and no report");
@@ -121,7 +134,10 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   }
   progress.clear();
 
-  if (result.status == PlanStatus::kSolved)
+  const bool solved = result.status == PlanStatus::kSolved, executable = solved && (!timing || plan.motion->motion);
+  if (executable && timing)
+    outputs->write("--out", motion_text(*plan.motion->motion, result.joint_names, problem.base_link, arguments.out));
+  else if (executable)
     outputs->write("--out", io::to_csv(result));
   else
     outputs->remove("--out");
@@ -133,14 +149,20 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     outputs->remove("--map-svg");
   }
   if (timeline) outputs->write("--trace", io::to_trace_json(*timeline) + "\n");
-  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result) + "\n");
-  deliver(*outputs, result.status == PlanStatus::kInfeasible ? "there is no path now" : "the search was stopped", [&] {
-    if (!arguments.quiet && !outputs->takes_standard_output()) print_summary(result);
+  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result, aftermath) + "\n");
+  const char* const reason = result.status == PlanStatus::kInfeasible ? "there is no path now"
+                             : solved && !plan.stopped                ? "there is no motion now"
+                                                                      : "the search was stopped";
+  deliver(*outputs, reason, [&] {
+    if (!arguments.quiet && !outputs->takes_standard_output()) {
+      print_summary(result);
+      print_aftermath(aftermath, result.joint_names);
+    }
     if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
   });
   switch (result.status) {
     case PlanStatus::kSolved:
-      return kOk;
+      return executable ? kOk : plan.stopped ? kStopped : kNo;
     case PlanStatus::kInfeasible:
       return kNo;
     default:
@@ -185,7 +207,10 @@ void add_plan(CLI::App& app, int& exit_code) {
   arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_option("--timeout", arguments->timeout, "seconds");
-  command->add_option("--out", arguments->out, "trajectory file (CSV)");
+  command->add_flag("--refine", arguments->refine, "move the arm angles off the grid: cheaper and smoother, never dearer");
+  arguments->motion.add_to(*command);
+  command->add_option("--out", arguments->out,
+                      "trajectory file (CSV); with --speed the motion: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
   command->add_option("--json", arguments->json, "result file, - for standard output");
   command->add_option("--trace", arguments->trace,
                       "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");

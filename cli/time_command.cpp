@@ -25,14 +25,9 @@ struct TimeArguments {
 /// Arm angles off the grid, on the path that the motion follows.
 std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                                    bool quiet) {
-  Problem smoothed = problem;
-  smoothed.smooth = problem.smooth.value_or(PathSmoothing{});
+  const Problem smoothed = with_motion_defaults(problem);
   const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {}, Budget(std::nullopt, &interrupted));
-  if (!quiet && result.refined)
-    std::printf("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n", result.cost_before,
-                result.cost, result.bend_before, result.bend);
-  else if (!quiet)
-    std::printf("not refined: %s\n", result.reason.c_str());
+  if (!quiet) print_aftermath({.refinement = &result, .motion = nullptr, .timing = {}}, robot.arm().chain.joint_names);
   return result.rows;
 }
 

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "swivel/io/io.hpp"
+#include "swivel/io/motion.hpp"
 
 namespace swivel::io {
 
@@ -156,6 +157,60 @@ Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
 }
 
+Json refinement_json(const Refined& refined) {
+  return {{"refined", refined.refined},         {"reason", text_or_null(refined.reason)},
+          {"cost_before", refined.cost_before}, {"cost", refined.cost},
+          {"bend_before", refined.bend_before}, {"bend", refined.bend},
+          {"rounds", refined.rounds},           {"nodes_asked", refined.nodes_asked},
+          {"edges_asked", refined.edges_asked}, {"second_seed", refined.from_second_seed}};
+}
+
+Json peaks_json(const TimedPath& motion, const JointNames& names) {
+  Json json = Json::object();
+  for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
+    Json joints = Json::array();
+    for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(rate)])
+      joints.push_back(
+          {{"joint", names[static_cast<std::size_t>(peak.joint)]}, {"ratio", peak.ratio}, {"t", peak.t}, {"s", peak.s}});
+    json[to_string(rate)] = std::move(joints);
+  }
+  return json;
+}
+
+Json motion_json(const TimingResult& timed, const TimingOptions& asked, const JointNames& names) {
+  Json json = {{"executable", timed.motion.has_value()},
+               {"reason", timed.failure ? Json(timed.failure->reason) : Json(nullptr)},
+               {"at_s", timed.failure ? Json(timed.failure->s) : Json(nullptr)},
+               {"speed", asked.speed},
+               {"turn_speed", or_null(asked.turn_speed)},
+               {"rate", asked.rate}};
+  if (!timed.motion) return json;
+  const TimedPath& motion = *timed.motion;
+  Json slow = Json::array(), stops = Json::array();
+  for (const TimedPath::Slow& stretch : motion.slow)
+    slow.push_back({{"s", {stretch.from_s, stretch.to_s}},
+                    {"t", {stretch.from_t, stretch.to_t}},
+                    {"share", stretch.share},
+                    {"joint", names[static_cast<std::size_t>(stretch.joint)]},
+                    {"reason", to_string(stretch.reason)},
+                    {"singular", text_or_null(stretch.singular)},
+                    {"singular_angle_deg", stretch.singular.empty() ? Json(nullptr) : Json(stretch.singular_angle * 180 / kPi)}});
+  for (const TimedPath::Stop& stop : motion.stops)
+    stops.push_back({{"waypoint", waypoint_json(stop.waypoint)}, {"s", stop.s}, {"t", stop.t}});
+  json["samples"] = motion.rows.size();
+  json["duration"] = motion.duration;
+  json["ideal"] = motion.ideal;
+  json["peaks"] = peaks_json(motion, names);
+  json["slow"] = std::move(slow);
+  json["corners"] = {{"rounded", motion.rounded},
+                     {"position", motion.rounded_position},
+                     {"angle", motion.rounded_angle},
+                     {"stops", std::move(stops)}};
+  json["between_samples"] = {{"position", motion.between_position}, {"angle", motion.between_angle}};
+  json["warnings"] = motion.warnings;
+  return json;
+}
+
 }  // namespace
 
 std::string to_json(const CampaignSummary& summary) {
@@ -175,6 +230,10 @@ std::string error_json(const std::string& message) {
 }
 
 std::string to_json(const PlanResult& result) {
+  return to_json(result, Aftermath{});
+}
+
+std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   const bool solved = result.status == PlanStatus::kSolved;
   // Numbers about a trajectory are null where there is none: a zero would read as a perfect one.
   const auto if_known = [&](bool known, double value) { return solved && known ? Json(value) : Json(nullptr); };
@@ -194,6 +253,8 @@ std::string to_json(const PlanResult& result) {
   json["min_margin"] = result.min_margin ? margin_json(*result.min_margin) : Json(nullptr);
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
+  json["refinement"] = aftermath.refinement ? refinement_json(*aftermath.refinement) : Json(nullptr);
+  json["motion"] = aftermath.motion ? motion_json(*aftermath.motion, aftermath.timing, result.joint_names) : Json(nullptr);
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);

@@ -46,10 +46,13 @@ PlanResult solved() {
 
 TEST(Result, KeysInOrder) {
   const Json json = Json::parse(to_json(solved()));
-  EXPECT_EQ(keys_of(json),
-            (std::vector<std::string>{"status", "summary", "cost", "planner", "threads", "lattice", "counters", "time_ms",
-                                      "tool_path_error_mm", "min_clearance", "min_margin", "min_manipulability", "arm_angle",
-                                      "diagnosis", "trajectory", "partial", "robot_pairs", "warnings", "joint_names"}));
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status",        "summary",    "cost",
+                                                     "planner",       "threads",    "lattice",
+                                                     "counters",      "time_ms",    "tool_path_error_mm",
+                                                     "min_clearance", "min_margin", "min_manipulability",
+                                                     "arm_angle",     "refinement", "motion",
+                                                     "diagnosis",     "trajectory", "partial",
+                                                     "robot_pairs",   "warnings",   "joint_names"}));
   EXPECT_EQ(keys_of(json["lattice"]),
             (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints", "cost"}));
   EXPECT_EQ(keys_of(json["counters"]),

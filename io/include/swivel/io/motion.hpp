@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/plan.hpp"
+#include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel::io {
@@ -20,6 +22,15 @@ using JointNames = std::array<std::string, kDof>;
 /// A log of ROS 2's sensor_msgs/msg/JointState on the topic /joint_states, log time = t: MCAP, profile ros2, CDR, one uncompressed
 /// chunk, with index and summary. https://mcap.dev/spec
 [[nodiscard]] std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+
+/// What became of a plan's path: null where it was not asked for, or where there is no path.
+struct Aftermath {
+  const Refined* refinement = nullptr;
+  const TimingResult* motion = nullptr;
+  TimingOptions timing;  ///< what the motion was asked to keep
+};
+/// to_json(result) with the keys `refinement` and `motion` filled in. docs/formats.md "Result".
+[[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
 /// A trajectory as a file has it.
 struct TrajectoryFile {
