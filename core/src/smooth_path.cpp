@@ -123,20 +123,20 @@ class Objective {
   std::vector<Bend> bends_;
 };
 
-/// Solves (H + shift) p = -g over the free coordinates, p = 0 elsewhere, by L D L^T; false unless positive definite.
+/// Solves (H + shift) p = -g over the free coordinates, where p is as given elsewhere, by L D L^T; false unless positive definite.
 bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, const std::vector<bool>& free,
                  double shift, std::vector<double>& p) {
   const std::size_t n = g.size();
   std::vector<double> d(n), l1(n, 0), l2(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     // l1[i], l2[i]: entries of row i one and two before the diagonal.
-    if (!free[i]) {
-      d[i] = 1;
-      p[i] = 0;
-      continue;
-    }
+    if (!free[i]) continue;
     double rhs = -g[i], pivot = H[0][i] + shift;
     const bool one = i >= 1 && free[i - 1], two = i >= 2 && free[i - 2];
+    if (i >= 1 && !free[i - 1]) rhs -= H[1][i - 1] * p[i - 1];
+    if (i >= 2 && !free[i - 2]) rhs -= H[2][i - 2] * p[i - 2];
+    if (i + 1 < n && !free[i + 1]) rhs -= H[1][i] * p[i + 1];
+    if (i + 2 < n && !free[i + 2]) rhs -= H[2][i] * p[i + 2];
     const double h1 = one ? H[1][i - 1] : 0, h2 = two ? H[2][i - 2] : 0;
     if (two) l2[i] = h2 / d[i - 2];
     if (one) l1[i] = (h1 - (two ? h2 * l1[i - 1] : 0)) / d[i - 1];
@@ -147,11 +147,32 @@ bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<
     if (two) rhs -= l2[i] * p[i - 2];
     p[i] = rhs;
   }
-  for (std::size_t i = 0; i < n; ++i) p[i] /= d[i];
   for (std::size_t i = n; i-- > 0;) {
     if (!free[i]) continue;
+    p[i] /= d[i];
     if (i + 1 < n && free[i + 1]) p[i] -= l1[i + 1] * p[i + 1];
     if (i + 2 < n && free[i + 2]) p[i] -= l2[i + 2] * p[i + 2];
+  }
+  return true;
+}
+
+/// The same inside the boxes: coordinates that would leave theirs end on the bound, and the others are solved for again.
+bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, std::vector<bool> free,
+                        double shift, const std::vector<double>& x, const std::vector<CoordinateBox>& boxes,
+                        std::vector<double>& p) {
+  constexpr int kRounds = 10;
+  std::fill(p.begin(), p.end(), 0);
+  for (int round = 0; round < kRounds; ++round) {
+    if (!newton_step(H, g, free, shift, p)) return false;
+    bool leaves = false;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double inside = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
+      if (!free[i] || inside == x[i] + p[i]) continue;
+      free[i] = false;
+      p[i] = inside - x[i];
+      leaves = true;
+    }
+    if (!leaves) return true;
   }
   return true;
 }
@@ -185,7 +206,7 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
       free[i] = boxes[i].low < boxes[i].high && !(x[i] <= boxes[i].low && g[i] > 0) && !(x[i] >= boxes[i].high && g[i] < 0);
     bool better = false;
     while (!better && shift <= kLastShift) {
-      if (newton_step(H, g, free, shift, p)) {
+      if (newton_step_inside(H, g, free, shift, x, boxes, p)) {
         for (std::size_t i = 0; i < x.size(); ++i) next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
         if (f.solve(next, q)) {
           const double there = f.value(next, q);

@@ -49,6 +49,51 @@ class ArmAngles final : public LayerSolver {
   std::vector<std::array<ElbowCircle, 2>> circles_;
 };
 
+/// Every so many layers of another solver, its first and its last among them.
+class EveryFew final : public LayerSolver {
+ public:
+  EveryFew(const LayerSolver& all, int stride) : all_(&all) {
+    for (int i = 0; i + 1 < all.layers(); i += stride) layer_.push_back(i);
+    layer_.push_back(all.layers() - 1);
+  }
+  [[nodiscard]] int layers() const override { return static_cast<int>(layer_.size()); }
+  [[nodiscard]] int layer(int k) const { return layer_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] double travel(int k) const override { return all_->travel(layer(k)); }
+  [[nodiscard]] std::optional<Config> joints(int k, double angle) const override { return all_->joints(layer(k), angle); }
+
+ private:
+  const LayerSolver* all_;
+  std::vector<int> layer_;
+};
+
+/// Where the minimum of all layers is sought from: the minimum of every few of them, straight in between. Paths of fine lattices
+/// are jagged, and Newton's method gives up on their teeth one by one.
+std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObjective& objective,
+                                   const std::vector<CoordinateBox>& boxes, std::vector<double> x, const Budget& budget) {
+  constexpr double kStep = 0.005;  // m
+  const int n = solver.layers(), stride = static_cast<int>(kStep * (n - 1) / (solver.travel(n - 1) - solver.travel(0)) + 0.5);
+  if (stride < 2) return x;
+  const EveryFew few(solver, stride);
+  SmoothObjective coarse = objective;
+  coarse.most_change *= stride;
+  std::vector<double> start;
+  std::vector<CoordinateBox> inside;
+  for (int k = 0; k < few.layers(); ++k) {
+    start.push_back(x[static_cast<std::size_t>(few.layer(k))]);
+    inside.push_back(boxes[static_cast<std::size_t>(few.layer(k))]);
+  }
+  start = smooth_minimum(few, coarse, inside, std::move(start), budget);
+  for (int k = 0; k + 1 < few.layers(); ++k) {
+    const double from = start[static_cast<std::size_t>(k)], to = start[static_cast<std::size_t>(k) + 1];
+    for (int i = few.layer(k); i <= few.layer(k + 1); ++i) {
+      const double t = (solver.travel(i) - few.travel(k)) / (few.travel(k + 1) - few.travel(k));
+      const CoordinateBox& box = boxes[static_cast<std::size_t>(i)];
+      x[static_cast<std::size_t>(i)] = std::clamp(from + t * (to - from), box.low, box.high);
+    }
+  }
+  return x;
+}
+
 /// Sine of the angle nearest to singular.
 double singular_sine(const SrsArm& arm, const Config& q) {
   return std::min(
@@ -182,6 +227,7 @@ class Refinery {
     std::vector<std::array<double, 2>> edge_known(n, {std::nan(""), std::nan("")});
     for (int round = 0; round < kRounds; ++round) {
       ++rounds;
+      x = coarse_minimum(solver_, objective, boxes, std::move(x), budget_);
       x = smooth_minimum(solver_, objective, boxes, std::move(x), budget_);
       std::vector<TrajectoryRow> rows = rows_at(x);
       if (rows.empty()) return std::nullopt;
@@ -202,7 +248,7 @@ class Refinery {
           edge_known[i] = {x[i], x[i + 1]};
           continue;
         }
-        for (const std::size_t k : {i, i + 1}) halve(k, x[k], boxes[k]);
+        give_way(i, x, boxes);
         fails = true;
       }
       if (!fails) return rows;
@@ -236,14 +282,28 @@ class Refinery {
     return good;
   }
 
-  /// A motion from or to the node at x fails.
-  void halve(std::size_t i, double x, CoordinateBox& box) const {
+  /// The motion between the nodes i and i + 1 at x fails: their intervals end where one is found valid that is as far from the one
+  /// given at both.
+  void give_way(std::size_t i, const std::vector<double>& x, std::vector<CoordinateBox>& boxes) {
+    constexpr int kQueries = 4;
     constexpr double kLeast = 1e-5;  // rad
-    const double given = given_[i].phi, off = std::abs(x - given) / 2;
-    if (off < kLeast)
-      box = {given, given};
-    else
-      box = {std::max(box.low, given - off), std::min(box.high, given + off)};
+    std::array<TrajectoryRow, 2> rows{given_[i], given_[i + 1]};
+    const auto at = [&](std::size_t k, double share) { return given_[k].phi + share * (x[k] - given_[k].phi); };
+    double good = 0, bad = 1;
+    for (int query = 0; query < kQueries; ++query) {
+      const double middle = (good + bad) / 2;
+      bool valid = true;
+      for (const std::size_t k : {i, i + 1}) {
+        const auto q = solver_.joints(static_cast<int>(k), rows[k - i].phi = at(k, middle));
+        valid = valid && q;
+        if (q) rows[k - i].q = *q;
+      }
+      (valid && judge_->edge(static_cast<int>(i), rows[0], rows[1]) ? good : bad) = middle;
+    }
+    for (const std::size_t k : {i, i + 1}) {
+      const double given = given_[k].phi, bound = std::abs(x[k] - given) < kLeast ? given : at(k, good);
+      (x[k] > given ? boxes[k].high : boxes[k].low) = bound;
+    }
   }
 
   const SrsLattice* lattice_;

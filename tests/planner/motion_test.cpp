@@ -118,6 +118,25 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
   EXPECT_EQ(metrics.size(), 3u);
 }
 
+TEST(Refine, TheResolutionStopsMattering) {
+  Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml");
+  keep_clearance_between_layers(problem.limits);
+  double dearest_before = 0;
+  for (const auto& [ds, dphi] : {std::pair(0.02, 0.2), std::pair(0.01, 0.1), std::pair(0.005, 0.05), std::pair(0.001, 0.05)}) {
+    problem.resolution.ds = ds;
+    problem.resolution.dphi = dphi;
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    Planner planner(problem);
+    const MotionPlan plan = plan_motion(planner, options, true, {});
+    ASSERT_TRUE(plan.refinement);
+    EXPECT_LE(plan.result.cost, 4.43) << ds << ' ' << dphi;
+    EXPECT_LE(plan.refinement->bend, 200) << ds << ' ' << dphi;
+    dearest_before = std::max(dearest_before, plan.refinement->cost_before);
+  }
+  EXPECT_GT(dearest_before, 5);
+}
+
 TEST(Refine, RefusesRowsOfAnotherResolution) {
   const int solved = for_solved("Refine", 12, [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
     Problem other = problem;
@@ -173,7 +192,7 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
   double least = 1;
   const std::uint64_t base = seed("Between");
   const std::vector<TestRobot> robots = all_robots();
-  for (int trial = 0; trial < trials(30); ++trial) {
+  for (int trial = 0; trial < trials(16); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     Problem problem = some_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem = with_motion_defaults(problem);
@@ -183,13 +202,19 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     options.evidence.postures = true;
-    // As large a ball as leaves a path.
-    MotionPlan plan;
-    for (double radius = 0.15; plan.result.status != PlanStatus::kSolved && radius > 0.05; radius -= 0.02) {
+    // As large a ball as leaves a path, so that the path must pass near it.
+    double solvable = 0.02, blocked = 0.2;
+    const auto planned = [&](double radius) {
       problem.scene[0].shape = Sphere{radius};
       Planner planner(problem);
-      plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+      return plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+    };
+    for (int k = 0; k < 5; ++k) {
+      problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
+      const bool solved = swivel::plan(problem, options).status == PlanStatus::kSolved;
+      (solved ? solvable : blocked) = (solvable + blocked) / 2;
     }
+    const MotionPlan plan = planned(solvable);
     if (plan.result.status != PlanStatus::kSolved) continue;
     ASSERT_TRUE(plan.refinement);
     ASSERT_TRUE(plan.motion);
@@ -223,15 +248,15 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
         ++asked;
         least = std::min(least, clearance->margin());
         EXPECT_GE(clearance->margin(), -kForgiven) << "trial " << trial << " t = " << rows[k].t << " part " << part;
-        comes_near = comes_near || clearance->margin() < 1e-3;
+        comes_near = comes_near || clearance->margin() < 2e-3;
       }
     near += comes_near;
     EXPECT_TRUE(check_motion(robot, problem, rows).passed);
   }
-  std::printf("%d executed, %d refused, %lld points, %d motions within 1 mm of the clearance, least margin %.4f mm\n", executed,
+  std::printf("%d executed, %d refused, %lld points, %d motions within 2 mm of the clearance, least margin %.4f mm\n", executed,
               refused, static_cast<long long>(asked), near, 1e3 * least);
-  EXPECT_GE(executed, at_least(10));
-  EXPECT_GE(near, at_least(2));
+  EXPECT_GE(executed, at_least(5));
+  EXPECT_GE(near, at_least(3));
   EXPECT_LE(refused, executed / 4);
 }
 
