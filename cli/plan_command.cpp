@@ -126,7 +126,12 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     try {
       const PlanView view = planner.view();
       map = make_map(view, arguments.full_map, budget);
-      if (!arguments.report.empty()) page = to_page(view, *map, io::to_json(result, aftermath), budget);
+      if (!arguments.report.empty()) {
+        PageMotion motion;
+        if (plan.refinement && plan.refinement->refined) motion.refined = &result.trajectory;
+        if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
+        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget);
+      }
     } catch (const Stopped&) {
       map.reset();
       result.warnings.push_back("stopped before the map was drawn: there is none, and no report");

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -12,6 +13,7 @@
 #include "map_cells.hpp"
 #include "page_template.hpp"
 #include "swivel/collision/world.hpp"
+#include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
@@ -96,34 +98,74 @@ Json chain_json(const Chain& chain) {
   return {{"joints", std::move(joints)}, {"home", pose_json(chain.home)}};
 }
 
+/// A row of the page: of the lattice, or off its grid.
+struct Row {
+  Config q;
+  double phi = 0, angle = 0;  ///< angle: in cells
+  int label = 0;
+};
+
 /// The answer layer by layer, or the way to the furthest layer.
-Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<int>& slots, const Budget& budget) {
+std::vector<Row> lattice_rows(const SrsLattice& lattice, const std::vector<int>& slots) {
+  std::vector<Row> rows;
+  for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
+    const int slot = slots[static_cast<std::size_t>(layer)];
+    Row row{*lattice.row(layer, slot), lattice.phi(layer, slot), static_cast<double>(lattice.angle_of(slot)),
+            lattice.label_of(slot)};
+    if (!rows.empty())
+      row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints, as the trajectory does
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Of a refined path. Its labels are mostly those of the path that it comes from, else of the nodes that are nearest.
+std::vector<Row> refined_rows(const SrsLattice& lattice, const std::vector<TrajectoryRow>& refined, const std::vector<int>& slots) {
+  std::vector<Row> rows;
+  LayerNodes nodes;
+  for (int layer = 0; layer < static_cast<int>(refined.size()); ++layer) {
+    const TrajectoryRow& from = refined[static_cast<std::size_t>(layer)];
+    const double angle = (wrap_angle(from.phi) + kPi) / kTwoPi * lattice.angles();
+    Row row{from.q, from.phi, angle, lattice.label_of(slots[static_cast<std::size_t>(layer)])};
+    if (row.label / lattice.windings() != from.branch) {
+      lattice.solve(layer, nodes);
+      const int cell = static_cast<int>(std::lround(angle)) % lattice.angles();
+      double least = std::numeric_limits<double>::infinity();
+      row.label = from.branch * lattice.windings();
+      for (int label = row.label, end = label + lattice.windings(); label < end; ++label) {
+        if (!nodes.valid(label, cell)) continue;
+        const double away = (nodes.config(label, cell) - from.q).norm();
+        if (away < least) least = away, row.label = label;
+      }
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
   World::Query query(world);
   Json rows = Json::array();
-  Config previous = Config::Zero();
-  for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
+  for (int layer = 0; layer < static_cast<int>(shown.size()); ++layer) {
     budget.poll();
-    const int slot = slots[layer];
-    Config q = *lattice.row(layer, slot);
+    const Row& at = shown[static_cast<std::size_t>(layer)];
     Json error = nullptr;
     if (layer > 0) {
-      const Config step = lattice.delta(previous, q);
-      q = previous + step;  // unwraps continuous joints, as the trajectory does
-      const auto deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, step);
+      const Config& previous = shown[static_cast<std::size_t>(layer) - 1].q;
+      const auto deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, at.q - previous);
       error = 1e3 * *std::max_element(deviation.begin(), deviation.end());
     }
-    previous = q;
     Json row = {{"layer", layer},
                 {"s", lattice.path().layer(layer).s},
-                {"phi", lattice.phi(layer, slot)},
-                {"label", lattice.label_of(slot)},
-                {"angle", lattice.angle_of(slot)},
-                {"q", std::vector<double>(q.begin(), q.end())},
+                {"phi", at.phi},
+                {"label", at.label},
+                {"angle", at.angle},
+                {"q", std::vector<double>(at.q.begin(), at.q.end())},
                 {"error_mm", std::move(error)}};
-    if (const auto clearance = query.clearance(q)) {
+    if (const auto clearance = query.clearance(at.q)) {
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[clearance->pair.a], world.body_names()[clearance->pair.b]};
-      if (const auto points = query.nearest_points(q, *clearance)) {
+      if (const auto points = query.nearest_points(at.q, *clearance)) {
         row["nearest"] = vector_json((*points)[0]);
         for (const double x : (*points)[1]) row["nearest"].push_back(x);
       } else {
@@ -133,6 +175,59 @@ Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+/// The path beside which a refined one is drawn.
+Json beside_json(const std::vector<Row>& rows) {
+  Json json = Json::array();
+  for (std::size_t layer = 0; layer < rows.size(); ++layer)
+    json.push_back({{"layer", layer}, {"label", rows[layer].label}, {"angle", rows[layer].angle}});
+  return json;
+}
+
+/// A motion over time, at as many samples as a plot has room for: where it is, in layers; the tool's speed; the largest share of
+/// what a joint can do since the sample shown before, of speed, acceleration and jerk.
+Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& chain, const std::vector<Row>& rows,
+                 const ToolPath& path) {
+  constexpr std::size_t kMost = 2000;
+  const std::vector<TimedRow>& samples = motion.rows;
+  const auto n = static_cast<std::ptrdiff_t>(samples.size());
+  const auto q = [&](std::ptrdiff_t k) -> const Config& {  // at rest before and after
+    return samples[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))].row.q;
+  };
+  const std::ptrdiff_t each = n / static_cast<std::ptrdiff_t>(kMost) + 1;
+  Json t = Json::array(), layers = Json::array(), tool = Json::array(), ratios[3] = {Json::array(), Json::array(), Json::array()};
+  std::size_t step = 0;
+  std::array<double, 3> most{};
+  for (std::ptrdiff_t k = 0; k < n; ++k) {
+    const TrajectoryRow& row = samples[static_cast<std::size_t>(k)].row;
+    // s tells the step; where the path only turns the joints do.
+    double share = 0;
+    for (;; ++step) {
+      const PathLayer& from = path.layer(static_cast<int>(step));
+      const Config way = rows[step + 1].q - rows[step].q;
+      share = from.step_length > 0 ? (row.s - from.s) / from.step_length : (row.q - rows[step].q).dot(way) / way.squaredNorm();
+      if (share < 1 || step + 2 >= rows.size()) break;
+    }
+    const Config move = q(k) - q(k - 1), before = q(k - 1) - q(k - 2), first = q(k - 2) - q(k - 3);
+    for (int j = 0; j < kDof; ++j) {
+      most[0] = std::max(most[0], std::abs(move[j]) * motion.rate / rates.speed[j]);
+      most[1] = std::max(most[1], std::abs(move[j] - before[j]) * std::pow(motion.rate, 2) / rates.acceleration[j]);
+      most[2] = std::max(most[2], std::abs(move[j] - 2 * before[j] + first[j]) * std::pow(motion.rate, 3) / rates.jerk[j]);
+    }
+    if (k % each != 0 && k + 1 < n) continue;
+    t.push_back(samples[static_cast<std::size_t>(k)].t);
+    layers.push_back(static_cast<double>(step) + std::clamp(share, 0.0, 1.0));
+    tool.push_back(1e3 * motion.rate * (chain.tool(q(k)).translation() - chain.tool(q(k - 1)).translation()).norm());
+    for (std::size_t order = 0; order < 3; ++order) ratios[order].push_back(100 * most[order]);
+    most = {};
+  }
+  return {{"t", std::move(t)},
+          {"layers", std::move(layers)},
+          {"tool_mm_s", std::move(tool)},
+          {"speed", std::move(ratios[0])},
+          {"acceleration", std::move(ratios[1])},
+          {"jerk", std::move(ratios[2])}};
 }
 
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
@@ -289,7 +384,8 @@ bool page_available() {
   return !page_template().empty();
 }
 
-std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json, const Budget& budget) {
+std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json, const PageMotion& motion,
+                    const Budget& budget) {
   const Problem& problem = view.problem;
   const World& world = view.world;
   const auto& lattice = dynamic_cast<const SrsLattice&>(view.lattice);
@@ -300,24 +396,31 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   for (const RobotBody& body : world.bodies())
     bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
   for (const SceneObject& object : problem.scene) bodies.add(object.name, "scene", 0, object.shape, object.pose);
+  const std::vector<Row> found = lattice_rows(lattice, view.path);
+  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, *motion.refined, view.path) : found;
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
-  const Json data = {{"problem", std::filesystem::path(problem.source).filename().string()},
-                     {"result", result},
-                     {"settings",
-                      {{"ds", problem.resolution.ds},
-                       {"dphi", problem.resolution.dphi},
-                       {"clearance_mm", 1e3 * problem.limits.clearance},
-                       {"joint_step", problem.limits.joint_step},
-                       {"edges", problem.limits.edges == EdgeMode::kContinuous ? "continuous" : "nodes"}}},
-                     {"chain", chain_json(lattice.chain())},
-                     {"bodies", std::move(bodies.bodies)},
-                     {"meshes", std::move(bodies.meshes)},
-                     {"tool_path", std::move(tool_path)},
-                     {"rows", rows_json(world, lattice, view.path, budget)},
-                     {"cut", diagnosis.is_object() ? cut_json(map, lattice, diagnosis) : Json(nullptr)},
-                     {"map", map_json(map, lattice, world, budget)}};
+  const Json data = {
+      {"problem", std::filesystem::path(problem.source).filename().string()},
+      {"result", result},
+      {"settings",
+       {{"ds", problem.resolution.ds},
+        {"dphi", problem.resolution.dphi},
+        {"clearance_mm", 1e3 * problem.limits.clearance},
+        {"joint_step", problem.limits.joint_step},
+        {"edges", problem.limits.edges == EdgeMode::kContinuous ? "continuous" : "nodes"}}},
+      {"chain", chain_json(lattice.chain())},
+      {"bodies", std::move(bodies.bodies)},
+      {"meshes", std::move(bodies.meshes)},
+      {"tool_path", std::move(tool_path)},
+      {"rows", rows_json(world, lattice, rows, budget)},
+      {"beside", motion.refined ? beside_json(found) : Json::array()},
+      {"motion", motion.motion ? motion_json(*motion.motion, joint_rates(lattice.chain(), problem.limits, problem.source),
+                                             lattice.chain(), rows, path)
+                               : Json(nullptr)},
+      {"cut", diagnosis.is_object() ? cut_json(map, lattice, diagnosis) : Json(nullptr)},
+      {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -9,7 +9,7 @@ import { Plots } from './plots.js';
 import { View } from './scene.js';
 import { summary, verdict } from './summary.js';
 
-const { rows, chain, cut } = data;
+const { rows, chain, cut, motion } = data;
 const solved = data.result.status === 'solved', last = rows.length - 1;
 
 document.title = `${data.problem} – Swivel`;
@@ -17,7 +17,7 @@ $('title').textContent = data.problem;
 $('verdict').textContent = verdict(data);
 summary(data);
 
-let view = null, shown = null, cursor = 0, playing = false, picked = false, before = 0, told = 0;
+let view = null, shown = null, cursor = 0, time = 0, playing = false, picked = false, before = 0, told = 0;
 /** For those who test the page: joints and line shown now, pictures drawn. */
 window.swivel = { joints: null, frames: 0, line: null };
 
@@ -29,8 +29,23 @@ const plots = new Plots($('plots'), rows.map((row) => row.s), [
   { title: 'tool-path error', unit: 'mm', values: rows.map((row) => row.error_mm), low: null, high: null },
 ].filter((series) => series.values.some((v) => v !== null)), (k) => { pause(); go(k); });
 
+// In time: the motion's own, where there is one; a cursor along the path stands for a moment, and the other way round.
+const share = (title) => ({ title: `largest joint ${title}`, unit: '% of limit', values: motion[title], low: null, high: 100 });
+const timed = motion && new Plots($('motion'), motion.t, [{ title: 'tool speed', unit: 'mm/s', values: motion.tool_mm_s, low: null, high: 1e3 * data.result.motion.speed },
+  share('speed'), share('acceleration'), share('jerk')], (k) => { pause(); time = momentOf(k); go(layerAt(time)); }, 't, s');
+/** Between the marks of an ascending list: the index, not always whole, at which it has a value. */
+function indexAt(list, value) {
+  const next = Math.min(list.length - 1, Math.max(1, list.findIndex((v) => v > value)));
+  return list.at(-1) <= value ? list.length - 1 : next - 1 + Math.min(1, Math.max(0, (value - list[next - 1]) / (list[next] - list[next - 1])));
+}
+function valueAt(list, index) {
+  const i = Math.min(list.length - 1, Math.max(0, Math.floor(index))), f = index - i;
+  return f > 0 && i + 1 < list.length ? list[i] + f * (list[i + 1] - list[i]) : list[i];
+}
+const momentOf = (index) => valueAt(motion.t, index), layerAt = (t) => valueAt(motion.layers, indexAt(motion.t, t));
+
 const cells = new Cells(data.map, chain.joints);
-const panels = new Panels($('map'), cells, rows, !solved && rows.length ? { layer: rows[last].layer } : null, hover, pick);
+const panels = new Panels($('map'), cells, rows, data.beside, !solved && rows.length ? { layer: rows[last].layer } : null, hover, pick);
 
 function hover(cell, event) {
   const tip = $('tip');
@@ -76,6 +91,7 @@ const lineOf = ({ nearest, clearance_mm }) => (nearest ? { points: nearest, text
 function go(k) {
   if (!rows.length) return;
   cursor = Math.min(last, Math.max(0, k));
+  if (timed && Math.abs(layerAt(time) - cursor) > 1e-9) time = momentOf(indexAt(motion.layers, cursor));
   picked = false;
   const i = Math.min(Math.floor(cursor), Math.max(0, last - 1)), f = cursor - i, a = rows[i], b = rows[Math.min(i + 1, last)];
   const q = a.q.map((v, j) => (f === 0 ? v : f === 1 ? b.q[j] : v + f * (b.q[j] - v)));
@@ -86,24 +102,27 @@ function go(k) {
   told = performance.now();
   readout(a.s + f * (b.s - a.s), near.phi, q, near.pair ? `clearance ${number(near.clearance_mm, 4)} mm: ${near.pair.join(' – ')}` : '');
   $('slider').value = cursor;
-  $('where').textContent = `${Math.round(cursor)} / ${last}`;
+  $('where').textContent = `${Math.round(cursor)} / ${last}${timed ? `, ${time.toFixed(2)} / ${number(motion.t.at(-1))} s` : ''}`;
+  timed?.draw(indexAt(motion.t, time));
   panels.draw(cursor);
   plots.draw(cursor);
 }
 function pause() { playing = false; $('play').textContent = '▶'; }
 function play() {
   if (!rows.length) return;
-  if (cursor >= last) go(0);
+  if (cursor >= last) go(time = 0);
   playing = true;
   $('play').textContent = '❚❚';
   before = performance.now();
 }
 function frame(now) {
   if (playing) {
-    // The whole path takes eight seconds at speed 1.
-    go(cursor + (Math.max(0, now - before) / 8000) * last * Number($('speed').value));
+    // A motion takes its own time at speed 1, a path without one eight seconds.
+    const passed = (Math.max(0, now - before) / 1000) * Number($('speed').value);
+    time += passed;
+    go(timed ? layerAt(time) : cursor + (passed / 8) * last);
     before = now;
-    if (cursor >= last) {
+    if (timed ? time >= motion.t.at(-1) : cursor >= last) {
       pause();
       go(last);
     }
@@ -113,6 +132,7 @@ function frame(now) {
 }
 
 $('controls').hidden = $('plots-section').hidden = !rows.length;
+$('motion-section').hidden = !timed;
 $('slider').max = Math.max(0, last);
 $('slider').addEventListener('input', (event) => { pause(); go(Number(event.target.value)); });
 $('play').addEventListener('click', () => (playing ? pause() : play()));
@@ -141,15 +161,18 @@ function paint() {
   view?.background(isDark() ? '#1a2027' : '#ffffff');
   panels.paint();
   plots.paint();
+  timed?.paint();
 }
 
 const unseen = cells.count((state) => state === UNSEEN), asked = cells.count((state) => state === FREE || state === BLOCKED);
 $('map-note').textContent = `s to the right, φ upwards. ${cells.layers_each * cells.angles_each > 1
   ? `A cell stands for up to ${cells.layers_each} × ${cells.angles_each} of the ${number(data.result.lattice.nodes)} nodes and shows a blocked one before a free one, and that before the others. ` : 'A cell is a node. '}`
   + (unseen + asked ? `Of the cells that exist in closed form, ${number((100 * unseen) / (unseen + asked), 3)} % were never looked at.` : '')
+  + (data.beside.length ? ' The thin dashed line is the path that was found on the lattice, before it was refined.' : '')
   + (!solved && rows.length ? ' The dashed line is where every path has ended.' : '');
 const stem = data.problem.replace(/\.[^.]*$/, '');
 savers(document.querySelector('#plots-section h2'), `${stem}_plots`, () => plots.figure());
+if (timed) savers(document.querySelector('#motion-section h2'), `${stem}_motion`, () => timed.figure());
 savers(document.querySelector('#map-section h2'), `${stem}_map`, () => panels.figure());
 
 const turnTheme = themes(paint);

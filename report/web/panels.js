@@ -8,9 +8,9 @@ import { style } from './page.js';
 const kAngles = [[-Math.PI, '−π'], [-Math.PI / 2, '−π/2'], [0, '0'], [Math.PI / 2, 'π/2'], [Math.PI, 'π']];
 
 export class Panels {
-  /** cells: Cells; rows: of the path; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
-  constructor(host, cells, rows, cut, hover, pick) {
-    Object.assign(this, { cells, rows, cut, cursor: 0 });
+  /** cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
+  constructor(host, cells, rows, beside, cut, hover, pick) {
+    Object.assign(this, { cells, rows, beside, cut, cursor: 0 });
     this.panels = cells.panels.map((panel, index) => {
       const box = document.createElement('div');
       box.className = 'panel';
@@ -36,12 +36,13 @@ export class Panels {
   }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
-    const { cells, rows, cut } = this, angle = (phi) => ((phi + Math.PI) / (2 * Math.PI)) * cells.angles;
-    const path = rows.flatMap((row, k) => {
-      const last = rows[k - 1], jump = last && last.label === row.label && Math.abs(last.angle - row.angle) > cells.angles / 2;
+    const { cells, rows, beside, cut } = this, angle = (phi) => ((phi + Math.PI) / (2 * Math.PI)) * cells.angles;
+    const lineOf = (path) => path.flatMap((row, k) => {
+      const last = path[k - 1], jump = last && last.label === row.label && Math.abs(last.angle - row.angle) > cells.angles / 2;
       const point = { x: row.layer, y: row.label === panel.label ? row.angle : NaN };
       return jump ? [{ x: row.layer, y: NaN }, point] : [point];
     });
+    const path = lineOf(rows), before = lineOf(beside);
     const changes = rows.filter((row, k) => row.label === panel.label && [rows[k - 1], rows[k + 1]].some((other) => other && other.label !== row.label));
     const frame = { marginLeft: 34, marginRight: 12, marginTop: vector ? 26 : 6, marginBottom: vector ? 34 : 20 };
     return Plot.plot({
@@ -54,6 +55,8 @@ export class Panels {
           : this.picture(panel.index, colours, width - frame.marginLeft - frame.marginRight, height - frame.marginTop - frame.marginBottom),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
         cut === null ? null : Plot.ruleX([cut.layer + 0.5], { stroke: '#c2185b', strokeWidth: 2, strokeDasharray: '5 3' }),
+        Plot.line(before, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 3 }),
+        Plot.line(before, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.2, strokeDasharray: '4 3' }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
         Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small line plots over the layers of the path, drawn once, with a cursor above.
+// Small line plots over the layers of the path or over time, drawn once, with a cursor above.
 import * as Plot from '@observablehq/plot';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
@@ -9,11 +9,11 @@ const kBound = '#d55e00';
 
 export class Plots {
   /**
-   * s: of each row; series: { title, unit, values (one a row, null where unknown), low, high (bounds, or null) }; seek: called with
-   * the row, not always a whole number, that the user points at.
+   * s: of each row, along an axis named `axis`; series: { title, unit, values (one a row, null where unknown), low, high (bounds, or
+   * null) }; seek: called with the row, not always a whole number, that the user points at.
    */
-  constructor(host, s, series, seek) {
-    this.s = s;
+  constructor(host, s, series, seek, axis = 's, m') {
+    Object.assign(this, { s, axis });
     this.plots = series.map((one) => {
       const box = document.createElement('div');
       box.className = 'plot';
@@ -68,7 +68,7 @@ export class Plots {
   }
   /** All plots as one drawing for papers. */
   figure() {
-    return sheet(this.plots.map((plot) => this.drawing(plot, 640, 170, PAPER, 's, m')));
+    return sheet(this.plots.map((plot) => this.drawing(plot, 640, 170, PAPER, this.axis)));
   }
 }
 

@@ -20,6 +20,8 @@ export function summary({ result, settings }) {
   if (removed) add('Removed past the furthest layer', words(removed));
   if (empty.length)
     add('Empty layers', [...empty.slice(0, 20).map(({ layers: [first, last], s, reason }) => [first === last ? `layer ${first}, s = ${number(s[0])} m` : `layers ${first} to ${last}, s = ${number(s[0])} to ${number(s[1])} m`, reason]), ...(empty.length > 20 ? [['more', `${empty.length - 20}`]] : [])]);
+  if (result.refinement) add('Refinement', words(result.refinement));
+  if (result.motion) add('Motion', words(result.motion));
   add('Times, ms', [...words(result.time_ms), ...words(result.time_ms.stages)]);
   add('Counters', words(result.counters));
   add('Lattice', words(result.lattice));

@@ -144,6 +144,58 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     assert.ok(rate === null || rate > 3);
   }
 
+  // Refined, and in time: the page plays at the motion's own speed, and shows the rows that are executed.
+  {
+    const { html, data, status } = plan(folder, 'b', '--refine', '--speed', '0.1');
+    assert.equal(status, 0);
+    const { motion, result, rows, beside } = data, n = motion.t.length;
+    for (const key of ['layers', 'tool_mm_s', 'speed', 'acceleration', 'jerk']) assert.equal(motion[key].length, n);
+    assert.ok(Math.abs(motion.t[n - 1] - result.motion.duration) < 0.01);
+    assert.ok(motion.layers.every((layer, k) => k === 0 || layer >= motion.layers[k - 1]) && motion.layers[0] === 0 && Math.abs(motion.layers[n - 1] - (rows.length - 1)) < 1e-6);
+    assert.ok(Math.max(...motion.tool_mm_s) <= 100.1 && Math.max(...motion.tool_mm_s) > 99);
+    for (const key of ['speed', 'acceleration', 'jerk']) {
+      const told = Math.max(...result.motion.peaks[key].map(({ ratio }) => ratio));
+      assert.ok(Math.abs(Math.max(...motion[key]) / 100 - told) < 1e-6, `${key}: ${Math.max(...motion[key])} % on the page, ${told} in the result`);
+    }
+    rows.forEach((row, k) => assert.deepEqual(row.q, result.trajectory[k].joints));
+    assert.equal(beside.length, rows.length);
+    assert.ok(beside.some(({ angle }, k) => Math.abs(angle - rows[k].angle) > 1));
+    const { page, close } = await open(html, { viewport: wide, colorScheme: 'light' });
+    await drawn(page);
+    assert.ok(await page.isVisible('#motion-section'));
+    assert.equal(await page.locator('#motion .plot').count(), 4);
+    assert.match(await page.textContent('#map-note'), /before it was refined/);
+    assert.match(await page.textContent('#tables'), /Refinement[^]*Motion/);
+    const seconds = async () => Number((await page.textContent('#where')).match(/, ([\d.]+) \//)[1]);
+    await page.keyboard.press('Home');
+    assert.equal(await seconds(), 0);
+    await page.click('#play');
+    const begin = [await seconds(), Date.now()];
+    await page.waitForTimeout(2000);
+    const end = [await seconds(), Date.now()];
+    await page.click('#play');
+    const pace = (1000 * (end[0] - begin[0])) / (end[1] - begin[1]);
+    assert.ok(pace > 0.8 && pace < 1.2, `${pace} s of the motion in a second`);
+    // The slider and the plots stand for the same moment.
+    const middle = Math.floor(rows.length / 2);
+    await slide(page, middle);
+    const at = motion.layers.findIndex((layer) => layer >= middle);
+    assert.ok(Math.abs((await seconds()) - motion.t[at]) < 0.05);
+    const chart = page.locator('#motion .chart').last(), { width } = await chart.boundingBox();
+    await page.evaluate(() => document.getElementById('summary').scrollIntoView({ block: 'end' }));
+    await chart.click({ position: { x: 0.3 * width, y: 40 } });
+    const there = await seconds();
+    assert.ok(there > 0.1 * motion.t[n - 1] && there < 0.5 * motion.t[n - 1]);
+    const buttons = page.locator('#motion-section h2 button');
+    const svg = await saved(page, buttons.filter({ hasText: 'SVG' }));
+    assert.equal(svg.name, 'experiment_b_motion.svg');
+    assert.ok((await elements(page, svg.bytes.toString())).path >= 4);
+    await assertFits(page, wide.width);
+    await page.waitForTimeout(800);
+    await shoot(page, 'report_motion.png', { fullPage: true });
+    await close();
+  }
+
   // Where there is no path: the furthest layer, why, and the pose past it. By the joints, by a body, and in the first layer.
   for (const [name, reason, reached, ...options] of [
     ['a_start', /^the next pose cannot be moved to: joint arm_left_joint_5_r$/, true],

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <string>
+#include <vector>
 
+#include "swivel/core/time_path.hpp"
 #include "swivel/report/lattice_map.hpp"
 
 namespace swivel {
@@ -9,10 +11,16 @@ namespace swivel {
 /// False in a build with SWIVEL_REPORT=OFF, which has no page to fill.
 [[nodiscard]] bool page_available();
 
-/// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi) map, plots over s, summary.
-/// `result_json`: the result in the format of `--json`. Made after planning: clearances along the path are asked for again. Throws
-/// Stopped.
+/// What became of the lattice's path; null where it stayed what it was, or has no times.
+struct PageMotion {
+  const std::vector<TrajectoryRow>* refined = nullptr;  ///< a row in each layer: shown in the path's place, the path beside it
+  const TimedPath* motion = nullptr;                    ///< of the rows shown; played in its own time
+};
+
+/// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi) map, plots over s and over
+/// time, summary. `result_json`: the result in the format of `--json`. Made after planning: clearances along the path are asked for
+/// again. Throws Stopped.
 [[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json,
-                                  const Budget& budget = {});
+                                  const PageMotion& motion = {}, const Budget& budget = {});
 
 }  // namespace swivel
