@@ -30,8 +30,9 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
 
 }  // namespace
 
-PathMotion::PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows)
-    : chain_(&chain), arm_(&arm), path_(&path), rows_(rows) {
+PathMotion::PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                       double apart)
+    : chain_(&chain), arm_(&arm), path_(&path) {
   constexpr double kSame = 1e-9;  // m
   planes_ = carried_planes(arm, path);
   still_ = clearest_direction(planes_);
@@ -48,9 +49,18 @@ PathMotion::PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       throw InputError("row " + std::to_string(k) + " (s = " + std::to_string(rows[k].s) +
                        "): is at no layer of the path: allowed are rows at layers, of the resolution that they were planned with");
     const PathLayer& at = path.layer(layer);
-    travel_.push_back(at.travel);
     const double angle = still_plane(at.tool).angle_of(arm.elbow_axis(rows[k].q));
-    angles.push_back(k == 0 ? angle : angles.back() + wrap_angle(angle - angles.back()));
+    constexpr double kRounding = 1e-9;  // m
+    if (k == 0 || k + 1 == rows.size() || at.travel - travel_.back() >= apart - kRounding) {
+      if (k + 1 == rows.size() && rows_.size() > 1 && at.travel - travel_.back() < apart / 2) {
+        travel_.pop_back();
+        angles.pop_back();
+        rows_.pop_back();
+      }
+      travel_.push_back(at.travel);
+      angles.push_back(k == 0 ? angle : angles.back() + wrap_angle(angle - angles.back()));
+      rows_.push_back(rows[k]);
+    }
     if (k > 0 && rows[k].branch != rows[k - 1].branch)
       jumps_.push_back({at.s, "the solution changes from branch " + std::to_string(rows[k - 1].branch) + " to " +
                                   std::to_string(rows[k].branch)});

@@ -285,10 +285,12 @@ class Piece {
 
 /// Places from one rest to the next: at least four a step, eight over what a corner is rounded, and finer ones next to the rests,
 /// since a speed that rises from place to place rises the more slowly the farther the first one is.
-std::vector<double> places_between(const ToolPath& path, double from, double to) {
-  std::vector<double> knots;  // of the tool's curve and of the arm angle
-  for (int i = path.step_at(from); i < path.size() && path.layer(i).travel <= to; ++i)
-    if (path.layer(i).travel >= from) knots.push_back(path.layer(i).travel);
+std::vector<double> places_between(const PathMotion& motion, double from, double to) {
+  const ToolPath& path = motion.path();
+  std::vector<double> knots{from};  // of the arm angle
+  for (const double x : motion.knots())
+    if (x > from && x < to) knots.push_back(x);
+  knots.push_back(to);
   std::vector<double> bends;
   for (const ToolPath::Corner& corner : path.corners()) {
     const double x = path.layer(corner.layer).travel;
@@ -574,7 +576,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   std::vector<Piece> pieces;
   for (std::size_t k = 1; k < rests.size(); ++k) {
     std::vector<Place> places;
-    result.failure = survey(motion, places_between(path, rests[k - 1], rests[k]), places);
+    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
     out.rounds = std::max(out.rounds, pieces.back().plan(budget));

@@ -13,6 +13,8 @@ namespace swivel {
 
 namespace {
 
+constexpr double kMergedShare = 0.5;  // of the tolerances, for what lies between the ends of segments that are made one
+
 /// Axis times angle of the short arc from a to b, in a's frame.
 Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
   Quaterniond d = a.conjugate() * b;
@@ -83,6 +85,49 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     from = to;
   }
   if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
+  if (smooth) {
+    // Where waypoints are dense, corners have no room to be rounded: several segments are made one.
+    std::vector<Segment> merged;
+    const std::size_t n = segments_.size();
+    const auto travel = [&](std::size_t k) { return k < n ? segments_[k].travel : layers_.back().travel; };
+    const auto pose_of = [&](std::size_t k) -> const Pose& { return k < n ? segments_[k].start : layers_.back().tool; };
+    // Straight over `count` segments; none where a waypoint between is too far from it.
+    const auto straight = [&](std::size_t first, std::size_t count) -> std::optional<Segment> {
+      Segment segment = segments_[first];
+      const double span = travel(first + count) - segment.travel;
+      segment.velocity = (pose_of(first + count).translation() - segment.start.translation()) / span;
+      segment.rotation = short_arc(Quaterniond(segment.start.linear()), Quaterniond(pose_of(first + count).linear())) / span;
+      const double turning = segment.rotation.norm();
+      for (std::size_t k = first + 1; k < first + count; ++k) {
+        const double x = travel(k) - segment.travel;
+        const Vector3d there = segment.start.translation() + x * segment.velocity;
+        if ((there - pose_of(k).translation()).norm() > kMergedShare * smooth->position) return std::nullopt;
+        Eigen::Matrix3d rotated = segment.start.linear();
+        if (turning > 0) rotated = rotated * Eigen::AngleAxisd(x * turning, segment.rotation / turning).toRotationMatrix();
+        if (Eigen::AngleAxisd(rotated.transpose() * pose_of(k).linear()).angle() > kMergedShare * smooth->angle)
+          return std::nullopt;
+      }
+      return segment;
+    };
+    for (std::size_t first = 0; first < n;) {
+      budget.poll();
+      merged.push_back(segments_[first]);
+      const std::size_t all = n - first;
+      std::size_t good = 1, bad = all + 1;  // so many go, and do not
+      while (bad - good > 1) {
+        const std::size_t count = bad > all ? std::min(2 * good, all) : (good + bad) / 2;
+        if (auto segment = straight(first, count)) {
+          good = count;
+          merged.back() = *segment;
+        } else {
+          bad = count;
+        }
+      }
+      first += good;
+    }
+    rounded_ = merged.size() < n;
+    segments_.swap(merged);
+  }
   find_corners(smooth.value_or(PathSmoothing{0, 0}));
 }
 
@@ -96,9 +141,14 @@ void ToolPath::find_corners(const PathSmoothing& smooth) {
     const double end = k + 1 < segments_.size() ? segments_[k + 1].travel : layers_.back().travel;
     const double bend = (after.velocity - before.velocity).norm(), twist = (after.rotation - before.rotation).norm();
     if (bend <= kStraight && twist <= kStraight) continue;
+    const auto merged = [&](std::size_t segment) {
+      const int last = segment + 1 < segments_.size() ? segments_[segment + 1].layer : size() - 1;
+      return layer(last).waypoint > layer(segments_[segment].layer).waypoint + 1;
+    };
+    const double share = merged(k - 1) || merged(k) ? 1 - kMergedShare : 1;
     double reach = 0.5 * std::min(after.travel - before.travel, end - after.travel);
-    if (bend > kStraight) reach = std::min(reach, smooth.position / (kDeviation * bend));
-    if (twist > kStraight) reach = std::min(reach, smooth.angle / (kDeviation * twist));
+    if (bend > kStraight) reach = std::min(reach, share * smooth.position / (kDeviation * bend));
+    if (twist > kStraight) reach = std::min(reach, share * smooth.angle / (kDeviation * twist));
     if (reach < kShortest) reach = 0;
     after.reach = reach;
     rounded_ = rounded_ || reach > 0;

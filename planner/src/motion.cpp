@@ -127,7 +127,8 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   auto start = std::chrono::steady_clock::now();
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain, budget, PathSmoothing{});
-  const PathMotion motion(chain, robot.srs(), path, rows);
+  constexpr double kApart = 0.005;  // m
+  const PathMotion motion(chain, robot.srs(), path, rows, kApart);
   TimingResult timed = time_path(motion, joint_rates(chain, problem.limits, problem.source), options, budget);
   result.time_ms = ms_since(start);
   result.failure = timed.failure;

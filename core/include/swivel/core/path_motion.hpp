@@ -28,14 +28,17 @@ class PathMotion {
  public:
   /// One row for each layer of the path, or for some of them, in order, the first and the last among them; labels and joint
   /// images are those of the rows. Rows need not be at the poses of the path exactly: their arm angle counts. Throws InputError
-  /// where a row is at no layer. Refers to chain, arm and path.
-  PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows);
+  /// where a row is at no layer. Refers to chain, arm and path. Rows less than `apart` after the one before, m of travel, are left
+  /// out, the last aside: where rows are dense the digits that they do not agree in would bend the joints.
+  PathMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart = 0);
 
   [[nodiscard]] const Chain& chain() const { return *chain_; }
   [[nodiscard]] const SrsArm& arm() const { return *arm_; }
   [[nodiscard]] const ToolPath& path() const { return *path_; }
   /// m of travel.
   [[nodiscard]] double length() const { return path_->layer(path_->size() - 1).travel; }
+  /// Where rows are, m of travel.
+  [[nodiscard]] const std::vector<double>& knots() const { return travel_; }
   /// Joints, unwrapped along the path; none where there is no closed form.
   [[nodiscard]] std::optional<Config> joints(double travel) const;
   /// s, carried arm angle and branch of joints at a travel.
