@@ -109,9 +109,11 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       }
       return segment;
     };
+    std::vector<std::size_t> begins;  // the first of those that each is made of
     for (std::size_t first = 0; first < n;) {
       budget.poll();
       merged.push_back(segments_[first]);
+      begins.push_back(first);
       const std::size_t all = n - first;
       std::size_t good = 1, bad = all + 1;  // so many go, and do not
       while (bad - good > 1) {
@@ -124,6 +126,14 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
         }
       }
       first += good;
+      // What is left over, before a corner or the end, may be so short that there would be no room beside it: halves of both.
+      const std::size_t before = begins.size() < 2 ? first : begins[begins.size() - 2], middle = (before + first) / 2;
+      if (before == first || 2 * (first - begins.back()) >= begins.back() - before) continue;
+      const auto one = straight(before, middle - before), other = straight(middle, first - middle);
+      if (!one || !other) continue;
+      *(merged.end() - 2) = *one;
+      merged.back() = *other;
+      begins.back() = middle;
     }
     rounded_ = merged.size() < n;
     segments_.swap(merged);

@@ -102,6 +102,51 @@ TEST(SmoothToolPath, StaysNearThePolylineAndIsTwiceDifferentiable) {
   EXPECT_GT(sharp, 5);
 }
 
+/// A winding curve, read off as densely as programs that make tool paths do.
+std::vector<Waypoint> dense_waypoints(Random& random, const Waypoint& first, int count, double length) {
+  const Vector3d along = random_vector(random, length), across = random_vector(random, 0.1 * length),
+                 axis = random_vector(random, 1);
+  const double turns = random.uniform(0.5, 2), angle = random.uniform(0, 0.4);
+  std::vector<Waypoint> waypoints;
+  for (int k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) / (count - 1), wave = std::sin(kTwoPi * turns * t);
+    waypoints.push_back(moved(first, t * along + wave * across, Vector3d(angle * wave * axis)));
+  }
+  return waypoints;
+}
+
+TEST(SmoothToolPath, DenseWaypointsAreNoCorners) {
+  const std::uint64_t base = seed("DenseWaypoints");
+  const Resolution resolution{.ds = 0.005, .dphi = 0.1, .dalpha = 0.1};
+  int waypoints_met = 0, corners_met = 0;
+  for (int trial = 0; trial < trials(30); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const PathSmoothing smooth{random.uniform(0.02e-3, 0.3e-3), random.coin(0.2) ? 0.1 : random.uniform(0.2e-3, 3e-3)};
+    const int count = 200 + random.below(3000);
+    const auto waypoints =
+        dense_waypoints(random, {Vector3d(0.4, 0, 0.3), Quaterniond(0.5, 0.5, -0.5, 0.5)}, count, random.uniform(0.05, 0.4));
+    const ToolPath plain(waypoints, resolution, "test"), curve(waypoints, resolution, "test", {}, smooth);
+    ASSERT_EQ(plain.size(), curve.size());
+    double worst = 0;
+    for (int i = 0; i + 1 < plain.size(); ++i) {
+      EXPECT_EQ(plain.layer(i).s, curve.layer(i).s);
+      for (const double t : {0.0, 0.3, 0.7}) {
+        const double off = (plain.at(i, t).translation() - curve.at(i, t).translation()).norm();
+        EXPECT_LE(off, smooth.position + 1e-12) << trial;
+        EXPECT_LE(angle_between(plain.at(i, t), curve.at(i, t)), smooth.angle + 1e-6) << trial;
+        worst = std::max(worst, off);
+      }
+    }
+    EXPECT_LE((plain.layer(plain.size() - 1).tool.translation() - curve.layer(plain.size() - 1).tool.translation()).norm(), 1e-12);
+    for (const ToolPath::Corner& corner : curve.corners()) EXPECT_GT(corner.reach, 0) << trial;
+    waypoints_met += count;
+    corners_met += static_cast<int>(curve.corners().size());
+  }
+  std::printf("%d waypoints, %d corners\n", waypoints_met, corners_met);
+  EXPECT_LT(10 * corners_met, waypoints_met);
+  EXPECT_GT(corners_met, at_least(100));
+}
+
 TEST(CubicSpline, SolvesTheEquationsOfTheNaturalSpline) {
   Random random(seed("CubicSpline"));
   for (int trial = 0; trial < trials(50); ++trial) {

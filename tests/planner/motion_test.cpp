@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
+#include "inexact_robots.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
@@ -116,6 +118,88 @@ TEST(Refine, IsValidNeverDearerAndKeepsLabels) {
   EXPECT_GT(starts, 0);
   EXPECT_GT(turns, 0);
   EXPECT_EQ(metrics.size(), 3u);
+}
+
+/// The kinds of paths that people have: valid by the check, and never dearer.
+TEST(Refine, IsValidOnWhatUsersHave) {
+  Random making(seed("UsersRobots"));
+  std::vector<TestRobot> robots = inexact_robots(making);
+  const std::size_t inexact = robots.size();
+  robots.push_back(continuous_robot());
+  robots.push_back(windings_robot());
+  robots.push_back(data_robot("iiwa14"));
+  std::map<std::string, int> met;
+  const std::uint64_t base = seed("Users");
+  for (int trial = 0; trial < trials(40); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const std::size_t which = static_cast<std::size_t>(trial) % robots.size();
+    Problem problem = some_problem(robots[which], random);
+    problem.start.reset();
+    const auto refined = [&](const Problem& kind, const char* name) -> std::optional<Refined> {
+      const PreparedRobot robot(kind);
+      PlanOptions options;
+      options.planner = PlannerKind::kLazy;
+      const PlanResult found = plan(robot, kind, options);
+      if (found.status != PlanStatus::kSolved) return std::nullopt;
+      const Refined result = refine(robot, kind, found.trajectory);
+      EXPECT_LE(result.cost, found.cost + 1e-9) << name << ' ' << trial;
+      const CheckResult check = check_trajectory(robot, kind, result.rows);
+      EXPECT_TRUE(check.passed) << name << ' ' << trial << ' ' << (check.failures.empty() ? "" : check.failures[0]);
+      ++met[name];
+      if (which < inexact) ++met["inexact"];
+      if (result.refined) ++met["refined"];
+      return result;
+    };
+    const auto whole = refined(problem, "whole");
+    Problem reversed = problem;
+    std::reverse(reversed.waypoints.begin(), reversed.waypoints.end());
+    refined(reversed, "reversed");
+    Problem turns = problem;
+    for (Waypoint& waypoint : turns.waypoints) waypoint.position = turns.waypoints[0].position;
+    refined(turns, "turns");
+    if (!whole) continue;
+    const std::size_t row = whole->rows.size() / 2;
+    Problem rest = problem;
+    rest.start = whole->rows[row].q;
+    rest.start_at = whole->rows[row].s;
+    const auto after = refined(rest, "start_at");
+    if (after) {
+      EXPECT_EQ(after->rows[0].q, *rest.start);
+    }
+  }
+  for (const auto& [kind, count] : met) std::printf("%s %d, ", kind.c_str(), count);
+  std::printf("\n");
+  for (const char* kind : {"whole", "reversed", "turns", "start_at"}) EXPECT_GE(met[kind], at_least(10)) << kind;
+  EXPECT_GE(met["inexact"], at_least(10));
+  EXPECT_GE(met["refined"], at_least(40));
+}
+
+TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
+  Problem problem = io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml");
+  const Waypoint first = problem.waypoints[0];
+  problem.waypoints.clear();
+  constexpr int kCount = 5000;
+  for (int k = 0; k < kCount; ++k) {
+    const double t = static_cast<double>(k) / (kCount - 1);
+    Waypoint waypoint = first;
+    waypoint.position += Vector3d(0.04 * std::sin(kTwoPi * t), 0.5 * t, 0.03 * std::sin(2 * kTwoPi * t));
+    waypoint.orientation = first.orientation * Quaterniond(Eigen::AngleAxisd(0.1 * std::sin(kTwoPi * t), Vector3d::UnitY()));
+    problem.waypoints.push_back(waypoint);
+  }
+  problem = with_motion_defaults(problem);
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  Planner planner(problem);
+  const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250});
+  ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
+  EXPECT_EQ(plan.result.trajectory.size(), static_cast<std::size_t>(kCount));
+  EXPECT_LE(plan.result.cost, plan.refinement->cost_before);
+  ASSERT_TRUE(plan.motion->motion) << plan.motion->failure->reason;
+  EXPECT_LE(plan.motion->motion->duration, 1.1 * plan.motion->motion->ideal);
+  EXPECT_TRUE(plan.motion->motion->stops.empty());
+  const PreparedRobot robot(problem);
+  EXPECT_TRUE(check_trajectory(robot, problem, plan.result.trajectory).passed);
+  EXPECT_TRUE(check_motion(robot, problem, plan.motion->motion->rows).passed);
 }
 
 TEST(Refine, TheResolutionStopsMattering) {
