@@ -194,6 +194,8 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
 
 MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined, const std::optional<TimingOptions>& timing) {
   const Budget budget = options.budget();
+  const bool own_cost = refined && options.hooks.cost;  // off the lattice it is not known
+  refined = refined && !own_cost;
   // Of the path that is executed, later.
   PlanOptions first = options;
   if (refined) first.evidence.tool_path_error = first.evidence.postures = false;
@@ -204,6 +206,12 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   plan.lattice_path = result.trajectory;
   const PlanView view = planner.view();
   RefineOptions margins;
+  margins.check = options.hooks.check;
+  if (own_cost)
+    plan.refinement = Refined{.rows = plan.lattice_path,
+                              .reason = "the caller's own cost is not refined",
+                              .cost_before = result.cost,
+                              .cost = result.cost};
   constexpr double kMostExtra = 2e-3;  // m
   auto start = std::chrono::steady_clock::now();
   try {

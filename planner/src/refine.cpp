@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "asked_hooks.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"
@@ -103,11 +104,12 @@ double singular_sine(const SrsArm& arm, const Config& q) {
 /// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
 class Judge {
  public:
-  /// `extra`: RefineOptions::extra_clearance.
-  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, double extra, const Budget& budget)
+  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, const RefineOptions& options,
+        const Budget& budget)
       : problem_(&problem),
         lattice_(&lattice),
-        extra_(extra),
+        extra_(options.extra_clearance),
+        check_(options.check, budget),
         world_(robot.world(), problem, budget),
         rule_(world_.edge_rule(robot.radii())),
         at_(world_, Certificates::kOn),
@@ -119,10 +121,13 @@ class Judge {
     if (!valid(q, given) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
     // What the motions from and to it will have to keep: a node that is bisected ends where it should, a motion that fails only
     // where it had better.
-    return problem_->limits.edges == EdgeMode::kNodes || !at_.next_below(q, Keep::kMidpoint);
+    if (problem_->limits.edges == EdgeMode::kContinuous && at_.next_below(q, Keep::kMidpoint)) return false;
+    return check_.states({&q, 1})[0];
   }
   /// Without any clearance besides.
-  [[nodiscard]] bool bare_node(const Config& q) { return valid(q, q) && !at_.next_below(q, Keep::kNode); }
+  [[nodiscard]] bool bare_node(const Config& q) {
+    return valid(q, q) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
+  }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
     budget_.poll();
@@ -143,7 +148,10 @@ class Judge {
         if (!(step_error(*lattice_, layer, end, (end == 0 ? a : b).branch, (end == 0 ? a : b).phi, b.phi - a.phi) <=
               *limits.step_error))
           return false;
-    return limits.edges == EdgeMode::kNodes || !edge_blocked(between_, rule_, a.q, b.q, budget_);
+    if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_)) return false;
+    if (!check_.checks_motions()) return true;
+    const StateCheck::Motion motion{a.q, b.q};
+    return check_.motions({&motion, 1})[0];
   }
 
   /// rad, what the lattice's window allows.
@@ -180,6 +188,7 @@ class Judge {
   const Problem* problem_;
   const SrsLattice* lattice_;
   double extra_;
+  AskedCheck check_;
   World world_;
   EdgeRule rule_;
   World::Query at_, between_;
@@ -387,7 +396,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
-  Judge judge(robot, problem, lattice, options.extra_clearance, budget);
+  Judge judge(robot, problem, lattice, options, budget);
   Refined result;
   result.rows = rows;
   result.cost_before = result.cost = cost_of(lattice, rows);

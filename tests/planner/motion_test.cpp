@@ -221,6 +221,72 @@ TEST(Refine, TheResolutionStopsMattering) {
   EXPECT_GT(dearest_before, 5);
 }
 
+/// Refuses one joint beyond a bound.
+class Beyond final : public StateCheck {
+ public:
+  Beyond(int joint, double most) : joint_(joint), most_(most) {}
+  [[nodiscard]] std::string name() const override { return "beyond"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = states[k][joint_] <= most_;
+    asked += static_cast<int>(states.size());
+  }
+  [[nodiscard]] bool checks_motions() const override { return true; }
+  void motions(std::span<const Motion> motions, std::span<bool> allowed) override {
+    for (std::size_t k = 0; k < motions.size(); ++k) allowed[k] = std::max(motions[k].from[joint_], motions[k].to[joint_]) <= most_;
+    asked += static_cast<int>(motions.size());
+  }
+  int asked = 0;
+
+ private:
+  int joint_;
+  double most_;
+};
+class NoCost final : public StateCost {
+ public:
+  [[nodiscard]] std::string name() const override { return "none"; }
+  void costs(std::span<const Config>, std::span<double> costs) override { std::fill(costs.begin(), costs.end(), 0.0); }
+};
+
+TEST(Refine, AsksTheCallersCheck) {
+  int beyond = 0, kept = 0, refined = 0;
+  const auto most = [](const std::vector<TrajectoryRow>& rows, int joint) {
+    double value = -1e9;
+    for (const TrajectoryRow& row : rows) value = std::max(value, row.q[joint]);
+    return value;
+  };
+  const int solved =
+      for_solved("CallersCheck", trials(40), [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
+        const Refined free = refine(robot, problem, found.trajectory);
+        for (const int joint : {0, 2, 4}) {
+          const double bound = most(found.trajectory, joint);
+          if (!(most(free.rows, joint) > bound + 1e-6)) continue;
+          ++beyond;
+          const auto check = std::make_shared<Beyond>(joint, bound);
+          PlanOptions options;
+          options.planner = PlannerKind::kLazy;
+          options.hooks.check = check;
+          Planner planner(problem);
+          const MotionPlan plan = plan_motion(planner, options, true, {});
+          ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
+          kept += most(plan.result.trajectory, joint) <= bound;
+          refined += plan.refinement->refined;
+          EXPECT_GT(check->asked, 0);
+          options.hooks.cost = std::make_shared<NoCost>();
+          options.evidence.postures = true;
+          const MotionPlan costly = plan_motion(planner, options, true, {});
+          EXPECT_FALSE(costly.refinement->refined);
+          EXPECT_EQ(costly.refinement->reason, "the caller's own cost is not refined");
+          EXPECT_TRUE(costly.result.evidence.postures);
+          return;
+        }
+      });
+  std::printf("%d solved, %d go beyond a bound when refined freely, %d keep it, %d of them refined\n", solved, beyond, kept,
+              refined);
+  EXPECT_EQ(kept, beyond);
+  EXPECT_GE(beyond, at_least(4));
+  EXPECT_GE(refined, at_least(2));
+}
+
 TEST(Refine, RefusesRowsOfAnotherResolution) {
   const int solved = for_solved("Refine", 12, [&](const Problem& problem, const PreparedRobot& robot, const PlanResult& found) {
     Problem other = problem;

@@ -41,7 +41,8 @@ struct MotionPlan {
 /// Plans the planner's problem, refines the path if asked to, and times it if asked to. With timing, a path that jumps from branch
 /// to branch at a singularity is planned again without such steps, where that can be; and where bodies come too near between
 /// layers, the path is refined again with more clearance at them. The time-out is for everything; what is known when it passes
-/// stays. The problem should be one with_motion_defaults(). Throws as Planner::plan().
+/// stays. The caller's own check is asked of the refined path as well, but not of samples; with a cost of the caller's own paths
+/// are not refined. The problem should be one with_motion_defaults(). Throws as Planner::plan().
 [[nodiscard]] MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refined,
                                      const std::optional<TimingOptions>& timing);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "swivel/core/refined.hpp"
@@ -13,6 +14,8 @@ struct RefineOptions {
   /// m, kept besides the clearance at layers, as far as the path given does: optima lie on the bound, and the motion between
   /// layers comes a little nearer.
   double extra_clearance = 0.1e-3;
+  /// The caller's own rule, asked of layers and of the motions between them.
+  std::shared_ptr<StateCheck> check = nullptr;  // shared: with the plan and its caller
 };
 
 /// Makes a valid path of the lattice cheaper and smoother: the arm angles of its layers, off the grid, branches and joint images
