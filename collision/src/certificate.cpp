@@ -59,6 +59,14 @@ Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
   return {aside * p.x(), aside * p.y(), std::copysign(std::max(0.0, std::abs(p.z()) - cylinder.length / 2), p.z())};
 }
 
+/// How far inside the solid a point lies that does.
+double depth(const Box& box, const Vector3d& p) {
+  return (box.size / 2 - p.cwiseAbs()).minCoeff();
+}
+double depth(const Cylinder& cylinder, const Vector3d& p) {
+  return std::min(cylinder.radius - std::hypot(p.x(), p.y()), cylinder.length / 2 - std::abs(p.z()));
+}
+
 /// A convex solid's distance is convex along a segment: its least value lies between the values and the tangents on both sides.
 template <class Solid>
 Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
@@ -85,7 +93,7 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
   return {};
 }
 
-Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double ahead) {
+Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double ahead, int& triangle) {
   const Segment core = core_of(round);
   const double radius = radius_of(round.shape->shape);
   if (is_round(other))
@@ -94,7 +102,7 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
   const Range range(d, ahead, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
-  const Proof surface = range.of(other.shape->triangles->distance(there, range.low, range.far));
+  const Proof surface = range.of(other.shape->triangles->distance(there, range.low, range.far, triangle));
   return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
@@ -112,11 +120,40 @@ bool solid_holds(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
   return std::any_of(points.begin(), points.end(), holds);
 }
 
-Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead) {
+/// Less than 0 inside.
+template <class Solid>
+double signed_distance(const Solid& solid, const Vector3d& p) {
+  const double out = way_out(solid, p).norm();
+  return out > 0 ? out : -depth(solid, p);
+}
+
+/// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`.
+template <class Solid>
+bool finds_nearer(double low, const Solid& solid, const Pose& to_solid, const TriangleTree& body, int& first) {
+  const auto gap = [&](const Vector3d& p) { return signed_distance(solid, to_solid * p); };
+  const auto nearer = [&](const Triangle& t) {
+    return gap(t.a) < low || gap(t.a + t.ab) < low || gap(t.a + t.ac) < low || gap(t.a + (t.ab + t.ac) / 3) < low;
+  };
+  return body.seek(low, gap, nearer, first);
+}
+/// A surface need not be searched as a whole to find a part of it that is well inside the other body. Proves only what the search
+/// of the whole would (a prism lacks what is beyond it), so that it is a matter of time alone.
+bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
+  if (solid.shape->kind != FclShape::Kind::kSolid) return false;
+  const double low = d - solid.shape->beyond_triangles;
+  if (!(low > 0)) return false;
+  const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
+  if (const auto* box = std::get_if<Box>(&solid.shape->shape))
+    return finds_nearer(low, *box, to_solid, *body.shape->triangles, first);
+  return finds_nearer(low, std::get<Cylinder>(solid.shape->shape), to_solid, *body.shape->triangles, first);
+}
+
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness) {
   if (!a.shape->triangles || !b.shape->triangles) return {};
   const Range range(d, ahead, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
+  if (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)) return kCollides;
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far));
+  const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far, witness));
   if (surface.certificate == Certificate::kColliding) return surface;
   const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
   const bool inside = one_inside_other(a, b) || (surfaces_apart && (solid_holds(a, b) || solid_holds(b, a)));
@@ -125,14 +162,15 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 
 }  // namespace
 
-Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead) {
-  if (is_round(a)) return prove_round(a, b, d, ahead);
-  if (is_round(b)) return prove_round(b, a, d, ahead);
-  return prove_triangles(a, b, d, ahead);
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness) {
+  if (is_round(a)) return prove_round(a, b, d, ahead, witness.b);
+  if (is_round(b)) return prove_round(b, a, d, ahead, witness.a);
+  return prove_triangles(a, b, d, ahead, witness);
 }
 
 Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
-  return prove(a, b, d, 0).certificate;
+  TrianglePair none;
+  return prove(a, b, d, 0, none).certificate;
 }
 
 }  // namespace swivel::detail

@@ -17,10 +17,12 @@ enum class Certificate { kFree, kColliding, kNone };
 [[nodiscard]] Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
 
 /// The same, with a number that the clearance is not below where it is kFree, m: looks `ahead` beyond d for a larger one.
+/// `witness`: triangles (of a and of b, where they have any) at which the search for a proof begins, and where it ended. Of bodies
+/// that have moved little since, one look there often proves the same again; the answer does not depend on it.
 struct Proof {
   Certificate certificate = Certificate::kNone;
   double floor = 0;
 };
-[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead);
+[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness);
 
 }  // namespace swivel::detail

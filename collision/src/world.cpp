@@ -260,6 +260,7 @@ struct World::Query::Impl {
   std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
   std::vector<PlacedBound> moved_to;  // by body; empty after forget()
   std::vector<double> reserve;        // by pair, m
+  std::vector<TrianglePair> witness;  // by pair, and one for any other: where its last proof was found
   std::vector<std::size_t> due;       // pairs that their reserve does not prove free
 
   Impl(const World::Impl& w, Certificates c)
@@ -268,7 +269,8 @@ struct World::Query::Impl {
         in_place(w.bodies.size()),
         moved(w.bodies.size()),
         step(w.bodies.size()),
-        reserve(w.pairs.size(), std::numeric_limits<double>::lowest()) {
+        reserve(w.pairs.size(), std::numeric_limits<double>::lowest()),
+        witness(w.pairs.size() + 1) {
     due.reserve(reserve.size());
     moved_to.reserve(moved.size());
     displacements[0].setIdentity();
@@ -314,7 +316,7 @@ struct World::Query::Impl {
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
       const double d = world->required(k, level);
-      if (d >= 0 && p != suspect && is_below(p, d, certify_pair(p, d))) return p;
+      if (d >= 0 && p != suspect && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
     }
     return std::nullopt;
   }
@@ -334,7 +336,8 @@ struct World::Query::Impl {
     if (!(d >= 0)) return false;
     put(p.a);
     put(p.b);
-    return is_below(p, d, certify_pair(p, d));
+    const auto k = static_cast<std::size_t>(std::find(world->pairs.begin(), world->pairs.end(), p) - world->pairs.begin());
+    return is_below(p, d, certify_pair(p, d, witness[k]));
   }
   bool is_below(const BodyPair& p, double d, Certificate certificate) {
     surely = certificate != Certificate::kNone;
@@ -344,9 +347,9 @@ struct World::Query::Impl {
     own.contradictions += certificate == (verdict ? Certificate::kFree : Certificate::kColliding);
     return verdict;
   }
-  [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d) const {
+  [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d, TrianglePair& from) const {
     if (surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
-    return certificates == Certificates::kOff ? Certificate::kNone : certify(placed(p.a), placed(p.b), d);
+    return certificates == Certificates::kOff ? Certificate::kNone : prove(placed(p.a), placed(p.b), d, 0, from).certificate;
   }
 
   void forget() {
@@ -394,7 +397,7 @@ struct World::Query::Impl {
     if (clear_by(ball_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)))) return Certificate::kFree;
     const double floor = distance_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     if (clear_by(floor)) return Certificate::kFree;
-    const Proof proof = prove(placed(p.a), placed(p.b), d, ahead);
+    const Proof proof = prove(placed(p.a), placed(p.b), d, ahead, witness[k]);
     clear_by(std::max(floor, proof.floor));
     return floor >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }

@@ -195,7 +195,8 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
         ASSERT_EQ(certificate, Certificate::kColliding) << what;
       }
       tally.add(certificate);
-      const Proof ahead = prove(a, b, d, 0.01);
+      TrianglePair nowhere;
+      const Proof ahead = prove(a, b, d, 0.01, nowhere);
       ASSERT_EQ(ahead.certificate, certificate) << what;
       ASSERT_LE(ahead.floor, clearance + kTau) << what;
     }
@@ -212,6 +213,52 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
   std::printf("%d pairs of bodies, %lld FCL calls\n", count, static_cast<long long>(fcl.counters().fcl_calls));
 }
 INSTANTIATE_TEST_SUITE_P(Four, MeshLanes, ::testing::Range(0, 4));
+
+/// A proof begins where the last one of the same bodies ended. That must not change what it says.
+TEST(Certificates, DoNotDependOnWhereTheLastOneEnded) {
+  const std::uint64_t base = test::seed("Witnesses");
+  Random random(base);
+  const auto pool = meshes();
+  const int count = test::trials(400), steps = 25;
+  Verdicts all;
+  MeshStore store;
+  for (int k = 0; k < count; ++k) {
+    const FclShape mesh = make_fcl_shape(pool[random.below(static_cast<int>(pool.size()))], store);
+    Shape other = pool[random.below(static_cast<int>(pool.size()))];
+    if (const int kind = random.below(5); kind == 0)
+      other = Capsule{0.03, 0.2};
+    else if (kind <= 2)
+      other = Box{random_size(random, 0.02, 0.3)};
+    else if (kind == 3)
+      other = Cylinder{random.uniform(0.01, 0.1), random.uniform(0.02, 0.3)};
+    const FclShape moving = make_fcl_shape(other, store);
+    const Pose at_rest = Pose::Identity();
+    Pose pose = random_pose(random, 0.4);
+    const bool swapped = random.coin();
+    TrianglePair kept;
+    for (int step = 0; step < steps; ++step) {
+      const PlacedShapeRef a = swapped ? PlacedShapeRef{&moving, &pose} : PlacedShapeRef{&mesh, &at_rest};
+      const PlacedShapeRef b = swapped ? PlacedShapeRef{&mesh, &at_rest} : PlacedShapeRef{&moving, &pose};
+      const double d = random.coin(0.2) ? 0 : random.uniform(0, 0.03), ahead = random.coin() ? 0 : 0.01;
+      TrianglePair nowhere;
+      const Proof fresh = prove(a, b, d, ahead, nowhere), proof = prove(a, b, d, ahead, kept);
+      ASSERT_EQ(proof.certificate, fresh.certificate)
+          << "SWIVEL_TEST_SEED=" << base << " case " << k << " step " << step << " d " << d;
+      if (fresh.certificate == Certificate::kFree) {
+        ASSERT_NEAR(proof.floor, fresh.floor, 1e-12);
+      }
+      all.add(proof.certificate);
+      pose.translation() += 0.02 * random_size(random, -1, 1);
+      pose.linear() = (Quaterniond(pose.linear()) * Quaterniond(1, random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), 0))
+                          .normalized()
+                          .toRotationMatrix();
+    }
+  }
+  std::printf("%d questions: %d certified free, %d certified colliding, %d undecided\n", all.all(), all.free, all.colliding,
+              all.none);
+  EXPECT_GT(all.free, all.all() / 4);
+  EXPECT_GT(all.colliding, all.all() / 4);
+}
 
 TEST(Certificates, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
   MeshStore store;
