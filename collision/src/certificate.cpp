@@ -106,20 +106,6 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
   return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
-/// A point of `inner` lies in the box or cylinder `outer`, where their surfaces do not meet.
-bool solid_holds(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
-  const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
-  const auto holds = [&](const Vector3d& p) {
-    const Vector3d x = to_outer * p;
-    const auto* box = std::get_if<Box>(&outer.shape->shape);
-    return (box ? way_out(*box, x) : way_out(std::get<Cylinder>(outer.shape->shape), x)).isZero(0);
-  };
-  if (outer.shape->kind != FclShape::Kind::kSolid) return false;
-  if (!inner.shape->mesh) return holds(Vector3d::Zero());
-  const auto& points = inner.shape->mesh->part_points();
-  return std::any_of(points.begin(), points.end(), holds);
-}
-
 /// Less than 0 inside.
 template <class Solid>
 double signed_distance(const Solid& solid, const Vector3d& p) {
@@ -156,7 +142,7 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
   const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far, witness));
   if (surface.certificate == Certificate::kColliding) return surface;
   const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
-  const bool inside = one_inside_other(a, b) || (surfaces_apart && (solid_holds(a, b) || solid_holds(b, a)));
+  const bool inside = one_inside_other(a, b) || (surfaces_apart && one_inside_solid(a, b));
   return inside ? kCollides : surface;
 }
 

@@ -31,6 +31,8 @@ class MeshModel {
   [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const;
   /// For distances, which an OBB cannot bound.
   [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
+  /// The same of some of the triangles that triangles() was made of, by their places there; at least one.
+  [[nodiscard]] std::unique_ptr<fcl::BVHModel<fcl::RSSd>> distance_tree_of(const std::vector<int>& places) const;
   /// Set when the mesh is closed.
   [[nodiscard]] const std::optional<ClosedMesh>& solid() const { return solid_; }
   /// A point of every connected part.
@@ -38,6 +40,7 @@ class MeshModel {
 
  private:
   MeshPtr mesh_;
+  std::vector<std::array<int, 3>> with_area_;
   std::shared_ptr<const TriangleTree> triangles_;  // shared: every shape made of the mesh
   std::optional<ClosedMesh> solid_;
   std::vector<Vector3d> part_points_;

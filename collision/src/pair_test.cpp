@@ -15,6 +15,16 @@ namespace swivel::detail {
 
 namespace {
 
+/// Surfaces that are nearer are left to FCL as a whole, m: there it matters what is inside what.
+constexpr double kTouching = 2 * kVerdictBand;
+
+/// Of the triangles of two bodies that have some, m.
+double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+  TrianglePair anywhere;
+  constexpr double kFar = 1e6;
+  return a.shape->triangles->distance(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, 0, kFar, anywhere);
+}
+
 bool is_round(const PlacedShapeRef& body) {
   return body.shape->kind == FclShape::Kind::kRound;
 }
@@ -31,7 +41,8 @@ bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d)
     // FCL skips subtrees that cannot beat the result it is given, so a result that starts just above d gives the verdict of a fresh
     // one without searching for a minimum that nobody asks for.
     constexpr double kAbove = 1e-5;
-    const double found = distance(a.shape->distance_geometry(), *a.pose, b.shape->distance_geometry(), *b.pose, d + kAbove);
+    const bool some = meshes_ == Meshes::kNear && d > kTouching && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
+    const double found = some ? near_distance(a, b, d + kVerdictBand, d + kAbove) : whole_distance(a, b, d + kAbove);
     near = found < d || found <= 0;
   }
   return near || one_inside_other(a, b);
@@ -45,7 +56,9 @@ double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   } else if (is_round(b)) {
     found = inflated_meets(b, a, false, 0) ? 0 : core_distance(b, a, false);
   } else {
-    found = distance(a.shape->distance_geometry(), *a.pose, b.shape->distance_geometry(), *b.pose, kUnbounded);
+    const bool some = meshes_ == Meshes::kNear && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
+    const double surfaces = some ? surface_distance(a, b) : 0;
+    found = surfaces > kTouching ? near_distance(a, b, surfaces + kVerdictBand, kUnbounded) : whole_distance(a, b, kUnbounded);
   }
   return found <= 0 || one_inside_other(a, b) ? 0 : found;
 }
@@ -87,6 +100,23 @@ double PairTest::core_distance(const PlacedShapeRef& round, const PlacedShapeRef
   if (const auto* sphere = std::get_if<Sphere>(&round.shape->shape)) return ask(fcl::Sphered(0)) - sphere->radius;
   const auto& capsule = std::get<Capsule>(round.shape->shape);
   return ask(fcl::Capsuled(0, capsule.length)) - capsule.radius;
+}
+
+double PairTest::whole_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double bound) {
+  return distance(a.shape->distance_geometry(), *a.pose, b.shape->distance_geometry(), *b.pose, bound);
+}
+
+/// The same of the triangles that are within `limit` of each other, or `bound` where there are none; `limit` is by more than FCL
+/// may err above what is sought.
+double PairTest::near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double limit, double bound) {
+  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
+  const double beyond = a.shape->beyond_triangles + b.shape->beyond_triangles;
+  const auto near = a.shape->triangles->nearer(*b.shape->triangles, b_in_a, limit + beyond);
+  if (near[0].empty()) return bound;
+  const auto part_a = a.shape->mesh ? a.shape->mesh->distance_tree_of(near[0]) : nullptr;
+  const auto part_b = b.shape->mesh ? b.shape->mesh->distance_tree_of(near[1]) : nullptr;
+  const fcl::CollisionGeometryd &near_a = part_a ? *part_a : *a.shape->geometry, &near_b = part_b ? *part_b : *b.shape->geometry;
+  return distance(near_a, *a.pose, near_b, *b.pose, bound);
 }
 
 /// FCL's distance where it is below `bound`, else `bound`; zero or negative when the surfaces meet or FCL fails.

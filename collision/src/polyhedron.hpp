@@ -10,8 +10,8 @@ namespace swivel::detail {
 /// Triangles as collision has them: those less than a nanometre high are left out, since their neighbours' edges cover them and FCL
 /// returns an unset distance for a triangle without area.
 [[nodiscard]] std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh);
-/// Null where no triangle has an area.
-[[nodiscard]] std::shared_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh);
+/// Of these triangles of the mesh; null where there are none.
+[[nodiscard]] std::shared_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some);
 
 [[nodiscard]] TriangleMesh surface_of(const Box& box);
 /// A prism inside the cylinder. No point of the cylinder is further than `beyond_prism` from it, m.

@@ -109,7 +109,7 @@ void RobotPart::drop_always_touching(const Budget& budget) {
   for (Candidate& candidate : candidates_)
     if (candidate.sampled) suspects.push_back(&candidate);
   Samples samples(chain);
-  PairTest fcl;
+  PairTest fcl(PairTest::Meshes::kNear);
   for (int sample = 0; sample < kSamples && !suspects.empty(); ++sample) {
     const auto moved = samples.next();
     std::erase_if(suspects, [&](const Candidate* c) {
@@ -131,7 +131,7 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     const std::size_t asked = static_cast<std::size_t>(&moved - samples.data()) + 1;
     if (asked - near.size() > kHalf) return kFar;
   }
-  PairTest fcl;
+  PairTest fcl(PairTest::Meshes::kNear);
   std::vector<double> clearances;
   for (const auto* moved : near) {
     budget.poll();

@@ -43,11 +43,11 @@ bool surely_further(const Triangle& s, const Triangle& t, double limit) {
     const double least = std::max(std::min({h, hb, hc}), -std::max({h, hb, hc}));
     return least > 0 && least * least >= limit;
   };
-  if (above(s, t) || above(t, s)) return true;
   const auto low = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMin(x.ac).cwiseMin(0)); };
   const auto high = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMax(x.ac).cwiseMax(0)); };
   const Vector3d gap = (low(s) - high(t)).cwiseMax(low(t) - high(s)).cwiseMax(0);
-  return gap.squaredNorm() >= limit;
+  if (gap.squaredNorm() >= limit) return true;
+  return above(s, t) || above(t, s);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ namespace swivel::detail {
 namespace {
 
 constexpr int kLeaf = 4;
+constexpr int kBox = 12;  // triangles of a box: one leaf, whose bound is the box itself
 /// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment. Need not be
 /// told where it is at least `limit`.
 class BoxBound {
@@ -51,6 +52,13 @@ class BoxPairBound {
   Matrix3d turn_, spread_;
 };
 
+/// Least squared distance that a triangle may have from a box: by the gaps along the box's axes.
+double squared_gap(const Triangle& t, const Vector3d& center, const Vector3d& half) {
+  const Vector3d from = t.a - center;
+  const Vector3d low = from + t.ab.cwiseMin(t.ac).cwiseMin(0), high = from + t.ab.cwiseMax(t.ac).cwiseMax(0);
+  return (low - half).cwiseMax(-high - half).cwiseMax(0).squaredNorm();
+}
+
 }  // namespace
 
 TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {
@@ -61,7 +69,11 @@ TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::mo
   build(items, 0, static_cast<int>(items.size()));
   std::vector<Triangle> in_order;
   in_order.reserve(items.size());
-  for (const Item& item : items) in_order.push_back(triangles_[item.triangle]);
+  places_.reserve(items.size());
+  for (const Item& item : items) {
+    in_order.push_back(triangles_[item.triangle]);
+    places_.push_back(item.triangle);
+  }
   triangles_.swap(in_order);
 }
 
@@ -69,7 +81,7 @@ Eigen::AlignedBox3d TriangleTree::build(std::vector<Item>& items, int begin, int
   const std::size_t index = nodes_.size();
   nodes_.push_back({Vector3d::Zero(), Vector3d::Zero(), begin, end, 0});
   Eigen::AlignedBox3d box;
-  if (end - begin <= kLeaf) {
+  if (end - begin <= kLeaf || items.size() <= kBox) {
     for (int k = begin; k < end; ++k) {
       const Triangle& t = triangles_[items[k].triangle];
       box.extend(t.a).extend(t.a + t.ab).extend(t.a + t.ac);
@@ -133,6 +145,12 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
 }
 
 double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit, TrianglePair& first) const {
+  if (triangles_.size() > kBox && other.triangles_.size() <= kBox) {  // triangles are held against the box itself
+    TrianglePair swapped{first.b, first.a};
+    const double found = other.distance(*this, pose.inverse(Eigen::Isometry), enough, limit, swapped);
+    first = {swapped.b, swapped.a};
+    return found;
+  }
   const BoxPairBound bound(pose);
   const auto squared_bound = [&](int a, int b) {
     const Node &m = nodes_[a], &n = other.nodes_[b];
@@ -163,6 +181,7 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     if (m.right == 0 && n.right == 0) {
       for (int j = n.begin; j < n.end; ++j) {
         const Triangle moved = other.triangles_[j].moved(pose);
+        if (squared_gap(moved, m.center, m.half) >= least) continue;
         for (int k = m.begin; k < m.end; ++k)
           if (meet(k, j, moved)) return std::sqrt(least);
       }
@@ -179,6 +198,37 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     if (near.bound < least) stack[open++] = near;
   }
   return std::sqrt(least);
+}
+
+std::array<std::vector<int>, 2> TriangleTree::nearer(const TriangleTree& other, const Pose& pose, double limit) const {
+  const BoxPairBound bound(pose);
+  std::array<std::vector<int>, 2> near;
+  std::vector<std::array<int, 2>> open{{0, 0}};
+  while (!open.empty()) {
+    const auto [a, b] = open.back();
+    open.pop_back();
+    const Node &m = nodes_[a], &n = other.nodes_[b];
+    if (bound.squared(m.center, m.half, n.center, n.half) >= limit * limit) continue;
+    if (m.right == 0 && n.right == 0) {
+      for (int j = n.begin; j < n.end; ++j) {
+        const Triangle moved = other.triangles_[j].moved(pose);
+        for (int k = m.begin; k < m.end; ++k) {
+          if (squared_distance(triangles_[k], moved, limit * limit) >= limit * limit) continue;
+          near[0].push_back(places_[k]);
+          near[1].push_back(other.places_[j]);
+        }
+      }
+    } else if (n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm())) {
+      open.insert(open.end(), {{a + 1, b}, {m.right, b}});
+    } else {
+      open.insert(open.end(), {{a, b + 1}, {a, n.right}});
+    }
+  }
+  for (auto& triangles : near) {
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  }
+  return near;
 }
 
 }  // namespace swivel::detail

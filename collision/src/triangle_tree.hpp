@@ -25,6 +25,9 @@ class TriangleTree {
   /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
                                 TrianglePair& first) const;
+  /// The triangles that are nearer than `limit` to one of the other tree, and those of the other tree, by their places in the lists
+  /// that the trees were made of, in ascending order.
+  [[nodiscard]] std::array<std::vector<int>, 2> nearer(const TriangleTree& other, const Pose& pose, double limit) const;
   /// Looks for a triangle of which `proves` holds where `gap`, a signed distance from some solid, m, is least. Begins with the
   /// triangle `first`, and leaves there the one found. Looks into a few boxes only, none of them at a gap of `enough`: where it
   /// finds no triangle, there may be one.
@@ -46,6 +49,7 @@ class TriangleTree {
   static constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
 
   std::vector<Triangle> triangles_;
+  std::vector<int> places_;  // of triangles_ in the list given
   std::vector<Node> nodes_;
 };
 

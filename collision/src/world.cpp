@@ -266,6 +266,7 @@ struct World::Query::Impl {
   Impl(const World::Impl& w, Certificates c)
       : world(&w),
         certificates(c),
+        test(c == Certificates::kOn ? PairTest::Meshes::kNear : PairTest::Meshes::kWhole),
         in_place(w.bodies.size()),
         moved(w.bodies.size()),
         step(w.bodies.size()),

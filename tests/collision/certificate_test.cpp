@@ -157,7 +157,7 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
   Random random(base * 64 + static_cast<std::uint64_t>(GetParam()));
   const auto pool = meshes();
   MeshStore store;
-  PairTest fcl;
+  PairTest fcl, near_parts(PairTest::Meshes::kNear);
   Verdicts round, solid, mesh, touching;
   const int count = test::trials(5000);
   for (int k = 0; k < count; ++k) {
@@ -177,14 +177,20 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     const PlacedShapeRef a = swapped ? PlacedShapeRef{&fb, &X_b} : PlacedShapeRef{&fa, &X_a};
     const PlacedShapeRef b = swapped ? PlacedShapeRef{&fa, &X_a} : PlacedShapeRef{&fb, &X_b};
     const double clearance = fcl.clearance(a, b);
+    const std::string where = "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
+    ASSERT_EQ(near_parts.clearance(a, b), clearance) << where << " kind " << kind;
+    if (clearance > 0 && kind > 2) {
+      ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1))) << where << " kind " << kind;
+      ASSERT_FALSE(near_parts.below(a, b, clearance)) << where << " kind " << kind;
+    }
     Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
     const double beyond = fa.beyond_triangles + fb.beyond_triangles;
     for (const double d : {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau, clearance + 3 * kTau,
                            clearance + random.uniform(-0.02, 0.02)}) {
       if (d < 0) continue;
       const Certificate certificate = certify(a, b, d);
-      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k) + " kind " +
-                               std::to_string(kind) + " clearance " + std::to_string(clearance) + " d " + std::to_string(d);
+      const std::string what =
+          where + " kind " + std::to_string(kind) + " clearance " + std::to_string(clearance) + " d " + std::to_string(d);
       ASSERT_FALSE(certificate == Certificate::kFree && (clearance < d || clearance == 0)) << what;
       ASSERT_FALSE(certificate == Certificate::kColliding && clearance >= d && clearance > 0) << what;
       // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all is decided.
