@@ -353,6 +353,11 @@ struct World::Query::Impl {
     return certificates == Certificates::kOff ? Certificate::kNone : prove(placed(p.a), placed(p.b), d, 0, from).certificate;
   }
 
+  /// Without FCL: that the clearance of one of the pairs is more than this.
+  [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
+    return certificates == Certificates::kOn && certify_pair(world->pairs[k], d, witness[k]) == Certificate::kFree;
+  }
+
   void forget() {
     moved_to.clear();
     std::fill(moved.begin(), moved.end(), 0);
@@ -462,6 +467,9 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   for (const Candidate& c : order) {
     const bool may_touch = c.floor <= kBoundSafety, may_be_nearest = c.floor - kBoundSafety <= answer.least;
     if (!may_touch && !may_be_nearest && c.floor - c.required - kBoundSafety > std::get<1>(least)) continue;
+    // Neither the least margin nor the least clearance, where it is proved to be further than both.
+    const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
+    if (std::get<0>(least) && beyond < kMost && impl_->proved_beyond(c.pair, beyond)) continue;
     const double found = impl_->test.clearance(impl_->placed(pairs[c.pair].a), impl_->placed(pairs[c.pair].b));
     answer.least = std::min(answer.least, found);
     if (const std::tuple mine{found > 0, found - c.required, c.pair}; mine < least) {

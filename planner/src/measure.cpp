@@ -40,7 +40,7 @@ void measure_tool_path_error(const Chain& chain, const ToolPath& path, const Bud
 
 void measure_postures(const PreparedRobot& robot, const ToolPath& path, const World& world, const Budget& budget,
                       PlanResult& result) {
-  World::Query query(world);
+  World::Query query(world, Certificates::kOn);
   std::optional<double> least;
   std::optional<LeastMargin> margin;
   double manipulability = std::numeric_limits<double>::infinity();

@@ -144,7 +144,7 @@ std::vector<Row> refined_rows(const SrsLattice& lattice, const std::vector<Traje
 }
 
 Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
-  World::Query query(world);
+  World::Query query(world, Certificates::kOn);
   Json rows = Json::array();
   for (int layer = 0; layer < static_cast<int>(shown.size()); ++layer) {
     budget.poll();
@@ -290,7 +290,7 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const Json& diag
 /// Clearances of cells, in tenths of a millimetre and 16 bits; `kUnknown` where nothing is near or nobody asked.
 class Clearances {
  public:
-  Clearances(const World& world, std::size_t cells) : query_(world), each_(cells / kMost + 1) {}
+  Clearances(const World& world, std::size_t cells) : query_(world, Certificates::kOn), each_(cells / kMost + 1) {}
   void add(const Config& q, bool surely) {
     values.push_back(kUnknown);
     if (asked_++ % each_ != 0 && !surely) return;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "pair_test.hpp"
 #include "robots.hpp"
@@ -94,10 +95,10 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   const World empty(*robot.model, arm, test::problem_for(robot));
   const int scenes = test::trials(125), configurations = 1000;
   CollisionCounters sum;
-  std::int64_t questions = 0, at_threshold = 0;
+  std::int64_t questions = 0, at_threshold = 0, clearances = 0, touching = 0;
   for (int s = 0; s < scenes; ++s) {
     const World world(empty, random_scene(random, pool));
-    World::Query compared(world, Certificates::kCompared), fast(world, Certificates::kOn);
+    World::Query compared(world, Certificates::kCompared), fast(world, Certificates::kOn), off(world, Certificates::kOff);
     std::int64_t contradictions = 0;
     for (int k = 0; k < configurations; ++k) {
       const Config q = test::random_config(arm.chain, random);
@@ -109,6 +110,17 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
         ++questions;
         return below;
       };
+      if (k % 100 == 0) {
+        const auto plain = off.clearance(q), sooner = fast.clearance(q);
+        ASSERT_EQ(plain.has_value(), sooner.has_value());
+        if (plain) {
+          EXPECT_EQ(std::tuple(sooner->distance, sooner->required, sooner->least),
+                    std::tuple(plain->distance, plain->required, plain->least));
+          EXPECT_EQ(sooner->pair, plain->pair) << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k;
+          touching += plain->distance == 0;
+        }
+        ++clearances;
+      }
       ask(k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05));
       if (k % 20 != 0) continue;
       double low = 0, high = 0.3;  // of the clearance
@@ -135,6 +147,7 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
       robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
       static_cast<long long>(sum.certified_free), static_cast<long long>(sum.certified_colliding),
       static_cast<long long>(undecided), static_cast<long long>(sum.fcl_calls), static_cast<long long>(sum.contradictions));
+  EXPECT_GT(clearances - touching, clearances / 10);
   EXPECT_EQ(sum.contradictions, 0);
   EXPECT_EQ(sum.fcl_failures, 0);
   EXPECT_GT(at_threshold, scenes * 10);
