@@ -210,7 +210,7 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
   std::array<double, kDof> weights = cost.weights;
   for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
-    weights[j] = chain.limit[j].velocity > 0 ? 1 / chain.limit[j].velocity : 1;
+    weights[j] = chain.limit[j].velocity > 0 ? 1 / chain.limit[j].velocity : chain.roll ? 0 : 1;
   return weights;
 }
 
@@ -327,6 +327,7 @@ int ArcLattice::branch(int layer, int slot) const {
 }
 
 double ArcLattice::phi(int layer, int slot) const {
+  if (chain().roll) return point(layer, slot).q[kDof - 1];
   const auto G = chain().displacements(point(layer, slot).q);
   const Vector3d S = G[1] * foot(chain(), 1, 0), E = G[3] * foot(chain(), 3, 2), W = G[5] * foot(chain(), 5, 6);
   const Vector3d u = (W - S).normalized();

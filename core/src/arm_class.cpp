@@ -8,12 +8,16 @@ namespace swivel {
 ArmClass classify(const Chain& chain, const std::string& source) {
   ArmClass result;
   result.lock = lock_method(chain);
+  if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
+  if (chain.roll) {
+    result.not_srs = "six joints and the roll of the tool";
+    return result;
+  }
   try {
     result.srs = fit_srs(chain, source);
     result.kind = ArmKind::kSrs;
   } catch (const InputError& error) {
     result.not_srs = error.what();
-    if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
   }
   return result;
 }

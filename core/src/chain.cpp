@@ -99,7 +99,7 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     if (j < 0) fail(robot, "robot.hold: unknown joint '" + name + "': allowed are the joints of this file");
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (std::find(arm.begin(), arm.end(), j) != arm.end())
-      fail(robot, "robot.hold: joint '" + name + "' is one of the arm's seven: allowed are the others");
+      fail(robot, "robot.hold: joint '" + name + "' is one of the arm's: allowed are the others");
     if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
     if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
     if (joint.type != Joint::Type::kContinuous && (value < joint.lower - 1e-9 || value > joint.upper + 1e-9))
@@ -167,7 +167,7 @@ std::vector<std::string> limit_warnings(const Chain& chain) {
 }
 
 ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
-                   const std::map<std::string, double>& hold, const Pose& tool) {
+                   const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll) {
   const int base = require_link(robot, "robot.base_link", base_link);
   const int tip = require_link(robot, "robot.tip_link", tip_link);
   std::vector<int> arm;
@@ -175,13 +175,20 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (joint.movable() && !joint.mimic) arm.push_back(j);
   }
-  if (arm.size() < kDof)
+  const std::size_t joints = roll ? kDof - 1 : kDof;
+  if (arm.size() < joints)
     fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
-                    tip_link + "': allowed are at least seven");
-  arm.erase(arm.begin(), arm.end() - kDof);
+                    tip_link + "': allowed are at least seven, or six with path.roll");
+  if (roll && arm.size() > joints) {
+    const Joint& seventh = robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])];
+    if (seventh.type != Joint::Type::kPrismatic && hold.count(seventh.name) == 0)
+      fail(robot, "path.roll: the arm has seven joints: allowed are arms of six; robot.hold may name '" + seventh.name + "'");
+  }
+  arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
-      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's seven joints must turn");
+      fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's " +
+                      (roll ? "six" : "seven") + " joints must turn");
   const std::vector<double> position = held_positions(robot, hold, arm);
 
   // Parents come before children only by luck in a file: a link waits, with its children so far, for its parent.
@@ -211,7 +218,7 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
   for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
 
   Chain& chain = model.chain;
-  for (std::size_t k = 0; k < kDof; ++k) {
+  for (std::size_t k = 0; k < joints; ++k) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
     const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
     chain.joint_names[k] = joint.name;
@@ -222,6 +229,15 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
                       joint.acceleration, joint.jerk};
   }
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
+  if (roll) {
+    // X_6(q) Rot(z, -roll) is the waypoint where X_6 has turned the tool by the roll.
+    chain.roll = true;
+    chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";
+    chain.axis.back() = -chain.home.linear().col(2);
+    chain.point.back() = chain.home.translation();
+    chain.turn.back() = turn_about(chain.axis.back(), chain.point.back());
+    chain.limit.back() = {roll->lower, roll->upper, 0, roll->upper - roll->lower >= kTwoPi - 1e-9};
+  }
   return model;
 }
 

@@ -62,17 +62,20 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
-    if ((timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
+    const bool roll = chain.roll && k + 1 == kDof;
+    if (!roll && (timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
       throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
                        chain.joint_names[k] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
     continuous_[k] = limit.continuous || limit.wide();
-    cost_scale_[k] = cost_.metric == CostMetric::kTime ? 1 / limit.velocity : cost_.weights[k];
+    cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k] : roll ? 0 : 1 / limit.velocity;
     if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
       throw InputError(problem.source + ": joint '" + chain.joint_names[k] +
                        "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
   cost_unit_ = power_of_two_from(*std::max_element(cost_scale_.begin(), cost_scale_.end()));
-  row_step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, Config::Constant(limits_.joint_step));
+  Config bound = Config::Constant(limits_.joint_step);
+  if (chain.roll) bound[kDof - 1] = std::min(kPi, limits_.roll_slope * problem.resolution.ds);
+  row_step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, bound);
   for (int i = 0; timed && i + 1 < layers(); ++i) {
     const PathLayer& layer = path.layer(i);
     double dt = 0;
@@ -80,11 +83,11 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     if (limits_.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits_.tool_turn_speed);
     if (dt <= 0) continue;  // a step that the given speed does not time
     for (int k = 0; k < kDof; ++k) {
-      double& bound = row_step_bounds_[static_cast<std::size_t>(i)][k];
-      bound = std::min(bound, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
+      double& most = row_step_bounds_[static_cast<std::size_t>(i)][k];
+      if (!chain.roll || k + 1 < kDof) most = std::min(most, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
     }
   }
-  for (const Config& bound : row_step_bounds_) step_bounds_.push_back(bound + 2 * misfit_);
+  for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * misfit_);
 }
 
 std::optional<Config> Lattice::row(int, int, const Config& q) const {
@@ -166,7 +169,10 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
     const double t = 0.25 * static_cast<double>(k + 1);
     const Pose tool = chain.tool(q0 + t * delta);
     const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
-    deviation[k] = Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
+    // Of a tool that may turn about its z axis, the angle between the axes counts.
+    deviation[k] = chain.roll ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
+                                           asked.linear().col(2).dot(tool.linear().col(2)))
+                              : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
   }
   return deviation;
 }

@@ -119,6 +119,11 @@ void validate_robot(const Field& root, const Problem& problem) {
   if (!problem.model) fail(root("model"), "is null", "a robot model, as io::load_robot gives it");
   pose(root("tool"), problem.tool);
   for (const auto& [joint, position] : problem.hold) number(root("hold")(joint.c_str()), position, Range::kFinite);
+  if (problem.roll) {
+    number(root("roll")("lower"), problem.roll->lower, Range::kFinite);
+    number(root("roll")("upper"), problem.roll->upper, Range::kFinite);
+    if (!(problem.roll->lower < problem.roll->upper)) fail(root("roll")("lower"), "is not below `upper`", "lower < upper");
+  }
   names(root, "attached", problem.attached);
   for (std::size_t k = 0; k < problem.attached.size(); ++k) {
     const AttachedBody& body = problem.attached[k];
@@ -180,6 +185,7 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(field("joint_margin"), limits.joint_margin, kNonNegative);
   number(field("joint_step"), limits.joint_step, kPositive);
   number(field("arm_slope"), limits.arm_slope, kPositive);
+  number(field("roll_slope"), limits.roll_slope, kPositive);
   number(field("step_error"), limits.step_error, kPositive);
   number(field("tool_path_error"), limits.tool_path_error, kPositive);
   number(field("tool_angle_error"), limits.tool_angle_error, kPositive);

@@ -254,8 +254,9 @@ class ProblemReader {
   }
 
   void read_path(const YamlValue& value) {
-    const YamlSection section = value.section({"frame", "waypoints", "file", "smooth"});
+    const YamlSection section = value.section({"frame", "waypoints", "file", "smooth", "roll"});
     if (const auto smooth = section.find("smooth")) read_smooth(*smooth);
+    if (const auto roll = section.find_filled("roll")) read_roll(*roll);
     problem_.path_frame = problem_.base_link;
     if (const auto frame = section.find_filled("frame")) {
       problem_.path_frame = frame->text();
@@ -273,6 +274,18 @@ class ProblemReader {
     for (const YamlValue& item : waypoints->items()) problem_.waypoints.push_back(waypoint(item));
     if (problem_.waypoints.size() < 2)
       waypoints->fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
+  }
+
+  void read_roll(const YamlValue& value) {
+    problem_.roll = Roll{};
+    problem_.cost.weights.back() = 0;
+    if (!value.is_sequence()) {
+      if (value.text() != "free") value.fail("is '" + value.text() + "'", "free, or [lower, upper] in rad");
+      return;
+    }
+    const std::vector<double> ends = value.numbers(2, Range::kFinite);
+    problem_.roll = Roll{ends[0], ends[1]};
+    if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
   }
 
   /// null: the polyline, whatever the default of the command is.
@@ -303,9 +316,9 @@ class ProblemReader {
 
   void read_limits(const YamlValue& value) {
     const YamlSection section =
-        value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "step_error",
-                       "tool_path_error", "tool_angle_error", "tool_speed", "tool_turn_speed", "edges", "edge_clearance",
-                       "edge_tolerance", "joint_speed", "joint_acceleration", "joint_jerk"});
+        value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "roll_slope",
+                       "step_error", "tool_path_error", "tool_angle_error", "tool_speed", "tool_turn_speed", "edges",
+                       "edge_clearance", "edge_tolerance", "joint_speed", "joint_acceleration", "joint_jerk"});
     Limits& limits = problem_.limits;
     set(section, "clearance", Range::kExtent, limits.clearance);
     set(section, "self_clearance", Range::kExtent, limits.self_clearance);
@@ -313,6 +326,7 @@ class ProblemReader {
     set(section, "joint_margin", Range::kNonNegative, limits.joint_margin);
     set(section, "joint_step", Range::kPositive, limits.joint_step);
     set(section, "arm_slope", Range::kPositive, limits.arm_slope);
+    set(section, "roll_slope", Range::kPositive, limits.roll_slope);
     set(section, "step_error", Range::kPositive, limits.step_error);
     set(section, "tool_path_error", Range::kPositive, limits.tool_path_error);
     set(section, "tool_angle_error", Range::kPositive, limits.tool_angle_error);

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <variant>
 
+#include "swivel/collision/world.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/graph/cost_to_go.hpp"
@@ -21,14 +23,14 @@ const std::filesystem::path kData = SWIVEL_DATA_DIR;
 TEST(Robots, HaveOneCapsuleALink) {
   for (const std::string name : {"panda_like", "xarm7_like", "gen3_like", "fetch_like", "ur5e_like", "kr6_like"}) {
     const auto model = io::load_robot(kData / "robots" / (name + ".urdf"), kData / "robots" / (name + ".srdf"));
+    const bool six = name == "ur5e_like" || name == "kr6_like";
+    const auto roll = six ? std::optional(Roll{}) : std::nullopt;
     int links = 0;
     for (const Link& link : model->links) {
       if (link.name == "base_link" || link.name == "flange") continue;
       ++links;
       // The reader makes one capsule of a cylinder and two spheres, where they fit.
-      const bool six = name == "ur5e_like" || name == "kr6_like";
-      if (six) continue;
-      const ArmModel arm = build_arm(*model, "base_link", "flange", {}, Pose::Identity());
+      const ArmModel arm = build_arm(*model, "base_link", "flange", {}, Pose::Identity(), roll);
       int shapes = 0;
       for (const RobotBody& body : robot_bodies(*model, arm, {})) {
         if (body.name != link.name) continue;
@@ -37,7 +39,7 @@ TEST(Robots, HaveOneCapsuleALink) {
       }
       EXPECT_EQ(shapes, 1) << name << " " << link.name;
     }
-    EXPECT_EQ(links, name == "ur5e_like" || name == "kr6_like" ? 6 : 7);
+    EXPECT_EQ(links, six ? 6 : 7);
   }
 }
 
@@ -46,30 +48,46 @@ TEST(Robots, AreOfTheClassesTheyAreLike) {
       {"panda_like", "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)"},
       {"xarm7_like", "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)"},
       {"gen3_like", "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)"},
-      {"fetch_like", "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)"}};
+      {"fetch_like", "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)"},
+      {"ur5e_like", "closed form: axes 2, 3 and 4 are parallel; locks joint 7 (or 5, 6)"},
+      {"kr6_like", "closed form: axes 4, 5 and 6 meet in a point; locks joint 7"}};
+  Pose torch = Pose::Identity();
+  torch.translation() << 0.05, 0, 0.2;
+  torch.rotate(Eigen::AngleAxisd(0.7, Vector3d::UnitY()));
   for (const auto& [name, expected] : words) {
     const auto model = io::load_robot(kData / "robots" / (name + ".urdf"));
-    const ArmClass found = classify(build_arm(*model, "base_link", "flange", {}, Pose::Identity()).chain, name);
+    const bool six = name == "ur5e_like" || name == "kr6_like";
+    const ArmModel arm =
+        build_arm(*model, "base_link", "flange", {}, six ? torch : Pose::Identity(), six ? std::optional(Roll{}) : std::nullopt);
+    const ArmClass found = classify(arm.chain, name);
     EXPECT_EQ(found.kind, ArmKind::kArcs);
     EXPECT_EQ(found.lock.words(), expected) << name;
   }
 }
 
 TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
-  int rows = 0;
-  for (const std::string name : {"panda_weld_seam", "xarm7_polish_raster", "gen3_glue_bead", "fetch_wipe_table"}) {
+  int rows = 0, wound = 0;
+  for (const std::string name :
+       {"panda_weld_seam", "xarm7_polish_raster", "gen3_glue_bead", "fetch_wipe_table", "kr6_weld_pipe", "ur5e_deburr_edge"}) {
     Problem problem = io::load_problem(kData / "problems" / (name + ".yaml"));
     problem.resolution.ds = 0.02;
-    const ArmModel arm = build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold, problem.tool);
+    const ArmModel arm = build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold, problem.tool, problem.roll);
+    EXPECT_TRUE(World(*problem.model, arm, problem).warnings().empty()) << name;
     const ArmClass found = classify(arm.chain, name);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-    const ArcLattice lattice(arm.chain, found.lock, path, problem);
-    const auto togo = make_cost_to_go(lattice);
-    togo->sweep(lattice.layers() - 1);
-    std::int64_t expansions = 0;
-    const SlotPath slots = best_path(*togo, expansions);
-    ASSERT_EQ(slots.size(), static_cast<std::size_t>(lattice.layers())) << name;
-    const auto unwrapped = lattice.unwrap(slots);
+    std::optional<ArcLattice> lattice(std::in_place, arm.chain, found.lock, path, problem);
+    std::variant<ArcLattice::Rows, ArcLattice::Joints> unwrapped;
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const auto togo = make_cost_to_go(*lattice);
+      togo->sweep(lattice->layers() - 1);
+      std::int64_t expansions = 0;
+      const SlotPath slots = best_path(*togo, expansions);
+      ASSERT_EQ(slots.size(), static_cast<std::size_t>(lattice->layers())) << name;
+      unwrapped = lattice->unwrap(slots);
+      if (std::holds_alternative<ArcLattice::Rows>(unwrapped)) break;
+      ++wound;
+      lattice.emplace(lattice->with_windings(std::get<ArcLattice::Joints>(unwrapped)));
+    }
     ASSERT_TRUE(std::holds_alternative<ArcLattice::Rows>(unwrapped)) << name;
     for (const Config& q : std::get<ArcLattice::Rows>(unwrapped)) {
       ++rows;
@@ -81,6 +99,7 @@ TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
     }
   }
   EXPECT_GT(rows, 200);
+  EXPECT_GT(wound, 0);  // once round a pipe
 }
 
 }  // namespace

@@ -51,6 +51,26 @@ TEST(ProblemFile, WhatMotionsKeep) {
   EXPECT_EQ(sharp.smooth->angle, 0);
 }
 
+TEST(ProblemFile, RollOfTheTool) {
+  const ProblemFolder folder;
+  const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
+  EXPECT_FALSE(folder.load({}).roll);
+  EXPECT_EQ(folder.load({}).cost.weights[6], 1);
+  const Problem free = folder.load({{"path", "{roll: free, " + waypoints + "}"}});
+  ASSERT_TRUE(free.roll);
+  EXPECT_EQ(*free.roll, Roll{});
+  EXPECT_EQ(free.cost.weights[6], 0);
+  EXPECT_EQ(free.limits.roll_slope, 20);
+  const Problem some = folder.load({{"path", "{roll: [-0.5, 1], " + waypoints + "}"},
+                                    {"limits", "{roll_slope: 7}"},
+                                    {"cost", "{weights: [1, 1, 1, 1, 1, 1, 0.3]}"}});
+  ASSERT_TRUE(some.roll);
+  EXPECT_EQ(some.roll->lower, -0.5);
+  EXPECT_EQ(some.roll->upper, 1);
+  EXPECT_EQ(some.limits.roll_slope, 7);
+  EXPECT_EQ(some.cost.weights[6], 0.3);
+}
+
 TEST(ProblemFile, EveryKey) {
   const ProblemFolder folder;
   const Problem problem = folder.load({

@@ -30,13 +30,8 @@ inline Pose urdf_pose(const Vector3d& xyz, const Vector3d& rpy) {
   return pose;
 }
 
-inline Chain chain_of(const ArmTable& arm) {
-  std::vector<JointRow> rows = arm.joints;
-  Pose tip = urdf_pose(arm.tip_xyz, arm.tip_rpy);
-  if (rows.size() + 1 == kDof) {
-    rows.push_back({arm.tip_xyz, arm.tip_rpy, Vector3d::UnitZ(), 0, 0, true});
-    tip.setIdentity();
-  }
+/// Links "base", "l1", ...; a fixed joint leads to the tip.
+inline RobotModel model_of(const ArmTable& arm, const std::vector<JointRow>& rows, const Pose& tip) {
   RobotModel model;
   model.name = model.source = arm.name;
   model.links.push_back({"base", {}, -1});
@@ -59,7 +54,24 @@ inline Chain chain_of(const ArmTable& arm) {
   Joint fixed;
   fixed.origin = tip;
   add(fixed);
+  return model;
+}
+
+inline Chain chain_of(const ArmTable& arm) {
+  std::vector<JointRow> rows = arm.joints;
+  Pose tip = urdf_pose(arm.tip_xyz, arm.tip_rpy);
+  if (rows.size() + 1 == kDof) {
+    rows.push_back({arm.tip_xyz, arm.tip_rpy, Vector3d::UnitZ(), 0, 0, true});
+    tip.setIdentity();
+  }
+  const RobotModel model = model_of(arm, rows, tip);
   return build_arm(model, "base", model.links.back().name, {}, Pose::Identity()).chain;
+}
+
+/// Of six joints, with a tool that may turn so far about its own z axis.
+inline ArmModel arm_with_roll(const ArmTable& arm, const Roll& roll) {
+  const RobotModel model = model_of(arm, arm.joints, urdf_pose(arm.tip_xyz, arm.tip_rpy));
+  return build_arm(model, "base", model.links.back().name, {}, Pose::Identity(), roll);
 }
 
 /// Seven joints, none of them S-R-S but the last.

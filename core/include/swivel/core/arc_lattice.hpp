@@ -26,7 +26,7 @@ class ArcLattice final : public ExplicitLattice {
   /// of the determinant without joint 3.
   [[nodiscard]] int branch(int layer, int slot) const override;
   /// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on axis 2 nearest axis 1 to the
-  /// foot on axis 6 nearest axis 7, measured from the base's vertical.
+  /// foot on axis 6 nearest axis 7, measured from the base's vertical. Of an arm of six joints, the roll.
   [[nodiscard]] double phi(int layer, int slot) const override;
 
   /// Arcs of all layers.

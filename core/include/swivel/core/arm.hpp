@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct Chain {
   std::array<Vector3d, kDof> point;  ///< on the axis, base frame, q = 0, m
   std::array<JointLimit, kDof> limit;
   Pose home = Pose::Identity();  ///< tool in base at q = 0
+  /// The last joint is the roll: the arm's six joints have turned the tool by it about the tool's z axis, and tool(q) is the pose
+  /// without that turn, the waypoint's.
+  bool roll = false;
   /// exp([S] q) = still + cos(q) cosine + sin(q) sine, homogeneous matrices. Lynch & Park, Eq. (3.51) and (3.88).
   struct Turn {
     Eigen::Matrix4d still, cosine, sine;
@@ -62,15 +66,16 @@ struct LinkPlacement {
   Pose pose = Pose::Identity();  ///< link in base, q = 0, other joints held
 };
 
-/// The arm: the last seven movable joints before the tip; every other joint held at `hold` (default 0 or its nearest limit).
-/// Throws InputError for unknown names, a held joint that belongs to the arm or lies outside its limits, fewer than seven joints,
-/// a prismatic joint among the seven.
+/// The arm: the last seven movable joints before the tip, or with `roll` the last six, of which the tool's roll makes seven; every
+/// other joint held at `hold` (default 0 or its nearest limit). Throws InputError for unknown names, a held joint that belongs to
+/// the arm or lies outside its limits, fewer joints, a prismatic joint among them, and with `roll` a seventh turning joint that is
+/// not held by name.
 struct ArmModel {
   Chain chain;
   std::vector<LinkPlacement> links;  ///< by RobotModel link index
 };
 [[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
-                                 const std::map<std::string, double>& hold, const Pose& tool);
+                                 const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll = {});
 
 /// One collision body of the robot: a link's shape or an attached body.
 struct RobotBody {

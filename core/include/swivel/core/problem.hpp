@@ -62,6 +62,7 @@ struct Limits {
   double joint_margin = 0.0;                      ///< rad, kept from both ends of every bounded joint
   double joint_step = 0.5;                        ///< rad, largest move of any joint between neighbouring layers
   double arm_slope = 20.0;                        ///< rad/m, arm-angle change allowed per metre of path
+  double roll_slope = 20.0;                       ///< rad/m, the same of the roll
   std::optional<double> step_error;               ///< rad, second-order estimate
   std::optional<double> tool_path_error = 0.001;  ///< m
   std::optional<double> tool_angle_error;         ///< rad
@@ -99,6 +100,13 @@ struct Vary {
   Vector3d rpy = Vector3d::Zero();
 };
 
+/// How far the tool may stand turned about its own z axis from where the waypoints have it, rad: rotations about the axis of a
+/// torch or a milling cutter change nothing for the work. A range of a turn or more is a circle.
+struct Roll {
+  double lower = -kPi, upper = kPi;
+  bool operator==(const Roll&) const = default;
+};
+
 /// The arm that plans: a chain of a model, and what it carries.
 struct Robot {
   std::shared_ptr<const RobotModel> model;  // shared: every episode and planner reads the same one
@@ -106,6 +114,9 @@ struct Robot {
   Pose tool = Pose::Identity();        ///< tool frame in tip_link
   std::map<std::string, double> hold;  ///< joint name -> position of joints of the model that the chain leaves out
   std::vector<AttachedBody> attached;
+  /// Of arms of six joints, which need one more to choose: the roll is the seventh, last in every list of joints, without a speed
+  /// of its own. `Cost::weights` has its weight too; 0 where turning the tool costs nothing.
+  std::optional<Roll> roll;
 };
 
 /// What the tool is to do, and within which limits.
