@@ -33,10 +33,15 @@ constexpr int kApproachSteps = 30;     // from such a start
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
 const Config kPlain = Config::Ones();
 
-Config difference(const Config& a, const Config& b) {
+double difference(double a, double b) {
   constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
-  Config d = a - b;
-  for (int j = 0; j < kDof; ++j) d[j] -= kTwoPi * ((d[j] * (1 / kTwoPi) + kRound) - kRound);
+  const double d = a - b;
+  return d - kTwoPi * ((d * (1 / kTwoPi) + kRound) - kRound);
+}
+
+Config difference(const Config& a, const Config& b) {
+  Config d;
+  for (int j = 0; j < kDof; ++j) d[j] = difference(a[j], b[j]);
   return d;
 }
 
@@ -326,14 +331,18 @@ void Curves::trace(int half) {
 }
 
 bool Curves::known(const Config& q, const Config& tangent) const {
+  constexpr double kBeside = 0.2;  // rad: more than what is near a chord lies beside it
   for (const Vertex& v : vertices_) {
+    const double before = difference(v.q[data_.lock], q[data_.lock]);
+    if (std::abs(before) > kFar) continue;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const int next = v.next[side];
       if (next < 0) continue;
       // Each chord once, from the point with the smaller number.
       const Vertex& w = at(next);
       if (&w < &v) continue;
-      if (!maybe_near(v.q, q, data_.lock, kFar)) continue;
+      const double after = difference(w.q[data_.lock], q[data_.lock]);
+      if (std::min(before, after) > kBeside || std::max(before, after) < -kBeside) continue;
       const Config chord = difference(w.q, v.q);
       const double length = chord.norm();
       const Config way = difference(q, v.q);
