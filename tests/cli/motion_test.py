@@ -330,10 +330,10 @@ class Motion(unittest.TestCase):
     def test_time_is_up(self):
         """What is known stays: the path, with the reason why it is not refined or timed."""
         seen = set()
-        for k in range(24):
+        for k in range(36):
             result, out = self.folder / "late.json", self.folder / "late.csv"
             done = run("plan", PROBLEMS / "experiment_c.yaml", "--planner", "lazy", "--refine", "--speed", "0.05", "--timeout",
-                       2e-3 * 1.25**k, "--json", result, "--out", out)
+                       5e-4 * 1.25**k, "--json", result, "--out", out)
             told = json.loads(result.read_text())
             if told["status"] != "solved":
                 self.assertEqual((done.returncode, told["motion"], told["refinement"]), (3, None, None))
