@@ -11,6 +11,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/smooth_path.hpp"
+#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/core/tool_path.hpp"
 
@@ -347,6 +348,35 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
   EXPECT_GE(timed, 20);
   EXPECT_GT(stops, 5);
   EXPECT_GT(samples, 5000);
+}
+
+TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {
+  const Chain chain = arm_of(data_robot("iiwa14")).chain;
+  const SrsArm arm = fit_srs(chain, "iiwa14");
+  const Config q = (Config() << 0.2, 0.6, -0.3, -1.2, 0.4, 0.9, 0.1).finished();
+  const Waypoint first = waypoint_of(chain.tool(q));
+  Limits limits;
+  limits.joint_acceleration.emplace().fill(10);
+  limits.joint_jerk.emplace().fill(100);
+  const JointRates rates = joint_rates(chain, limits, "test");
+  std::vector<double> durations;
+  for (const double ds : {0.002, 0.005, 0.02}) {
+    const ToolPath path({first, moved(first, Vector3d(0, 0.12, 0.05), Vector3d::Zero())}, {.ds = ds, .dphi = 0.05, .dalpha = 0.1},
+                        "test");
+    std::vector<TrajectoryRow> rows;
+    const std::vector<ArmPlane> planes = carried_planes(arm, path);
+    const double phi = planes[0].angle_of(arm.elbow_axis(q));
+    for (int i = 0; i < path.size(); ++i)
+      rows.push_back(
+          {path.layer(i).s, phi, arm.branch(q),
+           srs_ik(arm, elbow_circles(arm, planes[static_cast<std::size_t>(i)], path.layer(i).tool), phi, arm.branch(q))});
+    const TimingResult result =
+        time_path(PathMotion(chain, arm, path, rows), rates, {.speed = 0.05, .turn_speed = {}, .rate = 250});
+    ASSERT_TRUE(result.motion);
+    durations.push_back(result.motion->duration);
+  }
+  std::printf("%.3f, %.3f and %.3f s\n", durations[0], durations[1], durations[2]);
+  for (const double duration : durations) EXPECT_NEAR(duration, durations[0], 0.02);
 }
 
 TEST(TimePath, SaysWhatIsAssumedAndWhatIsMissing) {
