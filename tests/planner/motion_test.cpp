@@ -348,7 +348,9 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
     problem = with_motion_defaults(problem);
     EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
     if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
-    if (random.coin(0.3)) problem.resolution.ds = 0.04, problem.limits.tool_path_error.reset();
+    const double ds = random.uniform(0, 1);
+    if (ds < 0.3) problem.resolution.ds = 0.04, problem.limits.tool_path_error.reset();
+    if (ds > 0.8) problem.resolution.ds = 0.002;
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
     options.evidence.postures = true;
