@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace swivel::detail {
@@ -90,13 +91,11 @@ bool ClosedMesh::contains(const Vector3d& point) const {
 }
 
 std::vector<Vector3d> one_point_per_part(const TriangleMesh& mesh) {
-  const auto count = mesh.vertices.size();
-  std::vector<int> order(count), id(count), leader;
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int v, int w) { return before(mesh.vertices[v], mesh.vertices[w]); });
-  for (std::size_t k = 0; k < count; ++k) {
-    if (k == 0 || before(mesh.vertices[order[k - 1]], mesh.vertices[order[k]])) leader.push_back(static_cast<int>(leader.size()));
-    id[order[k]] = leader.back();
+  std::map<std::array<double, 3>, int> ids;
+  std::vector<int> id, leader;
+  for (const Vector3d& v : mesh.vertices) {
+    id.push_back(ids.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(ids.size())).first->second);
+    if (ids.size() > leader.size()) leader.push_back(id.back());
   }
   const auto root = [&](int vertex) {
     int v = id[vertex];

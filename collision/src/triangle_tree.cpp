@@ -35,16 +35,19 @@ class BoxBound {
   std::array<Vector3d, 3> across_;
 };
 
-/// Least squared distance of a box from another, which stands at a pose: by the gaps along the axes of both.
+/// Least squared distance of a box from another, which stands at a pose: by the gaps along the axes of both. Need not be told where
+/// it is at least `limit`.
 class BoxPairBound {
  public:
   explicit BoxPairBound(const Pose& pose) : pose_(pose), turn_(pose.linear()), spread_(turn_.cwiseAbs()) {}
   [[nodiscard]] double squared(const Vector3d& center, const Vector3d& half, const Vector3d& other_center,
-                               const Vector3d& other_half) const {
+                               const Vector3d& other_half, double limit) const {
     const Vector3d offset = pose_ * other_center - center;
     const Vector3d gap = offset.cwiseAbs() - half - spread_ * other_half;
+    const double squared_gap = gap.cwiseMax(0).squaredNorm();
+    if (squared_gap >= limit) return squared_gap;
     const Vector3d other_gap = (turn_.transpose() * offset).cwiseAbs() - other_half - spread_.transpose() * half;
-    return std::max(gap.cwiseMax(0).squaredNorm(), other_gap.cwiseMax(0).squaredNorm());
+    return std::max(squared_gap, other_gap.cwiseMax(0).squaredNorm());
   }
 
  private:
@@ -152,10 +155,6 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     return found;
   }
   const BoxPairBound bound(pose);
-  const auto squared_bound = [&](int a, int b) {
-    const Node &m = nodes_[a], &n = other.nodes_[b];
-    return bound.squared(m.center, m.half, n.center, n.half);
-  };
   struct Open {
     int a, b;
     double bound;
@@ -164,6 +163,10 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   std::size_t open = 0;
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
+  const auto squared_bound = [&](int a, int b) {
+    const Node &m = nodes_[a], &n = other.nodes_[b];
+    return bound.squared(m.center, m.half, n.center, n.half, least);
+  };
   const auto meet = [&](int own, int others, const Triangle& moved) {
     const double found = squared_distance(triangles_[own], moved, least);
     if (found < least) {
@@ -208,7 +211,7 @@ std::array<std::vector<int>, 2> TriangleTree::nearer(const TriangleTree& other, 
     const auto [a, b] = open.back();
     open.pop_back();
     const Node &m = nodes_[a], &n = other.nodes_[b];
-    if (bound.squared(m.center, m.half, n.center, n.half) >= limit * limit) continue;
+    if (bound.squared(m.center, m.half, n.center, n.half, limit * limit) >= limit * limit) continue;
     if (m.right == 0 && n.right == 0) {
       for (int j = n.begin; j < n.end; ++j) {
         const Triangle moved = other.triangles_[j].moved(pose);
