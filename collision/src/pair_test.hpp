@@ -15,8 +15,8 @@ inline constexpr double kGjkTolerance = 1e-10;
 class PairTest {
  public:
   /// What FCL is asked about a mesh before a box, cylinder or mesh. kNear: of the triangles only those that are near enough to
-  /// decide, which our own trees find; the answers are the same. FCL's trees, a second for a hundred thousand triangles, are then
-  /// hardly ever built.
+  /// decide, which our own trees find; the answers are the same. FCL's trees, a third of a second for a hundred thousand triangles,
+  /// are then hardly ever built.
   enum class Meshes { kWhole, kNear };
   explicit PairTest(Meshes meshes = Meshes::kWhole) : meshes_(meshes) {}
   /// clearance(a, b) < d; d >= 0. True also where FCL fails, which is counted.

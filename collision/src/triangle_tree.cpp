@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kLeaf = 4;
 constexpr int kBox = 12;  // triangles of a box: one leaf, whose bound is the box itself
+
 /// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment. Need not be
 /// told where it is at least `limit`.
 class BoxBound {

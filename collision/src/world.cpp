@@ -260,7 +260,7 @@ struct World::Query::Impl {
   std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
   std::vector<PlacedBound> moved_to;  // by body; empty after forget()
   std::vector<double> reserve;        // by pair, m
-  std::vector<TrianglePair> witness;  // by pair, and one for any other: where its last proof was found
+  std::vector<TrianglePair> witness;  // by pair: where its last proof was found
   std::vector<std::size_t> due;       // pairs that their reserve does not prove free
 
   Impl(const World::Impl& w, Certificates c)
@@ -271,7 +271,7 @@ struct World::Query::Impl {
         moved(w.bodies.size()),
         step(w.bodies.size()),
         reserve(w.pairs.size(), std::numeric_limits<double>::lowest()),
-        witness(w.pairs.size() + 1) {
+        witness(w.pairs.size()) {
     due.reserve(reserve.size());
     moved_to.reserve(moved.size());
     displacements[0].setIdentity();
@@ -337,8 +337,10 @@ struct World::Query::Impl {
     if (!(d >= 0)) return false;
     put(p.a);
     put(p.b);
-    const auto k = static_cast<std::size_t>(std::find(world->pairs.begin(), world->pairs.end(), p) - world->pairs.begin());
-    return is_below(p, d, certify_pair(p, d, witness[k]));
+    const auto found = std::find(world->pairs.begin(), world->pairs.end(), p);
+    TrianglePair none;
+    const bool known = found != world->pairs.end();
+    return is_below(p, d, certify_pair(p, d, known ? witness[static_cast<std::size_t>(found - world->pairs.begin())] : none));
   }
   bool is_below(const BodyPair& p, double d, Certificate certificate) {
     surely = certificate != Certificate::kNone;
