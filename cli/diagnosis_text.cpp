@@ -48,12 +48,15 @@ std::string without_text(const PlanResult& result) {
 
 std::string diagnosis_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
-  if (d.cause.kind == Cause::Kind::kNone) return "no path at this resolution; stopped before it was known what ends every one\n";
+  const std::string none =
+      result.lattice.complete ? "no path at this resolution" : "no path found, among the solutions that were found";
+  if (d.cause.kind == Cause::Kind::kNone) return none + "; stopped before it was known what ends every one\n";
   const std::string why = cause_text(d.cause);
-  std::string answer = d.reached_layer ? text("no path at this resolution: every one ends by layer %d of %d (s = %.4f m), where ",
-                                              *d.reached_layer, result.lattice.layers - 1, *d.reached_s) +
+  std::string answer = d.reached_layer ? none +
+                                             text(": every one ends by layer %d of %d (s = %.4f m), where ", *d.reached_layer,
+                                                  result.lattice.layers - 1, *d.reached_s) +
                                              why + " stops it\n"
-                                       : "no path at this resolution: the first layer has no valid node: " + why + '\n';
+                                       : none + ": the first layer has no valid node: " + why + '\n';
   answer += without_text(result);
   constexpr std::size_t kMostLines = 40;
   for (std::size_t k = 0; k < d.empty_layers.size() && k < kMostLines; ++k) answer += line_of(d.empty_layers[k]);
@@ -90,6 +93,24 @@ std::string answer_text(const PlanResult& result) {
     default:
       return std::string("stopped: ") + to_string(result.status) + '\n';
   }
+}
+
+std::string advice_text(const std::vector<Advice>& advice) {
+  std::string lines, unknown;
+  for (const Advice& one : advice) switch (one.outcome) {
+      case Advice::Outcome::kSolved:
+        lines += "  would help: " + words(one) + text(" (solved, cost %.6g)\n", *one.cost);
+        break;
+      case Advice::Outcome::kFurther:
+        lines += "  not enough: " + words(one) + text(" (paths to s = %.4f m)\n", *one.reached_s);
+        break;
+      case Advice::Outcome::kNoHelp:
+        lines += "  no help: " + words(one) + '\n';
+        break;
+      case Advice::Outcome::kUnknown:
+        unknown += (unknown.empty() ? "" : ", ") + words(one);
+    }
+  return lines + (unknown.empty() ? "" : "  not tried in the time: " + unknown + '\n');
 }
 
 }  // namespace swivel::cli

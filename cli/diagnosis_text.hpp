@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <string>
+#include <vector>
 
+#include "swivel/core/advice.hpp"
 #include "swivel/core/plan.hpp"
 
 namespace swivel::cli {
@@ -9,5 +11,8 @@ namespace swivel::cli {
 /// The answer for people, in one line: whether there is a path, and what it comes near to, as far as that was asked for. Where
 /// there is none, what ends every path, and a line for every run of layers that are empty for one cause.
 [[nodiscard]] std::string answer_text(const PlanResult& result);
+
+/// A line for each change that was tried, what helps first.
+[[nodiscard]] std::string advice_text(const std::vector<Advice>& advice);
 
 }  // namespace swivel::cli

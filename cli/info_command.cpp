@@ -9,9 +9,9 @@
 #include "commands.hpp"
 #include "pairs_report.hpp"
 #include "swivel/core/arm.hpp"
+#include "swivel/core/arm_class.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
-#include "swivel/core/srs.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::cli {
@@ -21,7 +21,7 @@ namespace {
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
   std::vector<std::string> hold, packages;
-  bool pairs = false;
+  bool pairs = false, roll = false;
 };
 
 std::map<std::string, double> parse_hold(const std::vector<std::string>& items) {
@@ -92,7 +92,7 @@ ArmGuess choose_arm(const RobotModel& robot, const std::string& base, const std:
                      (row.empty() ? ": no joint turns"
                                   : ": the longest row of joints that turn has " + std::to_string(row.size()) + ", from '" +
                                         row.front() + "' to '" + row.back() + "'") +
-                     ": allowed are seven joints in a row, or --base and --tip");
+                     ": allowed are seven joints in a row, or --base and --tip (with --roll of arms of six joints)");
   }
   others.assign(guesses.arms.begin() + 1, guesses.arms.end());
   return guesses.arms.front();
@@ -112,18 +112,33 @@ bool meet(const Chain& chain, std::size_t k) {
   return line_distance(point, k) < kMiss && line_distance(point, k + 2) < kMiss;
 }
 
-/// Throws InputError, which says what the arm looks like, where it is not S-R-S.
-SrsArm fit(const ArmModel& arm, const ArmGuess& chosen, const std::string& source) {
-  try {
-    return fit_srs(arm.chain, source);
-  } catch (const InputError& error) {
-    const bool shoulder = meet(arm.chain, 0), wrist = meet(arm.chain, 4);
-    const std::string reason = std::string(error.what()).substr(source.size() + 2);
-    throw InputError(source + ": " + chosen.base + " to " + chosen.tip + ", joints " + arm.chain.joint_names.front() + " to " +
-                     arm.chain.joint_names.back() + ": a 7R arm with " +
-                     (shoulder ? "a spherical shoulder" : "no spherical shoulder") + " and " +
-                     (wrist ? "a spherical wrist" : "no spherical wrist") + ", " + reason);
-  }
+void print_srs(const SrsArm& srs) {
+  const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
+                      std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
+  std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
+  if (srs.exact)
+    std::printf("fit        exact: closed form\n");
+  else
+    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n",
+                1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+  if (!srs.exact)
+    std::printf("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
+  std::printf("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
+  std::printf("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore,
+              srs.wrist_in_tool.norm());
+  std::printf("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore),
+              srs.upper + srs.fore);
+  std::printf("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
+              std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
+}
+
+/// An arm that is not S-R-S: what it looks like, and how its solutions are found.
+void print_other(const Chain& chain, const ArmClass& arm) {
+  const bool wrist = meet(chain, chain.roll ? 3 : 4);
+  std::printf("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
+              meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
+  if (!chain.roll) std::printf("not S-R-S  %s\n", arm.not_srs.c_str());
+  std::printf("solutions  %s: %s\n", arm.complete() ? "all" : "those that turn up", arm.method().c_str());
 }
 
 int run(const InfoArguments& arguments) {
@@ -136,35 +151,17 @@ int run(const InfoArguments& arguments) {
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
   for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
+  if (arguments.roll && arguments.tip.empty()) throw InputError("--roll: the arm is not named: allowed with --tip");
   const ArmGuess chosen = choose_arm(*robot, arguments.base, arguments.tip, others);
   const std::string &base = chosen.base, &tip = chosen.tip;
-  const ArmModel arm = build_arm(*robot, base, tip, hold, Pose::Identity());
-  const SrsArm srs = fit(arm, chosen, robot->source);
+  const ArmModel arm = build_arm(*robot, base, tip, hold, Pose::Identity(), arguments.roll ? std::optional(Roll{}) : std::nullopt);
+  const ArmClass kind = classify(arm.chain, robot->source);
   std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   if (!missing_meshes.empty())
     std::printf("meshes     %zu not found, which planning needs: %s\n", missing_meshes.size(), missing_meshes.front().c_str());
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
   for (const ArmGuess& other : others) std::printf("other arm  %s to %s\n", other.base.c_str(), other.tip.c_str());
-  const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
-                      std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
-  std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
-  if (srs.exact)
-    std::printf("fit        exact: closed form\n");
-  else
-    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n",
-                1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
-  if (!srs.exact)
-    std::printf("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
-  const auto print_point = [](const char* name, const Vector3d& p) {
-    std::printf("%-10s %.6f %.6f %.6f m\n", name, p.x(), p.y(), p.z());
-  };
-  print_point("shoulder", srs.S);
-  std::printf("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore,
-              srs.wrist_in_tool.norm());
-  std::printf("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore),
-              srs.upper + srs.fore);
-  std::printf("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
-              std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
+  kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = arm.chain.limit[j];
     if (limit.continuous)
@@ -189,6 +186,7 @@ void add_info(CLI::App& app, int& exit_code) {
   command->add_option("--base", arguments->base, "base link (default: base_link or the root)");
   command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
+  command->add_flag("--roll", arguments->roll, "six joints, and the turn of the tool about its own axis (path.roll)");
   command->add_flag("--pairs", arguments->pairs, "which bodies of the robot are kept apart, and how far")
       ->excludes("--srdf", "--packages", "--base", "--tip", "--hold");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -2,6 +2,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +21,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/advise.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
@@ -32,6 +34,7 @@ namespace {
 struct PlanArguments {
   std::string problem, out, json, trace, map_svg, report;
   std::optional<double> timeout;
+  std::optional<double> advise;
   bool quiet = false, map = false, full_map = false, refine = false;
   SearchOptions search;
   MotionOptions motion;
@@ -113,13 +116,24 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   outputs->add("--trace", arguments.trace);
   outputs->add("--json", arguments.json);
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
+  const auto begun = std::chrono::steady_clock::now();
   const Budget budget = options.budget();  // of what is drawn; plan() begins with it
   Planner planner(problem);
   MotionPlan plan = plan_motion(planner, options, arguments.refine, timing);
   PlanResult& result = plan.result;
   result.time_ms["load"] = load;
+  std::optional<std::vector<Advice>> advice;
+  if (arguments.advise && result.status == PlanStatus::kInfeasible) {
+    PlanOptions trials = options;
+    trials.timeout_s = positive(*arguments.advise, "--advise");
+    if (options.timeout_s) {
+      const double gone = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+      trials.timeout_s = std::clamp(*options.timeout_s - gone, 1e-6, *trials.timeout_s);
+    }
+    advice = advise(planner, result, trials);
+  }
   const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
-                                timing.value_or(TimingOptions{})};
+                                timing.value_or(TimingOptions{}), advice ? &*advice : nullptr};
   std::optional<LatticeMap> map;
   std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
@@ -162,6 +176,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     if (!arguments.quiet && !outputs->takes_standard_output()) {
       print_summary(result);
       print_aftermath(aftermath, result.joint_names);
+      if (advice) std::fputs(advice_text(*advice).c_str(), stdout);
     }
     if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
   });
@@ -214,6 +229,8 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--timeout", arguments->timeout, "seconds");
   command->add_flag("--refine", arguments->refine, "move the arm angles off the grid: cheaper and smoother, never dearer");
   arguments->motion.add_to(*command);
+  command->add_option("--advise", arguments->advise,
+                      "where there is no path: what would help, found by planning it for so many seconds");
   command->add_option("--out", arguments->out,
                       "trajectory file (CSV); with --speed the motion: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
   command->add_option("--json", arguments->json, "result file, - for standard output");

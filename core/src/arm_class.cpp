@@ -7,17 +7,20 @@ namespace swivel {
 
 ArmClass classify(const Chain& chain, const std::string& source) {
   ArmClass result;
-  result.lock = lock_method(chain);
-  if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
+  const auto other = [&](const std::string& why) {
+    result.not_srs = why;
+    result.lock = lock_method(chain);
+    if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
+  };
   if (chain.roll) {
-    result.not_srs = "six joints and the roll of the tool";
+    other("six joints and the roll of the tool");
     return result;
   }
   try {
     result.srs = fit_srs(chain, source);
     result.kind = ArmKind::kSrs;
-  } catch (const InputError& error) {
-    result.not_srs = error.what();
+  } catch (const NotSrs& error) {
+    other(error.why());
   }
   return result;
 }

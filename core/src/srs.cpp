@@ -140,9 +140,7 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
       problem = text("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to",
                      1e3 * std::abs(out_of_plane));
   }
-  if (!problem.empty())
-    throw InputError(source + ": not an S-R-S arm: " + problem +
-                     ": allowed are a spherical shoulder and wrist within 1 mm and 0.57 deg");
+  if (!problem.empty()) throw NotSrs(source, problem, "a spherical shoulder and wrist within 1 mm and 0.57 deg");
 
   arm.axis[1] = line[1].a;
   arm.axis[0] = perpendicular_part(line[0].a, line[1].a);
@@ -156,8 +154,8 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   arm.upper = (arm.E - arm.S).norm();
   arm.fore = (arm.W - arm.E).norm();
   if (arm.upper < kMissTolerance || arm.fore < kMissTolerance)
-    throw InputError(source + ": not an S-R-S arm: axis 4 runs through the " + (arm.upper < arm.fore ? "shoulder" : "wrist") +
-                     " centre: allowed are elbows at least 1 mm away");
+    throw NotSrs(source, std::string("axis 4 runs through the ") + (arm.upper < arm.fore ? "shoulder" : "wrist") + " centre",
+                 "elbows at least 1 mm away");
   const Vector3d straight = (arm.E - arm.S).normalized(), fore = (arm.W - arm.E).normalized();
   arm.elbow_shift = std::atan2(straight.cross(fore).dot(a4), straight.dot(fore));
   arm.shoulder = fit_triple(arm.axis[0], arm.axis[1], arm.axis[2]);

@@ -16,14 +16,20 @@ Json or_null(const std::optional<T>& value) {
 }
 
 Json lattice_json(const LatticeInfo& lattice, bool solved) {
-  return {{"layers", lattice.layers},
-          {"phi", lattice.phi},
-          {"branches", lattice.branches},
-          {"windings", lattice.windings},
-          {"window", lattice.window},
-          {"nodes", lattice.nodes},
-          {"merged_waypoints", lattice.merged_waypoints},
-          {"cost", solved ? Json(lattice.cost) : Json(nullptr)}};
+  Json json = {{"layers", lattice.layers}};
+  if (lattice.grid) {
+    json["phi"] = lattice.grid->phi;
+    json["branches"] = lattice.grid->branches;
+    json["windings"] = lattice.grid->windings;
+    json["window"] = lattice.grid->window;
+  }
+  if (lattice.arcs) json["arcs"] = *lattice.arcs;
+  json["nodes"] = lattice.nodes;
+  json["merged_waypoints"] = lattice.merged_waypoints;
+  json["cost"] = solved ? Json(lattice.cost) : Json(nullptr);
+  if (!lattice.method.empty()) json["method"] = lattice.method;
+  json["complete"] = lattice.complete;
+  return json;
 }
 
 Json counters_json(const Counters& counters) {
@@ -157,6 +163,21 @@ Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"p5", spread.p5}, {"p95", spread.p95}};
 }
 
+Json advice_json(const std::vector<Advice>& advice) {
+  Json list = Json::array();
+  for (const Advice& one : advice)
+    list.push_back({{"change", to_string(one.change)},
+                    {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
+                    {"from", or_null(one.from)},
+                    {"to", or_null(one.to)},
+                    {"offset", one.change == Advice::Change::kMoveObject ? Json({one.offset.x(), one.offset.y(), one.offset.z()})
+                                                                         : Json(nullptr)},
+                    {"outcome", to_string(one.outcome)},
+                    {"cost", or_null(one.cost)},
+                    {"reached_s", or_null(one.reached_s)}});
+  return list;
+}
+
 Json refinement_json(const Refined& refined) {
   return {{"refined", refined.refined},         {"reason", text_or_null(refined.reason)},
           {"cost_before", refined.cost_before}, {"cost", refined.cost},
@@ -256,6 +277,7 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   json["refinement"] = aftermath.refinement ? refinement_json(*aftermath.refinement) : Json(nullptr);
   json["motion"] = aftermath.motion ? motion_json(*aftermath.motion, aftermath.timing, result.joint_names) : Json(nullptr);
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
+  json["advice"] = aftermath.advice ? advice_json(*aftermath.advice) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};

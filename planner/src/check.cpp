@@ -39,7 +39,8 @@ double apart(const Pose& a, const Pose& b) {
 std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, const ToolPath& path) {
   const Limits& limits = problem.limits;
   const bool timed = limits.tool_speed || limits.tool_turn_speed;
-  for (std::size_t j = 0; j < kDof; ++j)
+  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed of its own
+  for (std::size_t j = 0; j < joints; ++j)
     if ((timed || problem.cost.metric == CostMetric::kTime) && chain.limit[j].velocity <= 0)
       throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
                        chain.joint_names[j] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
@@ -49,7 +50,8 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
     if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
     Config bound = Config::Constant(limits.joint_step);
-    for (std::size_t j = 0; dt > 0 && j < kDof; ++j) {
+    if (chain.roll) bound[kDof - 1] = std::min(kPi, limits.roll_slope * problem.resolution.ds);
+    for (std::size_t j = 0; dt > 0 && j < joints; ++j) {
       double& joint = bound[static_cast<Eigen::Index>(j)];
       joint = std::min(joint, chain.limit[j].velocity * dt);
     }
@@ -86,17 +88,17 @@ class Check {
       : problem_(problem),
         limits_(problem.limits),
         chain_(robot.arm().chain),
-        arm_(robot.srs()),
+        arm_(robot.arm_class().srs ? &*robot.arm_class().srs : nullptr),
         rows_(rows),
         timed_(timed),
         path_(problem_path(problem, chain_)),
         allowed_(allowed_moves(problem, chain_, path_)),
-        planes_(carried_planes(arm_, path_)),
+        planes_(arm_ ? carried_planes(*arm_, path_) : std::vector<ArmPlane>{}),
         contacts_(robot, problem),
         along_{limits_.tool_path_error.value_or(kNone), limits_.tool_angle_error.value_or(kNone)},
         at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
                       limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
-    if (limits_.step_error) lattice_.emplace(chain_, arm_, path_, problem);
+    if (limits_.step_error) lattice_.emplace(chain_, robot.srs("limits.step_error"), path_, problem);
   }
 
   CheckResult run() {
@@ -352,20 +354,21 @@ class Check {
 
   /// Arm angle and branch of a row are those of its joints.
   void examine_labels(std::size_t k) {
+    if (!arm_) return;
     const TrajectoryRow& row = rows_[k];
     const int layer = static_cast<int>(std::floor(place(k)));
     ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
-    if (layer < place(k)) plane = carry_plane(arm_, plane, pose_at(path_, place(k)));
-    const double phi = plane.angle_of(arm_.elbow_axis(row.q));
+    if (layer < place(k)) plane = carry_plane(*arm_, plane, pose_at(path_, place(k)));
+    const double phi = plane.angle_of(arm_->elbow_axis(row.q));
     if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle)) fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
 
-    const double sign_tells = std::sin(arm_.exact ? 0.01 : 0.05);
+    const double sign_tells = std::sin(arm_->exact ? 0.01 : 0.05);
     const std::pair<BranchBit, double> angles[] = {
-        {kShoulderBit, arm_.shoulder_angle(row.q)}, {kWristBit, arm_.wrist_angle(row.q)}, {kElbowBit, arm_.elbow_angle(row.q)}};
+        {kShoulderBit, arm_->shoulder_angle(row.q)}, {kWristBit, arm_->wrist_angle(row.q)}, {kElbowBit, arm_->elbow_angle(row.q)}};
     bool agrees = row.branch >= 0 && row.branch < kBranches;
     for (const auto& [bit, angle] : angles)
       if (std::abs(std::sin(angle)) > sign_tells) agrees = agrees && ((row.branch & bit) != 0) == (std::sin(angle) < 0);
-    if (!agrees) fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_.branch(row.q));
+    if (!agrees) fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_->branch(row.q));
   }
 
   /// From row k - 1 to row k. A move that its joints may not make is not examined further.
@@ -511,7 +514,7 @@ class Check {
     if (!lattice_ || !is_step(place(k - 1), place(k))) return;
     const int layer = static_cast<int>(place(k - 1));
     const auto phi = [&](std::size_t row, int at) {
-      return planes_[static_cast<std::size_t>(at)].angle_of(arm_.elbow_axis(rows_[row].q));
+      return planes_[static_cast<std::size_t>(at)].angle_of(arm_->elbow_axis(rows_[row].q));
     };
     const double phi0 = phi(k - 1, layer), phi1 = phi(k, layer + 1), dphi = wrap_angle(phi1 - phi0);
     const double error = std::max(step_error(*lattice_, layer, 0, rows_[k - 1].branch & (kBranches - 1), phi0, dphi),
@@ -548,8 +551,9 @@ class Check {
     double l2 = 0, most = 0;
     for (std::size_t j = 0; j < kDof; ++j) {
       const double dq = move[static_cast<Eigen::Index>(j)];
-      const double scaled =
-          problem_.cost.metric == CostMetric::kTime ? dq / chain_.limit[j].velocity : problem_.cost.weights[j] * dq;
+      const double scaled = problem_.cost.metric != CostMetric::kTime ? problem_.cost.weights[j] * dq
+                            : chain_.roll && j + 1 == kDof            ? 0
+                                                                      : dq / chain_.limit[j].velocity;
       l2 += scaled * scaled;
       most = std::max(most, std::abs(scaled));
     }
@@ -559,7 +563,7 @@ class Check {
   const Problem& problem_;
   const Limits& limits_;
   const Chain& chain_;
-  const SrsArm& arm_;
+  const SrsArm* arm_;  // null: the arm has no arm angle, and phi and branch of rows are for reports alone
   const std::vector<TrajectoryRow>& rows_;
   const std::vector<TimedRow>* timed_;
   ToolPath path_;

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "between_samples.hpp"
-#include "measure.hpp"
+#include "measure_rows.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
@@ -135,7 +135,7 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   // Through every row only where the smoother motion will not do.
   for (const double apart : {0.005, 0.0}) {  // m
     auto start = std::chrono::steady_clock::now();
-    const PathMotion motion(chain, robot.srs(), path, rows, apart);
+    const PathMotion motion(chain, robot.srs("timing a trajectory"), path, rows, apart);
     TimingResult timed = time_path(motion, rates, options, budget);
     result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
     result.failure = timed.failure;
@@ -176,7 +176,7 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
   PlanResult found = planner.plan(options);
   if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) || options.hooks.check) return found;
   PlanOptions keeping = options;
-  keeping.hooks.check = std::make_shared<KeepsBranch>(planner.view().robot.srs());
+  keeping.hooks.check = std::make_shared<KeepsBranch>(planner.view().robot.srs("timing"));
   PlanResult other = planner.plan(keeping);
   if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
   char text[160];
@@ -193,7 +193,7 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
   if (!refined.refined) return;
   result.trajectory = refined.rows;
   result.cost = refined.cost;
-  measure_margins(view.robot.arm().chain, view.lattice.path(), result);
+  measure_margins(view.robot.arm().chain, view.lattice.path(), result.trajectory, result);
 }
 
 }  // namespace
@@ -240,7 +240,7 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   if (!refined) return plan;
   take(*plan.refinement, view, result);
   try {
-    measure(view.robot, view.lattice.path(), view.world, options.evidence, budget, result);
+    measure_rows(view.robot, view.lattice.path(), view.world, result.trajectory, options.evidence, budget, result);
   } catch (const Stopped&) {
   }
   return plan;
@@ -251,7 +251,7 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
   validate(problem);
   robot.require_prepared_for(problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
-  const PathMotion motion(robot.arm().chain, robot.srs(), path, rows);
+  const PathMotion motion(robot.arm().chain, robot.srs("timing a trajectory"), path, rows);
   std::vector<TrajectoryRow> laid;
   for (int i = 0; i < path.size(); ++i) {
     const double travel = path.layer(i).travel;

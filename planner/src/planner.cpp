@@ -9,11 +9,13 @@
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "hooked_validity.hpp"
-#include "measure.hpp"
+#include "measure_rows.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"
+#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/make_lattice.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
@@ -46,8 +48,14 @@ int lanes_of(const PlanOptions& options) {
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
-void refuse_if_too_large(const SrsLattice& lattice, const std::string& source) {
-  const double edges = static_cast<double>(lattice.nodes()) * (2 * lattice.window() + 1);
+void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
+  std::vector<Lattice::SlotRun> runs;
+  double edges = 0;
+  for (int layer = 0; layer + 1 < lattice.layers(); ++layer) {
+    if (lattice.slots(layer) == 0) continue;
+    lattice.successors(layer, 0, runs);  // as many as of any other slot
+    for (const Lattice::SlotRun& run : runs) edges += static_cast<double>(lattice.slots(layer)) * (run.last - run.first);
+  }
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   if (!fits_in_memory(needed))
     throw InputError(source + ": planner eager: its graph would need about " +
@@ -58,17 +66,43 @@ void refuse_if_too_large(const SrsLattice& lattice, const std::string& source) {
 std::vector<TrajectoryRow> rows_of(const Lattice& lattice, const SlotPath& path) {
   std::vector<TrajectoryRow> rows;
   rows.reserve(path.size());
-  for (const int slot : path) {
-    const int i = static_cast<int>(rows.size());
-    TrajectoryRow row;
-    row.s = lattice.path().layer(i).s;
-    row.phi = lattice.phi(i, slot);
-    row.branch = lattice.branch(i, slot);
-    row.q = *lattice.row(i, slot);
-    if (i > 0) row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints
-    rows.push_back(row);
+  for (const Config& q : path_joints(lattice, path)) {
+    const int i = static_cast<int>(rows.size()), slot = path[rows.size()];
+    rows.push_back({lattice.path().layer(i).s, lattice.phi(i, slot), lattice.branch(i, slot), q});
   }
   return rows;
+}
+
+/// Of a path that may end anywhere: as far as its joints stay within their limits.
+std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
+  std::vector<TrajectoryRow> rows;
+  for (; !path.empty() && rows.empty(); path.pop_back()) rows = rows_of(lattice, path);
+  return rows;
+}
+
+LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
+  LatticeInfo info;
+  info.layers = lattice.layers();
+  info.nodes = lattice.nodes();
+  info.merged_waypoints = lattice.path().merged_waypoints();
+  info.method = arm.method();
+  info.complete = arm.complete();
+  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
+    info.grid = LatticeInfo::Grid{grid->angles(), kBranches, grid->windings(), grid->window()};
+  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice)) info.arcs = arcs->arcs();
+  return info;
+}
+
+void add_counters(const Counters& more, Counters& sum) {
+  sum.ik_nodes += more.ik_nodes;
+  sum.edges += more.edges;
+  sum.nodes_checked += more.nodes_checked;
+  sum.edges_checked += more.edges_checked;
+  sum.fcl_calls += more.fcl_calls;
+  sum.certified_free += more.certified_free;
+  sum.certified_colliding += more.certified_colliding;
+  sum.expansions += more.expansions;
+  sum.iterations += more.iterations;
 }
 
 /// The cost of a path's rows, where its nodes cost `cost`.
@@ -117,17 +151,24 @@ PlannerKind planner_from_string(const std::string& name) {
 struct Planner::Impl {
   Problem problem;
 
+  std::optional<PlanningArm> arm;                   // until it is prepared
   std::shared_ptr<const PreparedRobot> robot;       // shared: clones; depends on the robot
   std::shared_ptr<const PreparedRobot> last_robot;  // with other attached bodies
   std::optional<World> world;                       // depends on robot, scene and limits
   bool world_is_old = true;                         // it serves as a model for the next
+  struct Searched {
+    std::unique_ptr<Lattice> lattice;
+    std::unique_ptr<CostToGo> cost_to_go;
+  };
   /// Of the task and the pose of the path's frame.
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
-        : path(problem_path(problem, robot.arm().chain, budget)), lattice(robot.arm().chain, robot.srs(), path, problem, budget) {}
+        : path(problem_path(problem, robot.arm().chain, budget)),
+          first{make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget), nullptr} {}
     ToolPath path;
-    SrsLattice lattice;
-    std::unique_ptr<CostToGo> cost_to_go;
+    Searched first;                 // by every plan
+    std::optional<Searched> wound;  // after it by the last plan, whose path left the limits of joints taken as circles
+    [[nodiscard]] Searched& last() { return wound ? *wound : first; }
   };
   std::unique_ptr<Layout> layout;
   std::unique_ptr<CostToGo> retired;  // of another lattice
@@ -144,7 +185,7 @@ struct Planner::Impl {
 
   // --- changes
   void path_changed() {
-    if (layout && layout->cost_to_go) retired = std::move(layout->cost_to_go);
+    if (layout && layout->first.cost_to_go) retired = std::move(layout->first.cost_to_go);
     layout.reset();
     memory = {};
     viewable = false;
@@ -197,7 +238,7 @@ struct Planner::Impl {
     same_kinematics.limits = Lattice::with_clearances(own.limits, task.limits);
     own = task;
     if (layout && task == same_kinematics) {
-      layout->lattice.take_clearances(task.limits);
+      layout->first.lattice->take_clearances(task.limits);
       memory = {};
       scene_changed();
     } else {
@@ -211,7 +252,9 @@ struct Planner::Impl {
       const Span span("prepare");
       budget.tell(Stage::kPreparing);
       robot = last_robot ? std::make_shared<const PreparedRobot>(*last_robot, problem, budget)
+              : arm      ? std::make_shared<const PreparedRobot>(problem, *arm, budget)
                          : std::make_shared<const PreparedRobot>(problem, budget);
+      arm.reset();
       last_robot.reset();
     }
     return *robot;
@@ -226,7 +269,7 @@ struct Planner::Impl {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
-    const SrsLattice& lattice = layout->lattice;
+    layout->wound.reset();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
     world_is_old = false;
@@ -234,50 +277,61 @@ struct Planner::Impl {
     result.warnings = limit_warnings(robot->arm().chain);
     result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
     list_special_pairs(*world, result);
-    result.lattice = {lattice.layers(),
-                      lattice.angles(),
-                      kBranches,
-                      lattice.windings(),
-                      lattice.window(),
-                      lattice.nodes(),
-                      layout->path.merged_waypoints()};
+    result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
+  /// Paths that do not stay within the limits of joints taken as circles are none: those joints' values are told apart then.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
-    const Lattice& lattice = layout->lattice;
-    Executor& threads = threads_of(options);
     was_eager = is_eager(options);
+    Found found = search(layout->first, true, rule, options, budget, result);
+    for (;;) {
+      const Lattice& lattice = *layout->last().lattice;
+      if (!found.decided || found.outcome.path.empty() || !path_joints(lattice, found.outcome.path).empty()) return found;
+      layout->wound = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
+      result.lattice.nodes = layout->wound->lattice->nodes();
+      found = search(*layout->wound, false, rule, options, budget, result);
+    }
+  }
+  /// `remembered`: what the plans before came to know serves, and what this one does is kept.
+  Found search(Searched& searched, bool remembered, const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
+               PlanResult& result) {
+    const Lattice& lattice = *searched.lattice;
+    Executor& threads = threads_of(options);
+    Counters counters;
     Found found;
     const auto count = [&](const CollisionValidity& validity) {
-      result.counters.nodes_checked = validity.nodes_checked();
-      result.counters.edges_checked = validity.edges_checked();
+      counters.nodes_checked = validity.nodes_checked();
+      counters.edges_checked = validity.edges_checked();
       const CollisionCounters collision = validity.counters();
-      result.counters.fcl_calls = collision.fcl_calls;
-      result.counters.certified_free = collision.certified_free;
-      result.counters.certified_colliding = collision.certified_colliding;
+      counters.fcl_calls = collision.fcl_calls;
+      counters.certified_free = collision.certified_free;
+      counters.certified_colliding = collision.certified_colliding;
+      add_counters(counters, result.counters);
       if (collision.contradictions > 0)
         throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
     };
     if (was_eager) {
-      if (options.planner == PlannerKind::kEager) refuse_if_too_large(layout->lattice, problem.source);
+      if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
       CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, 0, budget);
       HookedValidity hooked(lattice, validity, options.hooks, budget);
-      found = search_eagerly(lattice, hooked, options, budget, result.counters);
+      found = search_eagerly(lattice, hooked, options, budget, counters);
       count(validity);
       return found;
     }
     constexpr int kFewLayers = 64;  // where chords are too long to bound much
-    std::unique_ptr<CostToGo>& togo = layout->cost_to_go;
+    std::unique_ptr<CostToGo>& togo = searched.cost_to_go;
     if (!togo)
       togo =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
     const bool swept = togo->restart(budget);
-    memory.begin(++plans, met, static_cast<int>(world->bodies().size()));
     std::optional<World> changed;
-    if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
+    if (remembered) {
+      memory.begin(++plans, met, static_cast<int>(world->bodies().size()));
+      if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
+    }
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
-                               budget, &memory, changed ? &*changed : nullptr);
+                               budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
-    found = search_lazily(*togo, swept, hooked, memory.failures(), options, result.counters, result.time_ms);
+    found = search_lazily(*togo, swept, hooked, remembered ? memory.failures() : Suspects{}, options, counters, result.time_ms);
     count(validity);
     return found;
   }
@@ -288,18 +342,19 @@ struct Planner::Impl {
     watch.lap();
     const Found found = search(rule, options, budget, result);
     result.time_ms["find"] = watch.lap();
+    const Lattice& lattice = *layout->last().lattice;
     path = found.valid_path;
     viewable = true;
     if (!found.decided) {
-      result.partial = rows_of(layout->lattice, path);
+      result.partial = partial_rows(lattice, path);
       throw Stopped();
     }
     result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
-      result.trajectory = rows_of(layout->lattice, path);
-      measure_margins(robot->arm().chain, layout->path, result);
-      if (layout->lattice.has_own_rows()) result.cost = cost_of_rows(layout->lattice, path, result.trajectory, result.cost);
+      result.trajectory = rows_of(lattice, path);
+      measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
+      if (lattice.has_own_rows()) result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();
@@ -309,19 +364,20 @@ struct Planner::Impl {
   /// What the options ask for, as far as the budget goes.
   void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
     const Span span("report");
+    const Lattice& lattice = *layout->last().lattice;
     try {
       if (result.status == PlanStatus::kSolved) {
         result.tool_path_error_mm.allowed = problem.limits.tool_path_error;
-        measure(*robot, layout->path, *world, options.evidence, budget, result);
+        measure_rows(*robot, layout->path, *world, result.trajectory, options.evidence, budget, result);
         return;
       }
       result.diagnosis.complete = false;  // until diagnose() has done
       if (found.deepest) budget.tell(Stage::kDiagnosis);
       if (was_eager && found.deepest.value_or(-1) >= 0)
-        path = best_path_to(layout->lattice, *world, rule, *found.deepest, budget, options.hooks);
-      result.partial = rows_of(layout->lattice, path);
+        path = best_path_to(lattice, *world, rule, *found.deepest, budget, options.hooks);
+      result.partial = partial_rows(lattice, path);
       if (!found.deepest) return;
-      diagnose(layout->lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis, options.hooks.check);
+      diagnose(lattice, *world, rule, path, options.evidence.layers, budget, result.diagnosis, options.hooks.check);
       result.evidence.layers = options.evidence.layers;
     } catch (const Stopped&) {
     }
@@ -357,7 +413,7 @@ Planner::Planner(Problem problem) : impl_(std::make_unique<Impl>(std::move(probl
   const Problem& p = impl_->problem;
   validate(p);
   validate(*p.model);
-  (void)fit_srs(build_arm(*p.model, p.base_link, p.tip_link, p.hold, p.tool).chain, p.model->source);  // whether it is one
+  impl_->arm = planning_arm(p);
 }
 Planner::Planner(std::shared_ptr<const PreparedRobot> robot, Problem problem) : impl_(std::make_unique<Impl>(std::move(problem))) {
   validate(impl_->problem);
@@ -451,7 +507,8 @@ PlanResult Planner::plan(const PlanOptions& options) {
 PlanView Planner::view() const {
   if (!impl_->viewable) throw InvalidArgument("there is nothing to see: allowed after a plan() that came as far as its search");
   const Impl& x = *impl_;
-  return {*x.robot, x.problem, x.layout->lattice, *x.world, x.was_eager ? nullptr : &x.layout->cost_to_go->verdicts(), x.path};
+  const Impl::Searched& last = x.layout->last();
+  return {*x.robot, x.problem, *last.lattice, *x.world, x.was_eager ? nullptr : &last.cost_to_go->verdicts(), x.path};
 }
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {

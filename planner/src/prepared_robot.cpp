@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/prepared_robot.hpp"
@@ -22,19 +23,33 @@ const Robot& checked(const Problem& problem) {
 
 }  // namespace
 
+PlanningArm planning_arm(const Robot& robot) {
+  ArmModel model = build_arm(*robot.model, robot.base_link, robot.tip_link, robot.hold, robot.tool, robot.roll);
+  ArmClass kind = classify(model.chain, robot.model->source);
+  return {std::move(model), std::move(kind)};
+}
+
+PreparedRobot::PreparedRobot(const Problem& problem, PlanningArm arm, const Budget& budget)
+    : basis_(problem),
+      arm_(std::move(arm)),
+      world_(*problem.model, arm_.model, problem, budget),
+      radii_(motion_radii(arm_.model.chain, world_.bodies())) {}
+
 PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
-    : basis_(checked(problem)),
-      arm_(build_arm(*problem.model, problem.base_link, problem.tip_link, problem.hold, problem.tool)),
-      srs_(fit_srs(arm_.chain, problem.model->source)),
-      world_(*problem.model, arm_, problem, budget),
-      radii_(motion_radii(arm_.chain, world_.bodies())) {}
+    : PreparedRobot(problem, planning_arm(checked(problem)), budget) {}
 
 PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem, const Budget& budget)
     : basis_(checked(problem)),
       arm_(like.arm_),
-      srs_(like.srs_),
-      world_(like.world_, *problem.model, arm_, problem, budget),
-      radii_(motion_radii(arm_.chain, world_.bodies())) {}
+      world_(like.world_, *problem.model, arm_.model, problem, budget),
+      radii_(motion_radii(arm_.model.chain, world_.bodies())) {}
+
+const SrsArm& PreparedRobot::srs(const char* what) const {
+  if (!arm_.kind.srs)
+    throw InputError(basis_.model->source + ": " + arm_.kind.not_srs + ": allowed for " + what +
+                     " are arms with a spherical shoulder and wrist");
+  return *arm_.kind.srs;
+}
 
 void PreparedRobot::require_prepared_for(const Problem& problem) const {
   const auto require = [&](bool holds, const char* what) {
@@ -47,6 +62,7 @@ void PreparedRobot::require_prepared_for(const Problem& problem) const {
   require(problem.tip_link == basis_.tip_link, "tip_link");
   require(problem.tool.matrix() == basis_.tool.matrix(), "tool");
   require(problem.hold == basis_.hold, "hold");
+  require(problem.roll == basis_.roll, "roll");
   require(std::equal(problem.attached.begin(), problem.attached.end(), basis_.attached.begin(), basis_.attached.end(), same),
           "attached");
 }

@@ -395,7 +395,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
-  const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem, budget);
+  const SrsLattice lattice(robot.arm().chain, robot.srs("refining"), path, problem, budget);
   Judge judge(robot, problem, lattice, options, budget);
   Refined result;
   result.rows = rows;

@@ -4,11 +4,24 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <optional>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
+
+namespace {
+
+constexpr int kCells = 90;  // of a turn, where there is no grid
+
+/// What took FCL to find is told before what a certificate proves.
+std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
+  return {node.state, !node.certified};
+}
+
+}  // namespace
 
 std::vector<int> LatticeMap::inhabited_labels() const {
   std::vector<int> inhabited;
@@ -28,72 +41,85 @@ std::string LatticeMap::blocker_name(const Node& node) const {
 
 std::string LatticeMap::label_name(int label) const {
   const int branch = label / windings;
+  if (!grid) return "solutions " + std::to_string(branch);
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
   std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
   if (windings > 1) name += ", winding " + std::to_string(label % windings);
   return name;
 }
 
+int map_cell(const Lattice& lattice, int layer, int slot) {
+  if (dynamic_cast<const SrsLattice*>(&lattice)) return slot;
+  const int angle = static_cast<int>((wrap_angle(lattice.phi(layer, slot)) + kPi) / kTwoPi * kCells);
+  return lattice.branch(layer, slot) * kCells + std::clamp(angle, 0, kCells - 1);
+}
+
 LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
-  const auto& lattice = dynamic_cast<const SrsLattice&>(view.lattice);
+  const Lattice& lattice = view.lattice;
   World::Query query(view.world, Certificates::kOn);
 
   LatticeMap map;
   map.layers = lattice.layers();
-  map.angles = lattice.angles();
-  map.windings = lattice.windings();
+  map.angles = kCells;
+  map.grid = false;
+  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice)) {
+    map.angles = grid->angles();
+    map.windings = grid->windings();
+    map.grid = true;
+  }
   map.joint_names = lattice.chain().joint_names;
-  map.path = view.path;
+  for (const int slot : view.path) map.path.push_back(map_cell(lattice, static_cast<int>(map.path.size()), slot));
   map.complete = full || view.verdicts == nullptr;
-  map.nodes.resize(static_cast<std::size_t>(lattice.nodes()));
-  std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // node, by what
-  LayerNodes nodes;
-  std::size_t k = 0;
+  const std::size_t cells = static_cast<std::size_t>(map.labels()) * static_cast<std::size_t>(map.angles);
+  map.nodes.resize(static_cast<std::size_t>(map.layers) * cells);
+  std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // cell, by what
+  std::vector<Lattice::Node> listed;
+  const auto of_fault = [&](int layer, int slot) {
+    const Lattice::NodeFault fault = lattice.fault(layer, slot);
+    if (fault.status == NodeStatus::kSingular) return LatticeMap::Node{NodeState::kSingular};
+    if (fault.status == NodeStatus::kLimit)
+      return LatticeMap::Node{NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
+    return LatticeMap::Node{};
+  };
+  std::optional<BodyPair> pair;  // that blocks the node looked at last
+  const auto look_at = [&](int layer, int slot, const Config& node) {
+    const Verdict verdict = view.verdicts ? view.verdicts->node(layer, slot) : Verdict::kUnknown;
+    if (verdict == Verdict::kUnknown && !map.complete) return LatticeMap::Node{NodeState::kNotLookedAt};
+    budget.poll();
+    const auto row = lattice.row(layer, slot, node);
+    if (!row) {  // the exact chain does not reach the pose there, or not within its limits
+      const LatticeMap::Node fault = of_fault(layer, slot);
+      return fault.state == NodeState::kJointLimit ? fault : LatticeMap::Node{};
+    }
+    if (!lattice.manipulable(*row)) return LatticeMap::Node{NodeState::kSingular};
+    const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
+    const std::int64_t before = decided(query.counters());
+    pair = query.first_below(*row, Keep::kNode);
+    return LatticeMap::Node{pair ? NodeState::kBlocked : NodeState::kFree, 0, decided(query.counters()) > before};
+  };
   for (int layer = 0; layer < map.layers; ++layer) {
     map.s.push_back(lattice.path().layer(layer).s);
     budget.poll(Stage::kDrawing, layer, map.layers);
-    lattice.solve(layer, nodes);
-    for (int slot = 0; slot < lattice.width(); ++slot, ++k) {
-      LatticeMap::Node& node = map.nodes[k];
-      if (!nodes.valid(lattice.label_of(slot), lattice.angle_of(slot))) {
-        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
-        if (fault.status == NodeStatus::kSingular) node.state = NodeState::kSingular;
-        if (fault.status == NodeStatus::kLimit)
-          node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
-        continue;
-      }
-      const Verdict verdict = view.verdicts ? view.verdicts->node(layer, slot) : Verdict::kUnknown;
-      node.state = NodeState::kNotLookedAt;
-      if (verdict == Verdict::kUnknown && !map.complete) continue;
-      budget.poll();
-      const auto row = lattice.row(layer, slot, nodes.config(lattice.label_of(slot), lattice.angle_of(slot)));
-      if (!row) {  // the exact chain does not reach the pose there, or not within its limits
-        const SrsLattice::NodeFault fault = lattice.fault(layer, slot);
-        node.state = NodeState::kNoIk;
-        if (fault.status == NodeStatus::kLimit)
-          node = {NodeState::kJointLimit, static_cast<std::uint8_t>(std::countr_zero(fault.joints))};
-        continue;
-      }
-      const Config& q = *row;
-      if (!lattice.manipulable(q)) {
-        node.state = NodeState::kSingular;
-        continue;
-      }
-      const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
-      const std::int64_t before = decided(query.counters());
-      const auto pair = query.first_below(q, Keep::kNode);
-      node.certified = decided(query.counters()) > before;
-      node.state = pair ? NodeState::kBlocked : NodeState::kFree;
-      if (pair) blocked.emplace_back(k, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
+    lattice.layer_nodes(layer, listed);
+    auto next = listed.begin();
+    for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+      const bool exists = next != listed.end() && next->slot == slot;
+      pair.reset();
+      const LatticeMap::Node node = exists ? look_at(layer, slot, next->q) : of_fault(layer, slot);
+      next += exists;
+      const std::size_t cell = static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(map_cell(lattice, layer, slot));
+      if (!map.grid && importance(node) <= importance(map.nodes[cell])) continue;
+      map.nodes[cell] = node;
+      if (pair) blocked.emplace_back(cell, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
     }
   }
   std::map<std::pair<std::string, std::string>, std::uint8_t> index;
-  for (const auto& [node, pair] : blocked) index.emplace(pair, 0);
-  for (auto& [pair, cause] : index) {
+  for (const auto& [cell, names] : blocked) index.emplace(names, 0);
+  for (auto& [names, cause] : index) {
     cause = static_cast<std::uint8_t>(std::min<std::size_t>(map.blockers.size(), 255));
-    map.blockers.push_back(pair);
+    map.blockers.push_back(names);
   }
-  for (const auto& [node, pair] : blocked) map.nodes[node].cause = index.at(pair);
+  for (const auto& [cell, names] : blocked) map.nodes[cell].cause = index.at(names);
   return map;
 }
 

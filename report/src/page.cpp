@@ -106,12 +106,12 @@ struct Row {
 };
 
 /// The answer layer by layer, or the way to the furthest layer.
-std::vector<Row> lattice_rows(const SrsLattice& lattice, const std::vector<int>& slots) {
+std::vector<Row> lattice_rows(const Lattice& lattice, const LatticeMap& map, const std::vector<int>& slots) {
   std::vector<Row> rows;
   for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
     const int slot = slots[static_cast<std::size_t>(layer)];
-    Row row{*lattice.row(layer, slot), lattice.phi(layer, slot), static_cast<double>(lattice.angle_of(slot)),
-            lattice.label_of(slot)};
+    const int cell = map.path[static_cast<std::size_t>(layer)];
+    Row row{*lattice.row(layer, slot), lattice.phi(layer, slot), static_cast<double>(cell % map.angles), cell / map.angles};
     if (!rows.empty())
       row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints, as the trajectory does
     rows.push_back(row);
@@ -143,7 +143,7 @@ std::vector<Row> refined_rows(const SrsLattice& lattice, const std::vector<Traje
   return rows;
 }
 
-Json rows_json(const World& world, const SrsLattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
+Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
   World::Query query(world, Certificates::kOn);
   Json rows = Json::array();
   for (int layer = 0; layer < static_cast<int>(shown.size()); ++layer) {
@@ -232,34 +232,34 @@ Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& 
 
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const Json& diagnosis) {
+Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::vector<int>& path, const Json& diagnosis) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
   const std::string reason = diagnosis["reason"];
   const Json bodies = diagnosis["cause"].is_object() ? diagnosis["cause"]["bodies"] : Json(nullptr);
   const bool motion = bodies.is_array() && diagnosis["cause"]["between_layers"];
-  const int from = map.path.empty() ? 0 : map.path.back();
-  LayerNodes nodes;
-  lattice.solve(layer, nodes);
-  int best = -1, least = 0;
+  const int from = map.path.empty() ? 0 : map.path.back();  // a cell
+  std::vector<Lattice::Node> listed;
+  lattice.layer_nodes(layer, listed);
+  const Lattice::Node* best = nullptr;
+  int least = 0;
   for (const bool by_bodies : {true, false}) {
-    for (int slot = 0; slot < lattice.width(); ++slot) {
-      const int label = lattice.label_of(slot), angle = lattice.angle_of(slot);
+    for (const Lattice::Node& candidate : listed) {
+      const int cell = map_cell(lattice, layer, candidate.slot), label = cell / map.angles, angle = cell % map.angles;
       const LatticeMap::Node& node = map.at(layer, label, angle);
       const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
                            bodies[0] == map.blockers[node.cause].first && bodies[1] == map.blockers[node.cause].second;
-      if (!nodes.valid(label, angle) || blocked != by_bodies) continue;
-      const int away = std::abs(angle - lattice.angle_of(from));
-      const int far = std::min(away, map.angles - away) + (label == lattice.label_of(from) ? 0 : map.angles);
-      if (best < 0 || far < least) best = slot, least = far;
+      if (blocked != by_bodies) continue;
+      const int away = std::abs(angle - from % map.angles);
+      const int far = std::min(away, map.angles - away) + (label == from / map.angles ? 0 : map.angles);
+      if (!best || far < least) best = &candidate, least = far;
     }
-    if (best >= 0) break;
+    if (best) break;
   }
-  if (best < 0) return nullptr;
-  const int label = lattice.label_of(best), angle = lattice.angle_of(best);
-  const LatticeMap::Node& node = map.at(layer, label, angle);
-  const Config node_q = nodes.config(label, angle);
-  const Config q = lattice.row(layer, best, node_q).value_or(node_q);
+  if (!best) return nullptr;
+  const int cell = map_cell(lattice, layer, best->slot);
+  const LatticeMap::Node& node = map.at(layer, cell / map.angles, cell % map.angles);
+  const Config q = lattice.row(layer, best->slot, best->q).value_or(best->q);
   std::string what = "no valid pose here: " + reason;
   Json pair = nullptr;
   if (node.state == NodeState::kBlocked) {
@@ -271,7 +271,7 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const Json& diag
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
     if (diagnosis["cause"].is_object() && diagnosis["cause"]["cause"] == "joint_step") {
-      const Config step = lattice.delta(*lattice.row(layer - 1, from), q);
+      const Config step = lattice.delta(*lattice.row(layer - 1, path.back()), q);
       Eigen::Index joint = 0;
       const double most = step.cwiseAbs().maxCoeff(&joint);
       char text[32];
@@ -281,7 +281,7 @@ Json cut_json(const LatticeMap& map, const SrsLattice& lattice, const Json& diag
   }
   return {{"layer", layer},
           {"s", lattice.path().layer(layer).s},
-          {"phi", lattice.phi(layer, best)},
+          {"phi", lattice.phi(layer, best->slot)},
           {"q", std::vector<double>(q.begin(), q.end())},
           {"pair", std::move(pair)},
           {"what", std::move(what)}};
@@ -308,7 +308,7 @@ class Clearances {
 };
 
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
-Json map_json(const LatticeMap& map, const SrsLattice& lattice, const World& world, const Budget& budget) {
+Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> labels = map.inhabited_labels();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
@@ -322,26 +322,26 @@ Json map_json(const LatticeMap& map, const SrsLattice& lattice, const World& wor
     for (int column = 0; column < cells.columns; ++column)
       for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(label, column, row));
   Clearances clearances(world, asked);
-  LayerNodes nodes;
+  std::vector<Lattice::Node> listed;
+  std::vector<int> panel_of(map.labels(), -1);
   Json panels = Json::array();
-  for (const int label : labels) panels.push_back({{"label", label}, {"name", map.label_name(label)}});
+  for (const int label : labels) {
+    panel_of[label] = static_cast<int>(panels.size());
+    panels.push_back({{"label", label}, {"name", map.label_name(label)}});
+  }
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
     std::vector<Config> shown(labels.size() * cells.rows, Config::Constant(2 * reach));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
-      lattice.solve(layer, nodes);
-      std::size_t k = 0;
-      for (const int label : labels)
-        for (int row = 0; row < cells.rows; ++row, ++k) {
-          const LatticeMap::Node cell = cells.node(label, column, row);
-          for (int j = row * cells.angles_each; j < std::min(map.angles, (row + 1) * cells.angles_each); ++j) {
-            const LatticeMap::Node& node = map.at(layer, label, j);
-            if (shown[k][0] < 2 * reach || node != cell || !nodes.valid(label, j)) continue;
-            shown[k] = nodes.config(label, j);
-            shown[k] = lattice.row(layer, label * lattice.angles() + j, shown[k]).value_or(shown[k]);
-          }
-        }
+      lattice.layer_nodes(layer, listed);
+      for (const Lattice::Node& node : listed) {
+        const int cell = map_cell(lattice, layer, node.slot), label = cell / map.angles, angle = cell % map.angles;
+        const int row = angle / cells.angles_each, k = panel_of[label] * cells.rows + row;
+        if (panel_of[label] < 0 || shown[k][0] < 2 * reach || map.at(layer, label, angle) != cells.node(label, column, row))
+          continue;
+        shown[k] = lattice.row(layer, node.slot, node.q).value_or(node.q);
+      }
     }
     std::size_t k = 0;
     for (const int label : labels)
@@ -388,7 +388,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                     const Budget& budget) {
   const Problem& problem = view.problem;
   const World& world = view.world;
-  const auto& lattice = dynamic_cast<const SrsLattice&>(view.lattice);
+  const Lattice& lattice = view.lattice;
   const ToolPath& path = lattice.path();
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
@@ -396,8 +396,9 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   for (const RobotBody& body : world.bodies())
     bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
   for (const SceneObject& object : problem.scene) bodies.add(object.name, "scene", 0, object.shape, object.pose);
-  const std::vector<Row> found = lattice_rows(lattice, view.path);
-  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, *motion.refined, view.path) : found;
+  const std::vector<Row> found = lattice_rows(lattice, map, view.path);
+  const std::vector<Row> rows =
+      motion.refined ? refined_rows(dynamic_cast<const SrsLattice&>(lattice), *motion.refined, view.path) : found;
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
@@ -419,7 +420,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"motion", motion.motion ? motion_json(*motion.motion, joint_rates(lattice.chain(), problem.limits, problem.source),
                                              lattice.chain(), rows, path)
                                : Json(nullptr)},
-      {"cut", diagnosis.is_object() ? cut_json(map, lattice, diagnosis) : Json(nullptr)},
+      {"cut", diagnosis.is_object() ? cut_json(map, lattice, view.path, diagnosis) : Json(nullptr)},
       {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

@@ -277,8 +277,13 @@ limits: {{clearance: 0.005}}
         self.assertIsNotNone(match)
         x, y, z = match.group(2).split()
         bent.write_text(urdf[: match.start(2)] + f"{float(x) + 0.088} {y} {z}" + urdf[match.end(2):])
-        self.bad(f"robot: {{urdf: bent.urdf, base_link: base_link, tip_link: tool0}}\npath: {{waypoints: [{{xyz: [0.5, 0, 0.5]}}, {{xyz: [0.5, 0.1, 0.5]}}]}}\n",
-                 ["axes 6 and 7", "88.0 mm"])
+        problem = "robot: {urdf: bent.urdf, base_link: base_link, tip_link: tool0}\npath: {waypoints: [{xyz: [0.5, 0, 0.5]}, {xyz: [0.5, 0.1, 0.5]}]}\n"
+        self.bad(problem + "limits: {step_error: 0.1}\n", ["limits.step_error", "S-R-S"])
+        (self.folder / "bent.yaml").write_text(problem)
+        done = run("plan", self.folder / "bent.yaml", "--refine")
+        self.assertEqual(done.returncode, 2, done.stdout)
+        for words in ("axes 6 and 7", "88.0 mm", "refining"):
+            self.assertIn(words, done.stderr)
 
     def test_command_line(self):
         problem = PROBLEMS / "experiment_a.yaml"

@@ -189,7 +189,9 @@ TEST(Roll, PathsAreAsCheapAsThoseOfAGridOfRolls) {
       dearer += cost > 1.02 * grid;
       for (std::size_t i = 0; i < slots.size(); ++i) {
         const Config& row = lattice.point(static_cast<int>(i), slots[i]).q;
-        if (!free) EXPECT_TRUE(row[kDof - 1] >= roll.lower && row[kDof - 1] <= roll.upper);
+        if (!free) {
+          EXPECT_TRUE(row[kDof - 1] >= roll.lower && row[kDof - 1] <= roll.upper);
+        }
         EXPECT_EQ(lattice.phi(static_cast<int>(i), slots[i]), row[kDof - 1]);
         if (i == 0) continue;
         const Config delta = lattice.delta(lattice.point(static_cast<int>(i) - 1, slots[i - 1]).q, row);

@@ -10,7 +10,7 @@ endfunction()
 
 set(prefix ${SCRATCH}/prefix)
 set(consumer ${SOURCE}/tests/install/consumer)
-set(main ${SOURCE}/examples/02_plan_from_memory.cpp)
+set(main ${consumer}/main.cpp)
 file(REMOVE_RECURSE ${SCRATCH})
 run(_ ${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
 
@@ -65,7 +65,7 @@ foreach(boost IN ITEMS OFF ON)
   run(_ ${CMAKE_COMMAND} --build ${SCRATCH}/cmake_${boost})
 endforeach()
 run(printed ${SCRATCH}/cmake_OFF/consumer)
-if(NOT printed MATCHES "^solved")
+if(NOT printed MATCHES "^yes: a path past a box\n.*yes: another thread cancels\n$" OR printed MATCHES "NO:")
   message(SEND_ERROR "the consumer printed ${printed}")
 endif()
 

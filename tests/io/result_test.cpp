@@ -20,7 +20,11 @@ PlanResult solved() {
   result.cost = 1.0 / 3;
   result.planner = "parallel";
   result.threads = 4;
-  result.lattice = {101, 126, 8, 2, 2, 203616, 1};
+  result.lattice.layers = 101;
+  result.lattice.nodes = 203616;
+  result.lattice.grid = {126, 8, 2, 2};
+  result.lattice.method = "closed form";
+  result.lattice.merged_waypoints = 1;
   result.counters = {1, 2, 3, 4, 5, 6, 7, 8, 9};
   result.time_ms = {{"load", 1.5}, {"plan", 2.5}, {"search", 0.25}};
   result.evidence = Evidence::all();
@@ -46,15 +50,16 @@ PlanResult solved() {
 
 TEST(Result, KeysInOrder) {
   const Json json = Json::parse(to_json(solved()));
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status",        "summary",    "cost",
-                                                     "planner",       "threads",    "lattice",
-                                                     "counters",      "time_ms",    "tool_path_error_mm",
-                                                     "min_clearance", "min_margin", "min_manipulability",
-                                                     "arm_angle",     "refinement", "motion",
-                                                     "diagnosis",     "trajectory", "partial",
-                                                     "robot_pairs",   "warnings",   "joint_names"}));
-  EXPECT_EQ(keys_of(json["lattice"]),
-            (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes", "merged_waypoints", "cost"}));
+  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status",        "summary",     "cost",
+                                                     "planner",       "threads",     "lattice",
+                                                     "counters",      "time_ms",     "tool_path_error_mm",
+                                                     "min_clearance", "min_margin",  "min_manipulability",
+                                                     "arm_angle",     "refinement",  "motion",
+                                                     "diagnosis",     "advice",      "trajectory",
+                                                     "partial",       "robot_pairs", "warnings",
+                                                     "joint_names"}));
+  EXPECT_EQ(keys_of(json["lattice"]), (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes",
+                                                                "merged_waypoints", "cost", "method", "complete"}));
   EXPECT_EQ(keys_of(json["counters"]),
             (std::vector<std::string>{"ik_nodes", "edges", "nodes_checked", "edges_checked", "fcl_calls", "certified_free",
                                       "certified_colliding", "expansions", "iterations"}));

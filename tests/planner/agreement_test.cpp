@@ -263,7 +263,7 @@ TEST(Agreement, FourPlannersAndBruteForceWhereRangesEndInSlivers) {
       options.planner = planner;
       options.threads = 2;
       results.push_back(plan(problem, options));
-      ASSERT_EQ(results.back().lattice.windings, 2) << what;
+      ASSERT_EQ(results.back().lattice.grid->windings, 2) << what;
       expect_same(results[0], results.back(), what + " planner " + results.back().planner);
       if (HasFatalFailure()) return;
     }
@@ -296,7 +296,7 @@ TEST(Agreement, LimitsRoundedUpGiveTheSamePath) {
     Problem problem = problem_for(iiwa(limit));
     problem.waypoints = {waypoint_of(chain.tool(q0)), waypoint_of(chain.tool(q1))};
     results.push_back(plan(problem));
-    EXPECT_EQ(results.back().lattice.windings, 1);
+    EXPECT_EQ(results.back().lattice.grid->windings, 1);
   }
   ASSERT_EQ(results[0].status, PlanStatus::kSolved);
   expect_same(results[0], results[1], "3.14159 and 3.1416");

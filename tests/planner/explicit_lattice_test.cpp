@@ -18,20 +18,6 @@
 namespace swivel::test {
 namespace {
 
-/// Seven joints of which no three meet in a point; joint 7 turns without end.
-TestRobot offset_robot() {
-  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
-  return synthetic_robot("offsets",
-                         {{z * 0.3, z, -2.9, 2.9},
-                          {x * 0.05, y, -2.0, 2.0},
-                          {y * 0.04, z, -2.9, 2.9},
-                          {z * 0.38 + x * 0.06, y, -2.3, 2.3},
-                          {z * 0.33 - y * 0.05, z, -2.9, 2.9},
-                          {x * 0.08, y, -2.0, 2.0},
-                          {z * 0.06, x, 0, 0, true}},
-                         z * 0.12, 0.04);
-}
-
 /// A configuration near `q` that reaches the pose: minimum-norm Newton steps.
 std::optional<Config> projected(const Chain& chain, const Pose& pose, Config q) {
   for (int step = 0; step < 30; ++step) {
@@ -117,8 +103,11 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
     const auto expect_truth = [&](const SlotPath& slots, double cost, int deepest, const char* planner) {
       ASSERT_EQ(!slots.empty(), truth.solved) << what << ' ' << planner;
       ASSERT_EQ(slots, truth.slots) << what << ' ' << planner;
-      if (truth.solved) ASSERT_EQ(cost, truth.cost) << what << ' ' << planner;
-      if (!truth.solved) ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
+      if (truth.solved) {
+        ASSERT_EQ(cost, truth.cost) << what << ' ' << planner;
+      } else {
+        ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
+      }
     };
     for (const EagerSearch search : {EagerSearch::kDijkstra, EagerSearch::kAStar}) {
       CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);

@@ -58,9 +58,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     const Config &row_a = *rows[i][a], &row_b = *rows[i + 1][b];
     Config delta = qb - qa, row_delta = row_b - row_a;
     for (int j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
       for (Config* move : {&delta, &row_delta})
-        if (limit.continuous || limit.wide()) (*move)[j] = std::remainder((*move)[j], kTwoPi);
+        if (lattice.continuous()[static_cast<std::size_t>(j)]) (*move)[j] = std::remainder((*move)[j], kTwoPi);
       if (std::abs(delta[j]) > limits.joint_step + 2 * lattice.misfit()[j] || std::abs(row_delta[j]) > limits.joint_step)
         return std::nullopt;
     }

@@ -104,6 +104,20 @@ inline TestRobot windings_robot() {
                          z * 0.12, 0.05);
 }
 
+/// Seven joints of which no three meet in a point; joint 7 turns without end.
+inline TestRobot offset_robot() {
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  return synthetic_robot("offsets",
+                         {{z * 0.3, z, -2.9, 2.9},
+                          {x * 0.05, y, -2.0, 2.0},
+                          {y * 0.04, z, -2.9, 2.9},
+                          {z * 0.38 + x * 0.06, y, -2.3, 2.3},
+                          {z * 0.33 - y * 0.05, z, -2.9, 2.9},
+                          {x * 0.08, y, -2.0, 2.0},
+                          {z * 0.06, x, 0, 0, true}},
+                         z * 0.12, 0.04);
+}
+
 /// The same robot with other limits of its arm's joints: change(number of the joint, 0 ... 6, joint).
 template <class Change>
 TestRobot with_limits(const TestRobot& robot, const Change& change) {

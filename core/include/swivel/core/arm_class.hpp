@@ -18,7 +18,7 @@ enum class ArmKind {
 struct ArmClass {
   ArmKind kind = ArmKind::kSampled;
   std::optional<SrsArm> srs;  ///< of kSrs
-  LockMethod lock;            ///< of kArcs; an S-R-S arm has one too
+  LockMethod lock;            ///< of the others
   std::string not_srs;        ///< why the arm is not S-R-S: which axes miss each other, and by how much
   /// "closed form" or "sampled": whether all solutions of a pose are known, or only those that turned up.
   [[nodiscard]] bool complete() const { return kind != ArmKind::kSampled; }

@@ -19,8 +19,8 @@ enum class PlanStatus { kSolved, kInfeasible, kTimeout, kCancelled, kError };
 /// One layer of a solution: a row of docs/formats.md "Trajectory".
 struct TrajectoryRow {
   double s = 0;    ///< m along the path
-  double phi = 0;  ///< carried arm angle, rad
-  int branch = 0;  ///< 0..7: bit 0 shoulder, bit 1 wrist, bit 2 elbow; set where the sine is negative
+  double phi = 0;  ///< carried arm angle, rad; of arms that are not S-R-S a generalised one, for reports
+  int branch = 0;  ///< of S-R-S arms 0..7: bit 0 shoulder, bit 1 wrist, bit 2 elbow; set where the sine is negative
   Config q = Config::Zero();
 };
 
@@ -38,8 +38,15 @@ struct Counters {
 };
 
 struct LatticeInfo {
-  int layers = 0, phi = 0, branches = 8, windings = 1, window = 0;
+  int layers = 0;
   std::int64_t nodes = 0;
+  struct Grid {
+    int phi = 0, branches = 8, windings = 1, window = 0;
+  };
+  std::optional<Grid> grid;          ///< of S-R-S arms: arm angles, and cells between neighbours in successive layers
+  std::optional<std::int64_t> arcs;  ///< of other arms: arcs of self-motion in all layers
+  std::string method;                ///< how solutions are found: ArmClass::method()
+  bool complete = true;              ///< all solutions are known; else only those that turned up, and "no path" means "none found"
   int merged_waypoints = 0;
   double cost = 0;  ///< what the search minimised and ties are settled by, of solved problems: of the nodes, not of the rows
 };
@@ -118,27 +125,32 @@ struct TopToolSpeed {
   int row = 0;        ///< on the step from it
 };
 
-struct PlanResult {
+/// What a trajectory comes near to, and how well it follows its path: measure() in planner/measure.hpp.
+struct Measures {
+  std::optional<NearestLimit> nearest_limit;   ///< null where no joint has limits
+  std::optional<TopToolSpeed> top_tool_speed;  ///< null where the tool rests, or a joint's speed is not known
+  Evidence evidence;                           ///< what was asked for, and is known; the rest of what follows means nothing
+  struct {
+    double mean = 0, max = 0;
+    int row = 0;                        ///< the step from it has the largest
+    std::optional<double> allowed;      ///< limits.tool_path_error
+  } tool_path_error_mm;                 ///< Evidence::tool_path_error; the others: Evidence::postures
+  std::optional<double> min_clearance;  ///< of the nearest pair on any row, m; null when nothing is near
+  std::optional<LeastMargin> min_margin;
+  double min_manipulability = 0;
+  std::vector<double> arm_angle;  ///< conventional arm angle of each row of S-R-S arms, rad
+};
+
+/// The measures are those of the trajectory, where there is one.
+struct PlanResult : Measures {
   PlanStatus status = PlanStatus::kInfeasible;
   double cost = 0;  ///< of the rows
   std::string planner;
   int threads = 1;
   LatticeInfo lattice;
   Counters counters;
-  Evidence evidence;                      ///< what was asked for, and is known; the rest of this means nothing
   std::map<std::string, double> time_ms;  ///< load, prepare, plan, report, and stages
-  struct {
-    double mean = 0, max = 0;
-    int row = 0;                        ///< the step from it has the largest
-    std::optional<double> allowed;      ///< limits.tool_path_error
-  } tool_path_error_mm;                 ///< of solved problems, where asked for; so are the next four
-  std::optional<double> min_clearance;  ///< of the nearest pair on any row, m; null when nothing is near
-  std::optional<LeastMargin> min_margin;
-  double min_manipulability = 0;
-  std::optional<NearestLimit> nearest_limit;   ///< of solved problems; null where no joint has limits
-  std::optional<TopToolSpeed> top_tool_speed;  ///< of solved problems; null where the tool rests, or a joint's speed is not known
-  std::vector<double> arm_angle;               ///< conventional arm angle of each row, rad
-  std::vector<TrajectoryRow> trajectory;       ///< empty unless solved
+  std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
   /// Where there is no answer: rows from the first layer on that are valid, as far as they are known; maybe none.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;

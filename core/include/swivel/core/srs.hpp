@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/input_error.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
@@ -54,8 +55,19 @@ struct SrsArm {
   [[nodiscard]] Vector3d elbow_axis(const Config& q) const;
 };
 
-/// Fits the ideal arm, or throws InputError with a sentence that says which axes miss each other and by how much.
-/// Tolerance: 1 mm and 10 mrad.
+/// An arm that is not S-R-S.
+class NotSrs : public InputError {
+ public:
+  NotSrs(const std::string& source, const std::string& why, const std::string& allowed)
+      : InputError(source + ": not an S-R-S arm: " + why + ": allowed are " + allowed), why_(why) {}
+  /// Which axes miss each other, and by how much.
+  [[nodiscard]] const std::string& why() const { return why_; }
+
+ private:
+  std::string why_;
+};
+
+/// Fits the ideal arm, or throws NotSrs. Tolerance: 1 mm and 10 mrad.
 [[nodiscard]] SrsArm fit_srs(const Chain& chain, const std::string& source);
 
 /// The plane that the arm angle turns in: u along S->W, r the reference direction. Unit, perpendicular, base frame.

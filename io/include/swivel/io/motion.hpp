@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/advice.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
@@ -27,9 +28,10 @@ using JointNames = std::array<std::string, kDof>;
 struct Aftermath {
   const Refined* refinement = nullptr;
   const TimingResult* motion = nullptr;
-  TimingOptions timing;  ///< what the motion was asked to keep
+  TimingOptions timing;                         ///< what the motion was asked to keep
+  const std::vector<Advice>* advice = nullptr;  ///< of a problem that has no path
 };
-/// to_json(result) with the keys `refinement` and `motion` filled in. docs/formats.md "Result".
+/// to_json(result) with the keys `refinement`, `motion` and `advice` filled in. docs/formats.md "Result".
 [[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
 /// A trajectory as a file has it.

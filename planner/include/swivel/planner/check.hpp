@@ -56,7 +56,8 @@ struct CheckResult {
 /// - the tool is within 1e-6 m and 1e-6 rad of the path at s (1e-9 m). Where the path only turns, s repeats and the orientation
 ///   tells the place; rows are matched to places such that they come in order;
 /// - manipulability (1e-9) and clearance (0.05 mm) are kept; contact is never forgiven;
-/// - phi is the arm angle of the joints (1e-3 rad, whole turns aside), carried along the layers, for a row between two layers from
+/// - of S-R-S arms, phi is the arm angle of the joints (1e-3 rad, whole turns aside), carried along the layers, for a row between
+/// two layers from
 ///   the one before it; branch tells the joints' signs where they are further than 0.01 rad (0.05 on inexact arms) from a change.
 /// The first row is the path's beginning, and the given start; the last is its end.
 ///

@@ -21,7 +21,8 @@ enum class NodeState : std::uint8_t {
   kBlocked,      ///< cause: index into LatticeMap::blockers
 };
 
-/// The task submanifold of the paper's Fig. 5, node by node.
+/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm angles: cells of their generalised
+/// arm angle, each of which shows the most important of the nodes that lie in it.
 struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
@@ -29,12 +30,13 @@ struct LatticeMap {
     bool certified = false;  ///< of free and blocked nodes: a certificate alone proves it, FCL need not be asked
     bool operator==(const Node&) const = default;
   };
+  bool grid = true;  ///< a cell a node
   int layers = 0, angles = 0, windings = 1;
   std::vector<double> s;                                      ///< m, of each layer
   std::vector<Node> nodes;                                    ///< [layer][label][angle], label = branch * windings + winding
   std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
-  std::vector<int> path;  ///< one slot in each layer: the answer, or a way to the furthest layer reached
+  std::vector<int> path;  ///< one cell in each layer, label * angles + angle: the answer, or a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
 
   [[nodiscard]] int labels() const { return kBranches * windings; }
@@ -50,6 +52,9 @@ struct LatticeMap {
   /// "shoulder +, wrist -, elbow +", with the winding where there are several.
   [[nodiscard]] std::string label_name(int label) const;
 };
+
+/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and generalised arm angle.
+[[nodiscard]] int map_cell(const Lattice& lattice, int layer, int slot);
 
 /// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
 /// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.

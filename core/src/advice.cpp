@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/advice.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace swivel {
+
+namespace {
+
+struct Limit {
+  Advice::Change change;
+  const char* key;
+  const char* phrase;
+  const char* unit;
+  double scale;  // of the unit that is shown
+};
+constexpr double kDegrees = 180 / kPi;
+constexpr Limit kLimits[] = {
+    {Advice::Change::kClearance, "clearance", "clearance", "mm", 1e3},
+    {Advice::Change::kJointMargin, "joint_margin", "joint margin", "deg", kDegrees},
+    {Advice::Change::kManipulability, "manipulability", "manipulability", "", 1},
+    {Advice::Change::kArmSlope, "arm_slope", "arm slope", "rad/m", 1},
+    {Advice::Change::kJointStep, "joint_step", "joint step", "rad", 1},
+    {Advice::Change::kToolSpeed, "tool_speed", "tool speed", "m/s", 1},
+    {Advice::Change::kToolTurnSpeed, "tool_turn_speed", "tool turn speed", "rad/s", 1},
+    {Advice::Change::kPathError, "tool_path_error", "tool-path error", "mm", 1e3},
+    {Advice::Change::kAngleError, "tool_angle_error", "tool angle error", "deg", kDegrees},
+    {Advice::Change::kStepError, "step_error", "step error", "rad", 1},
+};
+
+template <class... Values>
+std::string text(const char* format, Values... values) {
+  char buffer[96];
+  std::snprintf(buffer, sizeof buffer, format, values...);
+  return buffer;
+}
+
+/// "10 mm along +y"; of a slanted way its three parts; "up to 20 mm" where no way was better than another.
+std::string words(const Vector3d& offset) {
+  if (offset.isZero(0)) return "up to 20 mm";
+  Eigen::Index axis = 0;
+  const double most = offset.cwiseAbs().maxCoeff(&axis);
+  if (offset.norm() > most * (1 + 1e-9)) return text("(%.3g, %.3g, %.3g) mm", 1e3 * offset.x(), 1e3 * offset.y(), 1e3 * offset.z());
+  return text("%.3g mm along %c%c", 1e3 * most, offset[axis] < 0 ? '-' : '+', static_cast<char>('x' + axis));
+}
+
+}  // namespace
+
+const char* to_string(Advice::Change change) {
+  for (const Limit& limit : kLimits)
+    if (limit.change == change) return limit.key;
+  switch (change) {
+    case Advice::Change::kFreeStart:
+      return "free_start";
+    case Advice::Change::kFiner:
+      return "finer";
+    case Advice::Change::kMoveObject:
+      return "move_object";
+    case Advice::Change::kWithoutObject:
+      return "without_object";
+    default:
+      return "?";
+  }
+}
+
+const char* to_string(Advice::Outcome outcome) {
+  switch (outcome) {
+    case Advice::Outcome::kSolved:
+      return "solved";
+    case Advice::Outcome::kFurther:
+      return "further";
+    case Advice::Outcome::kNoHelp:
+      return "no_help";
+    case Advice::Outcome::kUnknown:
+      return "unknown";
+  }
+  return "?";
+}
+
+std::string words(const Advice& advice) {
+  for (const Limit& limit : kLimits)
+    if (limit.change == advice.change) {
+      const auto shown = [&](const std::optional<double>& value) {
+        return value ? text("%.3g%s%s", limit.scale * *value, *limit.unit ? " " : "", limit.unit) : std::string("none");
+      };
+      return std::string(limit.phrase) + " of " + shown(advice.to) + " instead of " + shown(advice.from);
+    }
+  switch (advice.change) {
+    case Advice::Change::kFreeStart:
+      return "a free start";
+    case Advice::Change::kFiner:
+      return "half the steps of the lattice (--ds, --dphi)";
+    case Advice::Change::kMoveObject:
+      return "'" + advice.object + "' moved by " + words(advice.offset);
+    default:
+      return "no '" + advice.object + "'";
+  }
+}
+
+}  // namespace swivel

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/make_lattice.hpp"
+
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
+                                      const Budget& budget) {
+  if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
+  return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
+}
+
+std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots) {
+  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice)) {
+    auto rows = arcs->unwrap(slots);
+    return std::holds_alternative<ArcLattice::Rows>(rows) ? std::get<ArcLattice::Rows>(std::move(rows)) : ArcLattice::Rows{};
+  }
+  std::vector<Config> rows;
+  rows.reserve(slots.size());
+  for (const int slot : slots) {
+    const Config q = *lattice.row(static_cast<int>(rows.size()), slot);
+    rows.push_back(rows.empty() ? q : Config(rows.back() + lattice.delta(rows.back(), q)));
+  }
+  return rows;
+}
+
+std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots) {
+  const auto& arcs = dynamic_cast<const ArcLattice&>(lattice);
+  return std::make_unique<ArcLattice>(arcs.with_windings(std::get<ArcLattice::Joints>(arcs.unwrap(slots))));
+}
+
+}  // namespace swivel

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <vector>
+
+#include "swivel/core/budget.hpp"
+#include "swivel/core/plan.hpp"
+#include "swivel/core/problem.hpp"
+#include "swivel/planner/prepared_robot.hpp"
+
+namespace swivel {
+
+/// What plan() says of its own trajectory, of any: exact clearances, tool-path error, manipulability, distance from the joints'
+/// limits, tool speed. `rows`: one at each layer of the problem's path, in order, valid or not (check_trajectory() judges). Throws
+/// InvalidArgument for another number of rows or a robot that was not prepared for the problem, InputError as plan() does, Stopped.
+[[nodiscard]] Measures measure(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                               const Evidence& wanted = Evidence::all(), const Budget& budget = {});
+
+}  // namespace swivel

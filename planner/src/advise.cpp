@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/advise.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <utility>
+
+#include "swivel/core/input_error.hpp"
+
+namespace swivel {
+
+namespace {
+
+using Change = Advice::Change;
+using Outcome = Advice::Outcome;
+
+constexpr double kMostMove = 0.02;  // m
+
+/// A limit of a problem by name, as a number that may be unset.
+struct LimitPlace {
+  std::function<std::optional<double>(const Limits&)> get;
+  std::function<void(Limits&, double)> set;
+};
+
+template <class Member>
+LimitPlace place_of(Member member) {
+  return {[member](const Limits& limits) { return std::optional<double>(limits.*member); },
+          [member](Limits& limits, double value) { limits.*member = value; }};
+}
+
+LimitPlace place_of(Change change) {
+  switch (change) {
+    case Change::kClearance:
+      return {[](const Limits& limits) { return std::optional(limits.clearance); },
+              [](Limits& limits, double value) {  // the shares that pairs keep between layers and among robot bodies stay
+                const double share = limits.clearance > 0 ? value / limits.clearance : 1;
+                if (limits.self_clearance) *limits.self_clearance *= share;
+                if (limits.edge_clearance) *limits.edge_clearance *= share;
+                limits.clearance = value;
+              }};
+    case Change::kJointMargin:
+      return place_of(&Limits::joint_margin);
+    case Change::kManipulability:
+      return place_of(&Limits::manipulability);
+    case Change::kArmSlope:
+      return place_of(&Limits::arm_slope);
+    case Change::kJointStep:
+      return place_of(&Limits::joint_step);
+    case Change::kToolSpeed:
+      return place_of(&Limits::tool_speed);
+    case Change::kToolTurnSpeed:
+      return place_of(&Limits::tool_turn_speed);
+    case Change::kPathError:
+      return place_of(&Limits::tool_path_error);
+    case Change::kAngleError:
+      return place_of(&Limits::tool_angle_error);
+    default:
+      return place_of(&Limits::step_error);
+  }
+}
+
+/// Whether a limit is relaxed by making it less.
+bool relaxed_downwards(Change change) {
+  return change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability ||
+         change == Change::kToolSpeed || change == Change::kToolTurnSpeed;
+}
+
+class Adviser {
+ public:
+  Adviser(const Planner& planner, const PlanResult& result, const PlanOptions& options)
+      : problem_(planner.problem()), result_(result), options_(options), trial_(planner.clone()) {
+    constexpr double kSeconds = 1;
+    end_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                              std::chrono::duration<double>(std::min(options.timeout_s.value_or(kSeconds), 1e6)));
+    options_.evidence = {};
+    options_.progress = {};
+  }
+
+  std::vector<Advice> run() {
+    if (result_.status != PlanStatus::kInfeasible) return {};
+    by_cause(result_.diagnosis.cause);
+    for (const Cause& cause : result_.diagnosis.together) by_cause(cause);
+    if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    try_once({.change = Change::kFiner});
+    for (const SceneObject& object : problem_.scene)
+      if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
+    move(problem_.path_frame);
+    std::stable_sort(tried_.begin(), tried_.end(), [](const Advice& a, const Advice& b) {
+      if (a.outcome != b.outcome) return a.outcome < b.outcome;
+      return a.outcome == Outcome::kFurther && a.reached_s > b.reached_s;
+    });
+    return std::move(tried_);
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void by_cause(const Cause& cause) {
+    switch (cause.kind) {
+      case Cause::Kind::kPair:
+      case Cause::Kind::kContact:
+        if (cause.kind == Cause::Kind::kPair) relax(Change::kClearance);
+        if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        for (const std::string& body : cause.bodies) {
+          move(body);
+          if (is_object(body) && body != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = body});
+        }
+        break;
+      case Cause::Kind::kLimit:
+        if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        relax(Change::kJointMargin);
+        move(problem_.path_frame);
+        break;
+      case Cause::Kind::kReach:
+      case Cause::Kind::kSingular:
+        move(problem_.path_frame);
+        break;
+      case Cause::Kind::kManipulability:
+        relax(Change::kManipulability);
+        break;
+      case Cause::Kind::kArmSlope:
+        relax(Change::kArmSlope);
+        break;
+      case Cause::Kind::kJointStep:
+        try_once({.change = Change::kFiner});
+        relax(Change::kJointStep);
+        break;
+      case Cause::Kind::kSpeed:
+        relax(Change::kToolSpeed);
+        relax(Change::kToolTurnSpeed);
+        break;
+      case Cause::Kind::kPathError:
+        try_once({.change = Change::kFiner});
+        relax(Change::kPathError);
+        break;
+      case Cause::Kind::kAngleError:
+        try_once({.change = Change::kFiner});
+        relax(Change::kAngleError);
+        break;
+      case Cause::Kind::kStepError:
+        try_once({.change = Change::kFiner});
+        relax(Change::kStepError);
+        break;
+      case Cause::Kind::kNone:
+      case Cause::Kind::kCheck:
+        break;
+    }
+  }
+
+  [[nodiscard]] bool is_object(const std::string& name) const {
+    return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
+  }
+
+  [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(end_ - Clock::now()).count(); }
+
+  /// Plans the problem with the change; an outcome of kUnknown where the time is up.
+  void plan_changed(Advice& advice) {
+    advice.outcome = Outcome::kUnknown;
+    advice.cost.reset();
+    advice.reached_s.reset();
+    options_.timeout_s = seconds_left();
+    if (!(*options_.timeout_s > 0)) return;
+    Problem changed = problem_;
+    switch (advice.change) {
+      case Change::kFreeStart:
+        changed.start.reset();
+        break;
+      case Change::kFiner:
+        changed.resolution.ds /= 2;
+        changed.resolution.dphi /= 2;
+        changed.resolution.dalpha /= 2;
+        changed.resolution.arc /= 2;
+        break;
+      case Change::kMoveObject:
+        for (SceneObject& object : changed.scene)
+          if (object.name == advice.object) object.pose.translation() += advice.offset;
+        break;
+      case Change::kWithoutObject:
+        std::erase_if(changed.scene, [&](const SceneObject& object) { return object.name == advice.object; });
+        std::erase_if(changed.vary, [&](const Vary& vary) { return vary.object == advice.object; });
+        break;
+      default:
+        place_of(advice.change).set(changed.limits, *advice.to);
+    }
+    PlanResult found;
+    try {
+      trial_.set_problem(std::move(changed));
+      found = trial_.plan(options_);
+    } catch (const InputError&) {  // too fine for the memory; a start that does not fit the path that moved
+      advice.outcome = Outcome::kNoHelp;
+      return;
+    }
+    if (found.status == PlanStatus::kSolved) {
+      advice.outcome = Outcome::kSolved;
+      advice.cost = found.cost;
+    } else if (found.status == PlanStatus::kInfeasible) {
+      advice.reached_s = found.diagnosis.reached_s;
+      const double before = result_.diagnosis.reached_s.value_or(-1), step = problem_.resolution.ds;
+      advice.outcome = advice.reached_s.value_or(-1) > before + step * (1 + 1e-9) ? Outcome::kFurther : Outcome::kNoHelp;
+    }
+  }
+
+  [[nodiscard]] bool known(const Advice& advice) const {
+    return std::any_of(tried_.begin(), tried_.end(),
+                       [&](const Advice& other) { return other.change == advice.change && other.object == advice.object; });
+  }
+
+  void try_once(Advice advice) {
+    if (known(advice)) return;
+    plan_changed(advice);
+    tried_.push_back(std::move(advice));
+  }
+
+  /// First the limit as far off as makes sense; where that solves, the strictest value that does, to a sixteenth of the way.
+  void relax(Change change) {
+    Advice advice{.change = change};
+    advice.from = place_of(change).get(problem_.limits);
+    if (!advice.from || known(advice) || (relaxed_downwards(change) && *advice.from <= 0)) return;
+    constexpr double kFactor = 8;
+    const bool to_zero = change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability;
+    double strict = *advice.from;
+    advice.to = to_zero ? 0 : relaxed_downwards(change) ? strict / kFactor : strict * kFactor;
+    plan_changed(advice);
+    if (advice.outcome == Outcome::kSolved)
+      for (int k = 0; k < 4; ++k) {
+        Advice stricter = advice;
+        stricter.to = (strict + *advice.to) / 2;
+        plan_changed(stricter);
+        if (stricter.outcome == Outcome::kSolved)
+          advice = stricter;
+        else if (stricter.outcome == Outcome::kUnknown)
+          break;
+        else
+          strict = *stricter.to;
+      }
+    tried_.push_back(std::move(advice));
+  }
+
+  /// The shortest way along an axis of the base by which the object helps: 5, 10, 20 mm.
+  void move(const std::string& name) {
+    Advice best{.change = Change::kMoveObject, .object = name};
+    if (!is_object(name) || known(best) || (problem_.start && name == problem_.path_frame)) return;
+    for (double way = kMostMove / 4; way <= kMostMove && best.outcome != Outcome::kSolved; way *= 2)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double sign : {1.0, -1.0}) {
+          Advice moved{.change = Change::kMoveObject, .object = name};
+          moved.offset[axis] = sign * way;
+          plan_changed(moved);
+          if (moved.outcome == Outcome::kUnknown) break;
+          const bool better = moved.outcome < best.outcome ||
+                              (moved.outcome == best.outcome &&
+                               (moved.outcome == Outcome::kSolved ? moved.cost < best.cost : moved.reached_s > best.reached_s));
+          if (better) best = std::move(moved);
+        }
+    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();  // of no one way
+    tried_.push_back(std::move(best));
+  }
+
+  const Problem& problem_;
+  const PlanResult& result_;
+  PlanOptions options_;
+  Planner trial_;
+  Clock::time_point end_;
+  std::vector<Advice> tried_;
+};
+
+}  // namespace
+
+std::vector<Advice> advise(const Planner& planner, const PlanResult& result, PlanOptions options) {
+  return Adviser(planner, result, options).run();
+}
+
+}  // namespace swivel

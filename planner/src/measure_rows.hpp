@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/collision/world.hpp"
+#include "swivel/core/budget.hpp"
+#include "swivel/core/plan.hpp"
+#include "swivel/core/tool_path.hpp"
+#include "swivel/planner/prepared_robot.hpp"
+
+namespace swivel {
+
+/// What `wanted` asks for of rows at the layers of the path; fills it in, and says in measures.evidence what is known. Throws
+/// Stopped.
+void measure_rows(const PreparedRobot& robot, const ToolPath& path, const World& world, const std::vector<TrajectoryRow>& rows,
+                  const Evidence& wanted, const Budget& budget, Measures& measures);
+
+/// Fills nearest_limit and top_tool_speed, which take no time.
+void measure_margins(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, Measures& measures);
+
+}  // namespace swivel

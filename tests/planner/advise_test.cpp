@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/advise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "random_problem.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+using Change = Advice::Change;
+using Outcome = Advice::Outcome;
+
+/// The problem as a reader of the advice would change it by hand.
+Problem followed(Problem problem, const Advice& advice) {
+  const double share = advice.to.value_or(0);
+  Limits& limits = problem.limits;
+  switch (advice.change) {
+    case Change::kFreeStart:
+      problem.start = std::nullopt;
+      break;
+    case Change::kFiner:
+      for (double* step : {&problem.resolution.ds, &problem.resolution.dphi, &problem.resolution.dalpha, &problem.resolution.arc})
+        *step *= 0.5;
+      break;
+    case Change::kClearance:
+      if (limits.self_clearance) limits.self_clearance = *limits.self_clearance * (share / limits.clearance);
+      if (limits.edge_clearance) limits.edge_clearance = *limits.edge_clearance * (share / limits.clearance);
+      limits.clearance = share;
+      break;
+    case Change::kJointMargin:
+      limits.joint_margin = share;
+      break;
+    case Change::kManipulability:
+      limits.manipulability = share;
+      break;
+    case Change::kArmSlope:
+      limits.arm_slope = share;
+      break;
+    case Change::kJointStep:
+      limits.joint_step = share;
+      break;
+    case Change::kToolSpeed:
+      limits.tool_speed = share;
+      break;
+    case Change::kToolTurnSpeed:
+      limits.tool_turn_speed = share;
+      break;
+    case Change::kPathError:
+      limits.tool_path_error = share;
+      break;
+    case Change::kAngleError:
+      limits.tool_angle_error = share;
+      break;
+    case Change::kStepError:
+      limits.step_error = share;
+      break;
+    case Change::kMoveObject:
+      for (SceneObject& object : problem.scene)
+        if (object.name == advice.object) object.pose.translation() += advice.offset;
+      break;
+    case Change::kWithoutObject:
+      problem.scene.erase(std::find_if(problem.scene.begin(), problem.scene.end(),
+                                       [&](const SceneObject& object) { return object.name == advice.object; }));
+      break;
+  }
+  return problem;
+}
+
+/// Whatever is said of a change is what planning the changed problem, on a robot of its own, gives.
+TEST(Advise, EveryOutcomeIsWhatFollowingTheAdviceGives) {
+  const std::uint64_t base = seed("Advise");
+  const auto robots = all_robots();
+  std::map<std::pair<Change, Outcome>, int> seen;
+  int infeasible = 0, helped = 0, unknown = 0;
+  for (int trial = 0; trial < trials(60); ++trial) {
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    if (random.coin()) problem.limits.joint_step = random.uniform(0.1, 0.3);
+    if (random.coin(0.3)) problem.limits.clearance = random.uniform(0.02, 0.08);
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    Planner planner(problem);
+    const PlanResult result = planner.plan(options);
+    options.timeout_s = 5;
+    const std::vector<Advice> advice = advise(planner, result, options);
+    if (result.status == PlanStatus::kSolved) {
+      EXPECT_TRUE(advice.empty()) << what;
+      continue;
+    }
+    ++infeasible;
+    ASSERT_FALSE(advice.empty()) << what;
+    helped += advice[0].outcome == Outcome::kSolved;
+    for (std::size_t k = 0; k < advice.size(); ++k) {
+      const Advice& one = advice[k];
+      if (k > 0) {
+        EXPECT_LE(advice[k - 1].outcome, one.outcome) << what;
+      }
+      ++seen[{one.change, one.outcome}];
+      EXPECT_FALSE(words(one).empty()) << what;
+      if (one.outcome == Outcome::kUnknown) {
+        ++unknown;
+        continue;
+      }
+      if (one.change == Change::kMoveObject && one.offset.isZero()) continue;  // none of the ways helps
+      Advice given = one;
+      if (!given.to) given.to = 0;
+      const PlanResult there = plan(followed(problem, given), options);
+      ASSERT_EQ(there.status == PlanStatus::kSolved, one.outcome == Outcome::kSolved) << what << ": " << words(one);
+      if (one.outcome == Outcome::kSolved) {
+        ASSERT_EQ(there.cost, *one.cost) << what << ": " << words(one);
+      }
+      if (one.outcome != Outcome::kSolved) {
+        ASSERT_EQ(there.diagnosis.reached_s, one.reached_s) << what << ": " << words(one);
+      }
+      // Where a limit is relaxed, it is relaxed no further than a sixteenth of the way beyond what is needed.
+      if (one.outcome != Outcome::kSolved || !one.to || !one.from) continue;
+      const bool down = *one.to < *one.from;
+      const double furthest = !down                                                                      ? 8 * *one.from
+                              : one.change == Change::kToolSpeed || one.change == Change::kToolTurnSpeed ? *one.from / 8
+                                                                                                         : 0;
+      Advice stricter = one;
+      stricter.to = *one.to + (*one.from - furthest) / 16;
+      if (down ? *stricter.to < *one.from : *stricter.to > *one.from) {
+        const PlanResult strict = plan(followed(problem, stricter), options);
+        EXPECT_NE(strict.status, PlanStatus::kSolved) << what << ": " << words(stricter);
+      }
+    }
+  }
+  std::printf("%d infeasible, %d helped by one change, %d changes not decided;", infeasible, helped, unknown);
+  for (const auto& [key, count] : seen) std::printf(" %s %s %d,", to_string(key.first), to_string(key.second), count);
+  std::printf("\n");
+  EXPECT_GE(infeasible, at_least(15));
+  EXPECT_GE(helped, at_least(5));
+}
+
+PlanOptions for_seconds(double seconds) {
+  PlanOptions options;
+  options.timeout_s = seconds;
+  return options;
+}
+
+/// Joint 5 stands at its limit at the given start: without the start there is a path.
+TEST(Advise, ExperimentAFromItsStartNeedsAnother) {
+  Planner planner(io::load_problem(data_dir() / "problems" / "experiment_a_start.yaml"));
+  const PlanResult result = planner.plan();
+  if (result.status == PlanStatus::kSolved) GTEST_SKIP() << "the start is a good one";
+  const std::vector<Advice> advice = advise(planner, result, for_seconds(20));
+  ASSERT_FALSE(advice.empty());
+  EXPECT_EQ(advice[0].change, Change::kFreeStart);
+  EXPECT_EQ(advice[0].outcome, Outcome::kSolved);
+}
+
+/// A wall across the path, which nothing but its removal helps against.
+TEST(Advise, AWallMustGo) {
+  Problem problem = io::load_problem(data_dir() / "problems" / "experiment_a.yaml");
+  SceneObject& wall = problem.scene.emplace_back();
+  wall.name = "wall";
+  wall.shape = Box{{0.3, 0.02, 0.3}};
+  wall.pose.translation() = problem.waypoints.front().position + Vector3d(0, 0.3, 0);
+  Planner planner(problem);
+  const std::vector<Advice> advice = advise(planner, planner.plan(), for_seconds(20));
+  ASSERT_FALSE(advice.empty());
+  EXPECT_EQ(advice[0].change, Change::kWithoutObject);
+  EXPECT_EQ(advice[0].object, "wall");
+  EXPECT_EQ(words(advice[0]), "no 'wall'");
+  for (std::size_t k = 1; k < advice.size(); ++k) EXPECT_NE(advice[k].outcome, Outcome::kSolved) << words(advice[k]);
+  Planner solved(io::load_problem(data_dir() / "problems" / "experiment_a.yaml"));
+  EXPECT_TRUE(advise(solved, solved.plan(), for_seconds(1)).empty());
+}
+
+}  // namespace
+}  // namespace swivel

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arms that are not S-R-S, planned on arcs of their self-motion: the whole way from a problem to a trajectory that is checked.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brute_force.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/motion.hpp"
+#include "swivel/planner/planner.hpp"
+#include "swivel/planner/refine.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+
+TestRobot arm_of_data(const std::string& name) {
+  TestRobot robot = data_robot(name);
+  robot.tip_link = "flange";
+  return robot;
+}
+
+/// Offsets in the wrist, in the shoulder, in both; continuous joints; one without a closed form; one whose last joint alone has a
+/// range of more than a turn.
+std::vector<TestRobot> arms() {
+  TestRobot wound = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
+    if (number % 2 == 0) joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
+  });
+  wound.name = "xarm7_like, one joint of more than a turn";
+  return {arm_of_data("panda_like"), arm_of_data("gen3_like"), arm_of_data("fetch_like"), offset_robot(), wound};
+}
+
+Problem random_task(const TestRobot& robot, Random& random) {
+  Problem problem = random_problem(robot, random);
+  problem.limits.step_error.reset();
+  problem.resolution.arc = random.uniform(0.3, 0.6);
+  problem.limits.joint_step = random.uniform(0.4, 1.0);
+  if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
+  problem.waypoints.resize(2);
+  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() / (2 + random.below(3));
+  problem.resolution.dalpha = 0.5;
+  return problem;
+}
+
+/// Every planner finds what the definition says: the least cost over nodes whose joints' values are all told apart.
+TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("Arms");
+  const auto robots = arms();
+  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0, sampled = 0;
+  const int count = trials(120);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Problem problem = random_task(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const PreparedRobot robot(problem);
+    const bool complete = robot.arm_class().complete();
+    ASSERT_EQ(robot.arm_class().kind, complete ? ArmKind::kArcs : ArmKind::kSampled) << what;
+    sampled += !complete;
+    const Chain& chain = robot.arm().chain;
+    const ToolPath path = problem_path(problem, chain);
+    const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
+    const ArcLattice lattice = circles.with_windings(circles.circles());
+    const EdgeRule rule = robot.world().edge_rule(robot.radii());
+    const Answer truth = brute_force(lattice, robot.world(), rule, [](int, int, int) { return true; });
+
+    std::vector<PlanResult> results;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.evidence = Evidence::all();
+      options.compare_with_fcl = true;
+      results.push_back(plan(robot, problem, options));
+      const PlanResult& result = results.back();
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      ASSERT_TRUE(result.lattice.arcs && !result.lattice.grid) << what;
+      ASSERT_EQ(result.lattice.complete, complete) << what;
+      ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
+      ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q) << what << ' ' << result.planner << " row " << i;
+      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer) << what << ' ' << result.planner;
+      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+      ASSERT_EQ(result.partial.size(), results[0].partial.size()) << what << ' ' << result.planner;
+    }
+    started += problem.start.has_value();
+    continuous += problem.limits.edges == EdgeMode::kContinuous;
+    obstacles += !problem.scene.empty();
+    if (!truth.solved) {
+      ++infeasible;
+      ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
+      continue;
+    }
+    ++solved;
+    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
+    const CheckResult check = check_trajectory(robot, problem, results[0].trajectory);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
+    wound += results[0].lattice.nodes != circles.nodes();
+  }
+  std::printf("%d problems: %d solved (%d with windings), %d infeasible, %d with a start, %d continuous, %d with obstacles\n",
+              count, solved, wound, infeasible, started, continuous, obstacles);
+  EXPECT_GE(solved, at_least(count / 4));
+  EXPECT_GE(infeasible, at_least(count / 20));
+  EXPECT_GE(started, at_least(count / 10));
+  EXPECT_GE(continuous, at_least(count / 5));
+  EXPECT_GE(sampled, at_least(count / 8));
+}
+
+/// A path that turns the last joint on from near its limit: the first answer on circles leaves the limits.
+TEST(Arms, WindingsAreToldApartWhereAPathLeavesTheLimits) {
+  const std::uint64_t base = seed("Arms.Windings");
+  const TestRobot robot = arms().back();
+  int wound = 0, replanned = 0;
+  for (int trial = 0; trial < trials(100); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_task(robot, random);
+    problem.scene.clear();
+    problem.start.reset();
+    problem.limits.joint_margin = 0;
+    problem.limits.manipulability = 0;
+    problem.limits.joint_step = 0.8;
+    const Chain chain = arm_of(robot).chain;
+    Config q = random_config(chain, random), to = q;
+    q[6] = random.uniform(2.4, 2.9);
+    to[6] = q[6] + 1.2;
+    problem.waypoints = {waypoint_of(chain.tool(q)), waypoint_of(chain.tool(to))};
+    problem.resolution = {.ds = 0.02, .dphi = 0.3, .dalpha = 0.3, .arc = 0.4};
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    Planner planner(problem);
+    const PlanResult first = planner.plan();
+    const ArcLattice circles(planner.prepare().arm().chain, planner.prepare().arm_class().lock, problem_path(problem, chain),
+                             problem);
+    wound += first.lattice.nodes > circles.nodes();
+    if (first.status != PlanStatus::kSolved) continue;
+    const CheckResult check = check_trajectory(planner.prepare(), problem, first.trajectory);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    // What a plan remembers does not change the next one's answer.
+    const PlanResult again = planner.plan();
+    ASSERT_EQ(again.cost, first.cost) << what;
+    ASSERT_EQ(again.trajectory.size(), first.trajectory.size()) << what;
+    for (std::size_t i = 0; i < again.trajectory.size(); ++i) ASSERT_EQ(again.trajectory[i].q, first.trajectory[i].q) << what;
+    replanned += first.lattice.nodes > circles.nodes();
+  }
+  std::printf("%d paths left the limits, %d of them with an answer\n", wound, replanned);
+  EXPECT_GE(wound, at_least(5));
+  EXPECT_GE(replanned, at_least(2));
+}
+
+/// Six joints, and the turn of the tool about its own axis: all planners find the same, the check passes it, and the tool stands
+/// as the waypoints have it but for the roll.
+TEST(Arms, SixJointsAndTheRollOfTheTool) {
+  for (const char* const name : {"kr6_weld_pipe", "ur5e_deburr_edge"}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    ASSERT_TRUE(problem.roll) << name;
+    problem.resolution.ds = 0.02;
+    problem.resolution.arc = 0.4;
+    problem.limits.joint_step = 1;
+    problem.limits.tool_path_error = 0.01;
+    const PreparedRobot robot(problem);
+    const Chain& chain = robot.arm().chain;
+    ASSERT_TRUE(chain.roll) << name;
+    EXPECT_EQ(chain.joint_names.back(), "roll");
+    std::optional<PlanResult> first;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      const PlanResult result = plan(robot, problem, options);
+      ASSERT_EQ(result.status, PlanStatus::kSolved) << name << ' ' << result.planner;
+      if (!first) first = result;
+      ASSERT_EQ(result.cost, first->cost) << name << ' ' << result.planner;
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q) << name << ' ' << result.planner << " row " << i;
+    }
+    const CheckResult check = check_trajectory(robot, problem, first->trajectory);
+    ASSERT_TRUE(check.passed) << name << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    const ToolPath path = problem_path(problem, chain);
+    double most = 0;
+    for (std::size_t i = 0; i < first->trajectory.size(); ++i) {
+      const Config& q = first->trajectory[i].q;
+      if (problem.roll->upper - problem.roll->lower < kTwoPi) {
+        EXPECT_GE(q[6], problem.roll->lower) << name;
+        EXPECT_LE(q[6], problem.roll->upper) << name;
+      }
+      // Links 1 to 6 do not know of the roll.
+      Config other = q;
+      other[6] += 0.3;
+      const auto here = chain.displacements(q), there = chain.displacements(other);
+      for (std::size_t k = 0; k < 6; ++k) EXPECT_TRUE(here[k].isApprox(there[k])) << name;
+      const Pose wanted = path.layer(static_cast<int>(i)).tool, tool = chain.tool(q);
+      EXPECT_LE((wanted.translation() - tool.translation()).norm(), 1e-9) << name;
+      EXPECT_LE((wanted.linear().col(2) - tool.linear().col(2)).norm(), 1e-9) << name;
+      most = std::max(most, std::abs(q[6]));
+    }
+    std::printf("%s: cost %.4f, %zu rows, a roll of up to %.2f rad\n", name, first->cost, first->trajectory.size(), most);
+    EXPECT_GT(most, 0.01) << name;  // or it would be of no use
+    // Without it the arm is one of six joints, which is none.
+    Problem without = problem;
+    without.roll.reset();
+    EXPECT_THROW((void)plan(without), InputError) << name;
+    EXPECT_THROW(robot.require_prepared_for(without), InvalidArgument) << name;
+  }
+}
+
+/// What asks for an arm angle so far says so.
+TEST(Arms, RefiningAndTimingSayThatTheyNeedAnArmAngle) {
+  Random random(1);
+  const Problem problem = random_task(arms()[0], random);
+  const PreparedRobot robot(problem);
+  const std::vector<TrajectoryRow> rows(static_cast<std::size_t>(problem_path(problem, robot.arm().chain).size()));
+  TimingOptions slow;
+  slow.speed = 0.05;
+  EXPECT_THROW((void)refine(robot, problem, rows), InputError);
+  EXPECT_THROW((void)time_trajectory(robot, problem, rows, slow), InputError);
+  Problem with_step_error = problem;
+  with_step_error.limits.step_error = 0.1;
+  EXPECT_THROW((void)plan(with_step_error), InputError);
+}
+
+}  // namespace
+}  // namespace swivel
