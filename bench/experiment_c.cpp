@@ -43,8 +43,8 @@ struct Method {
   json episodes = json::array();
 };
 
-json to_json(const PlanResult& result) {
-  const EpisodeRow row(0, result);
+json to_json(const PlanResult& result, const Problem& problem) {
+  const EpisodeRow row(0, result, problem);
   json answer{{"status", to_string(result.status)}, {"ms", row.plan_ms},
               {"nodes", result.lattice.nodes},      {"reason", row.reason},
               {"fcl_calls", row.fcl_calls},         {"nodes_checked", row.nodes_checked}};
@@ -143,7 +143,7 @@ json run(const Problem& base, std::uint64_t episodes) {
       const auto* const setting = std::find_if(std::begin(bench::kSettings), std::end(bench::kSettings),
                                                [&](const bench::Setting& s) { return s.name == method.setting; });
       method.episodes.push_back(
-          to_json(plan_at(robot, problem, planner_from_string(method.name), *setting, method.edges, method.threads)));
+          to_json(plan_at(robot, problem, planner_from_string(method.name), *setting, method.edges, method.threads), problem));
     }
     Problem started = problem;
     started.start = first_start(robot, problem);

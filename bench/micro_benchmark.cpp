@@ -60,7 +60,7 @@ struct Fixture {
     }
     while (edges.size() < kPool) {
       const Node& a = nodes[static_cast<std::size_t>(random.uniform(0, static_cast<double>(nodes.size())))];
-      const int b = lattice.label_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
+      const int b = lattice.sheet_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
       const auto q = lattice.node(a.layer + 1, b);
       if (q && lattice.in_window(a.layer, a.slot, b) && lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
         edges.push_back({a, b, *q});
@@ -182,18 +182,18 @@ void add_search(Fixture& c) {
     const auto extent = what;  // a structured binding cannot be captured
     add(std::string("sweep/") + name + unit, [&c, extent](benchmark::State& state) {
       for (auto _ : state) {
-        const auto togo = make_cost_to_go(c.lattice, extent);
-        togo->sweep(c.lattice.layers() - 1);
-        benchmark::DoNotOptimize(togo->best());
+        const auto cost_to_go = make_cost_to_go(c.lattice, extent);
+        cost_to_go->sweep(c.lattice.layers() - 1);
+        benchmark::DoNotOptimize(cost_to_go->best());
       }
       state.SetItemsProcessed(state.iterations() * c.lattice.nodes());
     });
   }
   add("a_star/expansion", [&](benchmark::State& state) {
-    const auto togo = make_cost_to_go(c.lattice);
-    togo->sweep(c.lattice.layers() - 1);
+    const auto cost_to_go = make_cost_to_go(c.lattice);
+    cost_to_go->sweep(c.lattice.layers() - 1);
     std::int64_t expansions = 0;
-    for (auto _ : state) benchmark::DoNotOptimize(best_path(*togo, expansions).data());
+    for (auto _ : state) benchmark::DoNotOptimize(best_path(*cost_to_go, expansions).data());
     state.SetItemsProcessed(expansions);
   });
 }

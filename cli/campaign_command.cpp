@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -11,13 +10,15 @@
 #include <utility>
 #include <vector>
 
+#include "campaign_output.hpp"
 #include "commands.hpp"
 #include "progress.hpp"
 #include "search_options.hpp"
+#include "shard_option.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/shards.hpp"
 #include "swivel/planner/campaign.hpp"
-#include "swivel/report/overview.hpp"
 
 namespace swivel::cli {
 
@@ -31,19 +32,6 @@ struct CampaignArguments {
   std::uint64_t episodes = 100, seed = 1;
   SearchOptions search;
 };
-
-Shard shard_from_string(const std::string& text) {
-  Shard shard;
-  const char* const end = text.data() + text.size();
-  const auto index = std::from_chars(text.data(), end, shard.index);
-  bool read = index.ec == std::errc() && index.ptr != end && *index.ptr == '/';
-  if (read) {
-    const auto count = std::from_chars(index.ptr + 1, end, shard.count);
-    read = count.ec == std::errc() && count.ptr == end && shard.index < shard.count;
-  }
-  if (!read) throw InputError("--shard: '" + text + "': allowed is I/N, I from 0 to N - 1");
-  return shard;
-}
 
 /// The trajectories of a campaign: DIR/episode_K.csv.
 class Trajectories {
@@ -82,63 +70,22 @@ class Trajectories {
   std::atomic<std::uint64_t> removed_{0};
 };
 
-void print_summary(const CampaignSummary& summary) {
-  std::printf("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
-              static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
-              static_cast<unsigned long long>(summary.infeasible));
-  if (summary.errors > 0) std::printf(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
-  std::printf("\n");
-  if (summary.answered() == 0) return;
-  std::printf("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
-              summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median,
-              summary.fcl_calls.median);
-}
-
-/// As a POSIX shell reads it back.
-std::string quoted(const std::string& word) {
-  if (!word.empty() &&
-      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") == std::string::npos)
-    return word;
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
-  return result + "'";
-}
-
-CampaignFacts facts_of(const CampaignArguments& arguments, const CampaignOptions& options) {
-  const std::string name = fs::path(arguments.problem).filename().string();
-  const std::string seed = std::to_string(options.seed);
-  return {name,
-          options.episodes,
-          options.seed,
-          options.shard,
-          arguments.search.planner,
-          "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + seed};
-}
-
-/// What rows hang on: neither threads nor names of outputs. Episodes are not in it either, so that a campaign may be made longer.
-io::CampaignSettings settings_of(const CampaignArguments& arguments, const CampaignOptions& options, const Problem& problem,
-                                 const std::vector<io::InputFiles::File>& inputs) {
-  io::CampaignSettings settings;
-  settings.values = {{"version", SWIVEL_VERSION},
-                     {"planner", arguments.search.planner},
-                     {"ds", shortest(problem.resolution.ds)},
-                     {"dphi", shortest(problem.resolution.dphi)},
-                     {"edges", problem.limits.edges == EdgeMode::kNodes ? "nodes" : "continuous"},
-                     {"seed", std::to_string(options.seed)},
-                     {"shard", std::to_string(options.shard.index) + "/" + std::to_string(options.shard.count)}};
-  // The problem file is the first, and may be called otherwise, or come through a pipe. The others by their place beside it.
-  const fs::path folder = fs::absolute(arguments.problem).parent_path();
-  for (const io::InputFiles::File& file : inputs)
-    settings.files.emplace_back(settings.files.empty() ? "the problem file" : fs::relative(file.name, folder).string(), file.hash);
+/// Rows of shards are not mixed while they come. Episodes are not in it, so that a campaign may be made longer.
+io::RunSettings settings_of(const io::ShardRecord& record) {
+  io::RunSettings settings = record.settings;
+  settings.values.emplace_back("shard", std::to_string(record.shard.index) + "/" + std::to_string(record.shard.count));
   return settings;
 }
 
 /// The rows of --rows in the order of the campaign. Throws InputError where they are not its first.
-std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files, const CampaignOptions& options) {
+std::vector<EpisodeRow> given_rows(const std::vector<std::string>& files, const CampaignOptions& options,
+                                   const std::vector<std::string>& coordinates) {
   std::vector<EpisodeRow> rows;
   for (const std::string& file : files) {
-    const std::vector<EpisodeRow> found = io::load_rows(file);
-    rows.insert(rows.end(), found.begin(), found.end());
+    const io::EpisodeTable found = io::load_rows(file);
+    if (found.coordinates != coordinates)
+      throw InputError("--rows: " + file + ": other objects or coordinates vary there: allowed are results of this problem");
+    rows.insert(rows.end(), found.rows.begin(), found.rows.end());
   }
   std::sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) { return a.episode < b.episode; });
   for (std::size_t k = 0; k < rows.size(); ++k)
@@ -178,11 +125,20 @@ int run(const CampaignArguments& arguments) {
     trajectories.emplace(arguments.trajectories, inputs);
     options.planned = [&](std::uint64_t episode, const PlanResult& result) { trajectories->write(episode, result); };
   }
+  io::ShardRecord record{
+      "campaign",
+      run_settings(arguments.problem, problem, arguments.search, inputs),
+      options.shard,
+      options.episodes,
+      fs::path(arguments.problem).filename().string(),
+      "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + std::to_string(options.seed)};
+  record.settings.values.emplace_back("seed", std::to_string(options.seed));
+  record.settings.coordinates = varied_coordinates(problem.vary);
   const std::uint64_t size = options.shard.size(options.episodes);
-  std::vector<EpisodeRow> rows = given_rows(arguments.rows, options);
+  std::vector<EpisodeRow> rows = given_rows(arguments.rows, options, varied_coordinates(problem.vary));
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
-    file.emplace(arguments.out, settings_of(arguments, options, problem, inputs), options.shard, options.episodes);
+    file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
     for (std::size_t k = file->rows().size(); k < rows.size(); ++k) file->append(rows[k]);
     if (trajectories) {  // the campaign that was killed may have been run without
       const auto& found = file->rows();
@@ -209,28 +165,14 @@ int run(const CampaignArguments& arguments) {
   });
   progress.clear();
 
-  const CampaignSummary summary = summarize(rows, size);
   const bool complete = rows.size() == size;
-  if (file && complete) outputs.write("--out", file->csv());
-  if (outputs.wants("--report")) outputs.write("--report", to_overview(rows, facts_of(arguments, options)));
-  outputs.write("--json", io::to_json(summary));
-  outputs.stage();
-  if (!outputs.takes_standard_output()) print_summary(summary);
-  flush_standard_output();
-  outputs.commit();
+  if (file && complete) outputs.write("--out", (arguments.shard.empty() ? "" : io::to_line(record)) + file->csv());
+  show_campaign(outputs, rows, record);
   if (file && complete) file->finish();
   if (trajectories && trajectories->removed() > 0)
     std::fprintf(stderr, "swivel: removed %llu earlier trajectories in %s: there is no path now\n",
                  static_cast<unsigned long long>(trajectories->removed()), arguments.trajectories.c_str());
-  if (summary.errors > 0) {
-    const auto first =
-        std::find_if(rows.begin(), rows.end(), [](const EpisodeRow& row) { return row.status == PlanStatus::kError; });
-    std::fprintf(stderr, "swivel: internal error in %llu episodes, the first in episode %llu: %s\n",
-                 static_cast<unsigned long long>(summary.errors), static_cast<unsigned long long>(first->episode),
-                 first->reason.c_str());
-    return kInternalError;
-  }
-  return complete ? kOk : kStopped;
+  return campaign_exit_code(rows, record);
 }
 
 }  // namespace
@@ -241,13 +183,14 @@ void add_campaign(CLI::App& app, int& exit_code) {
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("--episodes", arguments->episodes, "how many, all shards together")->capture_default_str();
   command->add_option("--seed", arguments->seed, "what the poses are drawn from")->capture_default_str();
-  command->add_option("--shard", arguments->shard, "I/N: plan the episodes I, I + N, I + 2 N, ... alone");
+  command->add_option("--shard", arguments->shard,
+                      "I/N: plan the episodes I, I + N, I + 2 N, ... alone; auto: the share of this task of a Slurm job array");
   arguments->search.add_to(*command);
   command->add_option("--out", arguments->out,
                       "results file (CSV); an interrupted campaign goes on from FILE.part, which must be of the same settings");
   command->add_option(
       "--rows", arguments->rows,
-      "results files of shards of this campaign, to be put together; that they are of the same settings is not checked");
+      "results of a shorter campaign, to go on from; that they are of the same settings is not checked (shards: swivel merge)");
   command->add_option("--trajectories", arguments->trajectories, "folder for the trajectories of solved episodes, episode_K.csv");
   command->add_option("--report", arguments->report,
                       "the campaign as one HTML file: verdicts, times, costs, where and why episodes fail");

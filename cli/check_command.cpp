@@ -4,9 +4,12 @@
 
 #include "commands.hpp"
 #include "search_options.hpp"
+#include "swivel/core/answer_text.hpp"
+#include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/check.hpp"
+#include "swivel/planner/cut.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel::cli {
@@ -14,7 +17,7 @@ namespace swivel::cli {
 namespace {
 
 struct CheckArguments {
-  std::string problem, trajectory;
+  std::string problem, trajectory, certificate;
   LatticeOptions lattice;
   EpisodeChoice episode;
 };
@@ -43,9 +46,34 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   std::printf("\n");
 }
 
+int run_on_certificate(const Problem& problem, const std::string& file) {
+  const Cut cut = io::load_cut(file);
+  catch_interrupts();
+  CutCheck result;
+  try {
+    const Budget budget(std::nullopt, &interrupted);
+    result = check_cut(PreparedRobot(problem, budget), problem, cut, budget);
+  } catch (const Stopped&) {
+    std::printf("stopped\n");
+    return kStopped;
+  }
+  if (!result.passed) {
+    std::printf("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
+    return kNo;
+  }
+  std::printf("passed: no path at this resolution%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
+              result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1], removed_text(cut).c_str(),
+              static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
+  return kOk;
+}
+
 int run(const CheckArguments& arguments) {
   Problem problem = arguments.episode.apply(io::load_problem(arguments.problem));
   arguments.lattice.apply(problem);
+  if (arguments.trajectory.empty() == arguments.certificate.empty())
+    throw InputError(arguments.certificate.empty() ? "trajectory: is missing: allowed is a file, or --certificate FILE"
+                                                   : "--certificate: there is a trajectory as well: allowed is one of the two");
+  if (!arguments.certificate.empty()) return run_on_certificate(problem, arguments.certificate);
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
@@ -65,10 +93,12 @@ int run(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("check", "Verify a trajectory, independently of the planners");
+  CLI::App* command = app.add_subcommand("check", "Verify a trajectory, or that there is none, independently of the planners");
   auto arguments = std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("trajectory", arguments->trajectory, "trajectory or motion file (CSV)")->required();
+  command->add_option("trajectory", arguments->trajectory, "trajectory or motion file (CSV)");
+  command->add_option("--certificate", arguments->certificate,
+                      "instead of a trajectory: what `plan --certificate` wrote, that there is no path");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

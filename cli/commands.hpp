@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "placement_options.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/problem.hpp"
 
@@ -18,13 +19,17 @@ enum ExitCode { kOk = 0, kNo = 1, kBadInput = 2, kStopped = 3, kInternalError = 
 /// Each adds a subcommand; its callback sets `exit_code`.
 void add_plan(CLI::App& app, int& exit_code);
 void add_campaign(CLI::App& app, int& exit_code);
+void add_place(CLI::App& app, int& exit_code);
+void add_merge(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_time(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
+void add_schema(CLI::App& app, int& exit_code);
 
-/// The episode of a campaign that plan and check can be asked for.
+/// The episode of a campaign, and the placement, that plan, check and time can be asked for.
 struct EpisodeChoice {
   std::optional<std::uint64_t> seed, episode;
+  PlacementOptions placement;
   void add_to(CLI::App& command);
   [[nodiscard]] Problem apply(const Problem& problem) const;
 };

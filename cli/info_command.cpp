@@ -5,11 +5,11 @@
 #include <map>
 #include <memory>
 
-#include "arm_guess.hpp"
 #include "commands.hpp"
 #include "pairs_report.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
+#include "swivel/core/arm_guess.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
 #include "swivel/io/io.hpp"

@@ -30,9 +30,12 @@ int run(int argc, char** argv) {
   int exit_code = kOk;
   add_plan(app, exit_code);
   add_campaign(app, exit_code);
+  add_place(app, exit_code);
+  add_merge(app, exit_code);
   add_check(app, exit_code);
   add_time(app, exit_code);
   add_info(app, exit_code);
+  add_schema(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

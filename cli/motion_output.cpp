@@ -2,20 +2,12 @@
 #include "motion_output.hpp"
 
 #include <cstdio>
-#include <filesystem>
 
+#include "commands.hpp"
 #include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel::cli {
-
-namespace {
-
-std::string ending(const std::string& file) {
-  return std::filesystem::path(file).extension().string();
-}
-
-}  // namespace
 
 void MotionOptions::add_to(CLI::App& command) {
   command.add_option("--speed", speed, "speed of the tool along its path, m/s");
@@ -45,18 +37,7 @@ TimingOptions MotionOptions::timing(const Problem& problem) const {
 }
 
 void require_motion_format(const std::string& file) {
-  for (const char* known : {"", ".csv", ".json", ".yaml", ".mcap"})
-    if (ending(file) == known && (*known != '\0' || file.empty())) return;
-  throw InputError("--out: " + file + ": unknown format: allowed are names that end in .csv, .json, .yaml or .mcap");
-}
-
-std::string motion_text(const TimedPath& motion, const io::JointNames& joint_names, const std::string& frame_id,
-                        const std::string& file) {
-  const std::string format = ending(file);
-  if (format == ".json") return io::to_trajectory_json(motion, joint_names, frame_id);
-  if (format == ".yaml") return io::to_trajectory_yaml(motion, joint_names, frame_id);
-  if (format == ".mcap") return io::to_mcap(motion, joint_names, frame_id);
-  return io::to_timed_csv(motion, joint_names);
+  if (!file.empty()) in_the_name_of("--out", [&] { io::require_motion_format(file); });
 }
 
 void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names) {

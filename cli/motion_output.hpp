@@ -20,10 +20,7 @@ struct MotionOptions {
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;
 };
 
-/// The text of a motion in the format that the file name's ending names: .csv, .json, .yaml or .mcap.
-[[nodiscard]] std::string motion_text(const TimedPath& motion, const io::JointNames& joint_names, const std::string& frame_id,
-                                      const std::string& file);
-/// Throws InputError for another ending; nothing is said of an empty name.
+/// Throws InputError where io::motion_text() knows no format of that name; nothing is said of an empty name.
 void require_motion_format(const std::string& file);
 
 /// What became of a plan's path, in a line each, on standard output; warnings on standard error.

@@ -1,41 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <new>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "commands.hpp"
-#include "diagnosis_text.hpp"
 #include "motion_output.hpp"
 #include "progress.hpp"
 #include "search_options.hpp"
+#include "swivel/core/answer_text.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
+#include "swivel/planner/cut.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
 namespace {
 
 struct PlanArguments {
-  std::string problem, out, json, trace, map_svg, report;
+  std::string problem, out, json, trace, map_svg, report, certificate;
   std::optional<double> timeout;
   std::optional<double> advise;
-  bool quiet = false, map = false, full_map = false, refine = false;
+  bool quiet = false, map = false, full_map = false, refine = false, no_check = false;
   SearchOptions search;
   MotionOptions motion;
   EpisodeChoice episode;
@@ -46,26 +47,26 @@ double ms(const PlanResult& result, const char* key) {
   return found == result.time_ms.end() ? 0.0 : found->second;
 }
 
+/// How long the answer took to prove, after the time that it took to find.
+std::string check_words(const PlanResult& result) {
+  char text[40] = "";
+  if (result.checked) std::snprintf(text, sizeof text, ", checked in %.1f ms", ms(result, "check"));
+  return text;
+}
+
 void print_summary(const PlanResult& result) {
   std::fputs(answer_text(result).c_str(), stdout);
   const Counters& c = result.counters;
   std::printf(
-      "%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
+      "%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms%s; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
       result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"), ms(result, "prepare"),
-      ms(result, "plan"), static_cast<long long>(c.nodes_checked), static_cast<long long>(result.lattice.nodes),
-      static_cast<long long>(c.edges_checked), static_cast<long long>(c.fcl_calls));
+      ms(result, "plan"), check_words(result).c_str(), static_cast<long long>(c.nodes_checked),
+      static_cast<long long>(result.lattice.nodes), static_cast<long long>(c.edges_checked), static_cast<long long>(c.fcl_calls));
   for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
-int terminal_columns() {
-  winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-  return 100;
-}
-/// https://no-color.org
-bool coloured() {
-  const char* no_colour = std::getenv("NO_COLOR");
-  return isatty(STDOUT_FILENO) && (no_colour == nullptr || *no_colour == '\0');
+double milliseconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Lays the files beside their targets, prints, and puts them in place: where printing fails, nothing is written.
@@ -84,7 +85,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   if (!arguments.trace.empty()) timeline.emplace();
   std::vector<io::InputFiles::File> inputs;
   Problem problem = [&] {
-    const Span span("load");
+    const TraceSpan span("load");
     const io::InputFiles noted;
     Problem loaded = io::load_problem(arguments.problem);
     inputs = noted.files();
@@ -99,7 +100,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     keep_clearance_between_layers(problem.limits);
   }
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
-  const double load = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const double load = milliseconds_since(start);
 
   catch_interrupts();
   ProgressLine progress(!arguments.quiet && isatty(STDERR_FILENO));
@@ -109,12 +110,17 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   if (arguments.full_map && !draws) throw InputError("--full-map: nothing is drawn: allowed with --map, --map-svg or --report");
   if (arguments.map && arguments.json == "-")
     throw InputError("--map: standard output is taken by --json -: allowed is one of the two");
+  if (!arguments.certificate.empty() && (arguments.refine || timing))
+    throw InputError(
+        "--certificate: is of the problem as its file has it: allowed without --refine and --speed, which ask for more");
   outputs.emplace(std::move(inputs));
   outputs->add("--out", arguments.out);
   outputs->add("--report", arguments.report);
   outputs->add("--map-svg", arguments.map_svg);
+  outputs->add("--certificate", arguments.certificate);
   outputs->add("--trace", arguments.trace);
   outputs->add("--json", arguments.json);
+  options.check = !arguments.no_check;
   if (!arguments.quiet || !arguments.json.empty() || !arguments.report.empty()) options.evidence = Evidence::all();
   const auto begun = std::chrono::steady_clock::now();
   const Budget budget = options.budget();  // of what is drawn; plan() begins with it
@@ -132,8 +138,24 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     }
     advice = advise(planner, result, trials);
   }
-  const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr, plan.motion ? &*plan.motion : nullptr,
-                                timing.value_or(TimingOptions{}), advice ? &*advice : nullptr};
+  std::optional<Cut> cut;
+  std::string certificate;
+  if (outputs->wants("--certificate") && result.status == PlanStatus::kInfeasible) {
+    const auto start_of_cut = std::chrono::steady_clock::now();
+    try {
+      cut = find_cut(planner.view(), budget);
+      certificate = io::to_json(*cut);
+    } catch (const Stopped&) {
+      result.warnings.push_back("stopped before the certificate was found: there is none");
+    }
+    result.time_ms["certificate"] = milliseconds_since(start_of_cut);
+  }
+  const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr,
+                                plan.motion ? &*plan.motion : nullptr,
+                                timing.value_or(TimingOptions{}),
+                                advice ? &*advice : nullptr,
+                                cut ? &*cut : nullptr,
+                                certificate.size()};
   std::optional<LatticeMap> map;
   std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
@@ -154,12 +176,18 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   progress.clear();
 
   const bool solved = result.status == PlanStatus::kSolved, executable = solved && (!timing || plan.motion->motion);
-  if (executable && timing)
-    outputs->write("--out", motion_text(*plan.motion->motion, result.joint_names, problem.base_link, arguments.out));
-  else if (executable)
+  if (executable && timing) {
+    if (outputs->wants("--out"))
+      outputs->write("--out", io::motion_text(*plan.motion->motion, result.joint_names, problem.base_link, arguments.out));
+  } else if (executable) {
     outputs->write("--out", io::to_csv(result));
-  else
+  } else {
     outputs->remove("--out");
+  }
+  if (cut)
+    outputs->write("--certificate", std::move(certificate));
+  else
+    outputs->remove("--certificate");
   if (map) {
     outputs->write("--report", std::move(page));
     if (outputs->wants("--map-svg")) outputs->write("--map-svg", to_svg(*map));
@@ -169,13 +197,15 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   }
   if (timeline) outputs->write("--trace", io::to_trace_json(*timeline) + "\n");
   if (outputs->wants("--json")) outputs->write("--json", io::to_json(result, aftermath) + "\n");
-  const char* const reason = result.status == PlanStatus::kInfeasible ? "there is no path now"
-                             : solved && !plan.stopped                ? "there is no motion now"
-                                                                      : "the search was stopped";
+  const char* const reason = result.status == PlanStatus::kInfeasible        ? "there is no path now"
+                             : executable && outputs->wants("--certificate") ? "there is a path now"
+                             : solved && !plan.stopped                       ? "there is no motion now"
+                                                                             : "the search was stopped";
   deliver(*outputs, reason, [&] {
     if (!arguments.quiet && !outputs->takes_standard_output()) {
       print_summary(result);
       print_aftermath(aftermath, result.joint_names);
+      if (cut) std::fputs(cut_text(*cut, aftermath.cut_bytes).c_str(), stdout);
       if (advice) std::fputs(advice_text(*advice).c_str(), stdout);
     }
     if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
@@ -200,7 +230,7 @@ int run(const PlanArguments& arguments) {
     throw;
   } catch (const std::exception& error) {
     if (!outputs) throw;
-    for (const char* const option : {"--out", "--report", "--map-svg"}) outputs->remove(option);
+    for (const char* const option : {"--out", "--report", "--map-svg", "--certificate"}) outputs->remove(option);
     outputs->write("--json", io::error_json(error.what()));
     deliver(*outputs, "there is no answer now", [] {});
     throw;
@@ -212,12 +242,13 @@ int run(const PlanArguments& arguments) {
 void EpisodeChoice::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "campaign seed of --episode");
   command.add_option("--episode", episode, "plan the problem of this campaign episode");
+  placement.add_to(command, "");
 }
 
 Problem EpisodeChoice::apply(const Problem& problem) const {
   if (seed.has_value() != episode.has_value())
     throw InputError("--seed, --episode: one without the other: allowed are both or neither");
-  return seed ? episode_problem(problem, *seed, *episode) : problem;
+  return placement.apply(seed ? episode_problem(problem, *seed, *episode) : problem);
 }
 
 void add_plan(CLI::App& app, int& exit_code) {
@@ -227,12 +258,14 @@ void add_plan(CLI::App& app, int& exit_code) {
   arguments->search.add_to(*command);
   arguments->episode.add_to(*command);
   command->add_option("--timeout", arguments->timeout, "seconds");
-  command->add_flag("--refine", arguments->refine, "move the arm angles off the grid: cheaper and smoother, never dearer");
+  command->add_flag("--refine", arguments->refine, "move the path off the lattice's nodes: cheaper and smoother, never dearer");
   arguments->motion.add_to(*command);
   command->add_option("--advise", arguments->advise,
                       "where there is no path: what would help, found by planning it for so many seconds");
   command->add_option("--out", arguments->out,
                       "trajectory file (CSV); with --speed the motion: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
+  command->add_option("--certificate", arguments->certificate,
+                      "where there is no path: a proof of it, which `check --certificate` verifies (JSON)");
   command->add_option("--json", arguments->json, "result file, - for standard output");
   command->add_option("--trace", arguments->trace,
                       "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");
@@ -240,6 +273,7 @@ void add_plan(CLI::App& app, int& exit_code) {
   command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
   command->add_option("--report", arguments->report, "the plan as one HTML file: playback, map, plots, summary");
   command->add_flag("--full-map", arguments->full_map, "ask about every node before the map is drawn");
+  command->add_flag("--no-check", arguments->no_check, "leave out the proof of the answer, which `check` would give as well");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

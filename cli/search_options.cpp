@@ -23,6 +23,11 @@ void SearchOptions::add_to(CLI::App& command) {
 void LatticeOptions::add_to(CLI::App& command) {
   command.add_option("--ds", ds, "resolution along the path, m");
   command.add_option("--dphi", dphi, "resolution of the arm angle, rad");
+  // A flag bound to an optional would be "not" where it is not given.
+  command.add_flag_callback(
+      "--arcs", [this] { arcs = true; }, "nodes on arcs of arm angles that the grid misses, too");
+  command.add_flag_callback(
+      "--no-arcs", [this] { arcs = false; }, "no such nodes, whatever the problem file says");
   command.add_option("--edges", edges, "continuous | nodes");
 }
 
@@ -43,6 +48,7 @@ void LatticeOptions::apply(Problem& problem) const {
     problem.resolution.dphi = positive(*dphi, "--dphi");
     if (problem.resolution.dphi > kTwoPi) throw InputError("--dphi: more than a turn: allowed are values up to 6.2831853");
   }
+  if (arcs) problem.resolution.arcs = *arcs;
   if (!edges.empty()) {
     if (edges != "continuous" && edges != "nodes")
       throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
@@ -55,6 +61,15 @@ std::string shortest(double value) {
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
 }
 
+std::string quoted(const std::string& word) {
+  if (!word.empty() &&
+      word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-") == std::string::npos)
+    return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? "'\\''" : std::string(1, c);
+  return result + "'";
+}
+
 std::string SearchOptions::words() const {
   std::string words = " --planner " + planner;
   const auto add = [&](const char* option, const std::optional<double>& value) {
@@ -62,6 +77,7 @@ std::string SearchOptions::words() const {
   };
   add(" --ds ", ds);
   add(" --dphi ", dphi);
+  if (arcs) words += *arcs ? " --arcs" : " --no-arcs";
   if (!edges.empty()) words += " --edges " + edges;
   return words;
 }

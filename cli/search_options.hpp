@@ -14,6 +14,7 @@ namespace swivel::cli {
 struct LatticeOptions {
   std::string edges;
   std::optional<double> ds, dphi;
+  std::optional<bool> arcs;
   void add_to(CLI::App& command);
   /// What the command line says instead of the problem file.
   void apply(Problem& problem) const;
@@ -32,6 +33,9 @@ struct SearchOptions : LatticeOptions {
 
 /// The shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);
+
+/// A word as a POSIX shell reads it back.
+[[nodiscard]] std::string quoted(const std::string& word);
 
 /// Throws InputError where this program was built without the pages of --report.
 void require_pages();

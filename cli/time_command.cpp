@@ -2,11 +2,13 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "commands.hpp"
 #include "motion_output.hpp"
 #include "search_options.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
 
@@ -19,10 +21,10 @@ struct TimeArguments {
   MotionOptions motion;
   LatticeOptions lattice;
   EpisodeChoice episode;
-  bool quiet = false, refine = false;
+  bool quiet = false, refine = false, no_check = false;
 };
 
-/// Arm angles off the grid, on the path that the motion follows.
+/// Rows off the nodes of the lattice, on the path that the motion follows.
 std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                                    bool quiet) {
   const Problem smoothed = with_motion_defaults(problem);
@@ -48,15 +50,25 @@ int run(const TimeArguments& arguments) {
   try {
     timed = in_the_name_of(arguments.trajectory, [&] {
       if (arguments.refine) rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
-      return time_trajectory(robot, problem, rows, options, Budget(std::nullopt, &interrupted));
+      const Budget budget(std::nullopt, &interrupted);
+      MotionResult result = time_trajectory(robot, problem, rows, options, budget);
+      if (result.motion && !arguments.no_check)
+        require_passed(check_motion(robot, problem, result.motion->rows, {.margins = false, .budget = budget}));
+      return result;
     });
   } catch (const Stopped&) {
     outputs.remove("--out");
-  }
-  if (timed && timed->motion)
-    outputs.write("--out", motion_text(*timed->motion, names, problem.base_link, arguments.out));
-  else
+  } catch (const std::logic_error&) {
     outputs.remove("--out");
+    outputs.stage();
+    report_removed(outputs.commit(), "there is no answer now");
+    throw;
+  }
+  if (timed && timed->motion) {
+    if (outputs.wants("--out")) outputs.write("--out", io::motion_text(*timed->motion, names, problem.base_link, arguments.out));
+  } else {
+    outputs.remove("--out");
+  }
   outputs.stage();
   if (!timed)
     std::printf("stopped\n");
@@ -77,10 +89,12 @@ void add_time(CLI::App& app, int& exit_code) {
   command->add_option("problem", arguments->problem, "problem file")->required();
   command->add_option("trajectory", arguments->trajectory, "trajectory file (CSV)")->required();
   arguments->motion.add_to(*command);
-  command->add_flag("--refine", arguments->refine, "move the arm angles off the grid first: cheaper and smoother, never dearer");
+  command->add_flag("--refine", arguments->refine,
+                    "move the rows off the lattice's nodes first: cheaper and smoother, never dearer");
   command->add_option("--out", arguments->out, "motion file: .csv, .json or .yaml (JointTrajectory), .mcap (JointState)");
   arguments->lattice.add_to(*command);
   arguments->episode.add_to(*command);
+  command->add_flag("--no-check", arguments->no_check, "leave out the proof of the motion, which `check` would give as well");
   command->add_flag("--quiet", arguments->quiet, "print nothing but errors");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

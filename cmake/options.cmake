@@ -2,6 +2,7 @@ option(BUILD_SHARED_LIBS "Build the components as shared libraries" OFF)
 option(SWIVEL_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(SWIVEL_BENCH "Build the benchmarks" OFF)
 option(SWIVEL_WERROR "Treat warnings as errors" OFF)
+option(SWIVEL_DEB "Make Debian packages by CPack: needs dpkg-dev and help2man" OFF)
 option(SWIVEL_FRAME_POINTERS "Keep frame pointers, for profilers" OFF)
 set(SWIVEL_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
@@ -27,7 +28,7 @@ add_library(swivel_settings INTERFACE)
 # No contraction: the same bits with and without FMA, so that every vector unit gives the same answer.
 # No errno, no trapping: neither changes a value, both are needed to vectorise sqrt and selects.
 # GCC 12 warns of overlaps inside std::string that are not there (-Wrestrict).
-target_compile_options(swivel_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict -ffp-contract=off -fno-math-errno -fno-trapping-math)
+target_compile_options(swivel_settings INTERFACE -Wall -Wextra -Wpedantic -Wshadow $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -ffp-contract=off -fno-math-errno -fno-trapping-math)
 if(SWIVEL_WERROR)
   target_compile_options(swivel_settings INTERFACE -Werror)
 endif()
@@ -84,7 +85,9 @@ function(swivel_install_package)
                                 INSTALL_DESTINATION ${folder})
   write_basic_package_version_file(${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake COMPATIBILITY SameMinorVersion)
   install(EXPORT swivelTargets NAMESPACE swivel:: DESTINATION ${folder} COMPONENT dev)
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+  if(NOT SWIVEL_DEB)  # which has it under Debian's name
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
+  endif()
   install(FILES ${PROJECT_BINARY_DIR}/swivelConfig.cmake ${PROJECT_BINARY_DIR}/swivelConfigVersion.cmake DESTINATION ${folder}
           COMPONENT dev)
 

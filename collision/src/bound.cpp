@@ -49,16 +49,16 @@ double motion(const Bound& bound, const PlacedBound& from, const PlacedBound& to
   return moved[0] + bound.half.dot(moved.tail<3>());
 }
 
-double ball_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
+double ball_distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
   return (at_b.center - at_a.center).norm() - a.reach - b.reach;
 }
 
-double distance_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
+double distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b) {
   const Vector3d offset = at_b.center - at_a.center;
   return std::max(offset.norm() - a.reach - b.reach, gap_along_box_axes(a, at_a.axes, b, at_b.axes, offset));
 }
 
-bool surely_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d) {
+bool proved_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d) {
   const Vector3d offset = at_b.center - at_a.center;
   const double reach = a.reach + b.reach + d;
   return offset.squaredNorm() >= reach * reach || gap_along_box_axes(a, at_a.axes, b, at_b.axes, offset) >= d;

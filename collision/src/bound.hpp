@@ -25,10 +25,10 @@ struct PlacedBound {
 [[nodiscard]] double motion(const Bound& bound, const PlacedBound& from, const PlacedBound& to);
 
 /// A number that the distance of the two bodies cannot be below, m: the widest gap along the line of centres and the six box axes.
-[[nodiscard]] double distance_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
+[[nodiscard]] double distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
 /// The same by the line of centres alone; cheap.
-[[nodiscard]] double ball_floor(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
-/// True only if distance_floor >= d; asks the cheap balls first.
-[[nodiscard]] bool surely_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
+[[nodiscard]] double ball_distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
+/// True only if distance_bound >= d; asks the cheap balls first.
+[[nodiscard]] bool proved_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
 
 }  // namespace swivel::detail

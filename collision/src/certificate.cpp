@@ -18,11 +18,11 @@ constexpr Proof kCollides{Certificate::kColliding};
 /// what is beyond `far` need not be told apart.
 struct Range {
   double growth, low, high, far;
-  Range(double d, double ahead, double growth_within, double growth_between = 0)
+  Range(double d, double margin, double growth_within, double growth_between = 0)
       : growth(growth_within + growth_between),
         low(d + growth_within - kVerdictBand - kRounding),
         high(d + growth + kVerdictBand + kRounding),
-        far(high + ahead) {}
+        far(high + margin) {}
   [[nodiscard]] Proof of(double distance) const {
     if (distance < low) return kCollides;
     return {distance >= high ? Certificate::kFree : Certificate::kNone, distance - growth - kRounding};
@@ -93,13 +93,13 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
   return {};
 }
 
-Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double ahead, int& triangle) {
+Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double margin, int& triangle) {
   const Segment core = core_of(round);
   const double radius = radius_of(round.shape->shape);
   if (is_round(other))
-    return Range(d, ahead, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
+    return Range(d, margin, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
   const Segment there = in_frame(core, *other.pose);
-  const Range range(d, ahead, radius);
+  const Range range(d, margin, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
   const Proof surface = range.of(other.shape->triangles->distance(there, range.low, range.far, triangle));
@@ -113,30 +113,34 @@ double signed_distance(const Solid& solid, const Vector3d& p) {
   return out > 0 ? out : -depth(solid, p);
 }
 
-/// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`.
-template <class Solid>
-bool finds_nearer(double low, const Solid& solid, const Pose& to_solid, const TriangleTree& body, int& first) {
-  const auto gap = [&](const Vector3d& p) { return signed_distance(solid, to_solid * p); };
-  const auto nearer = [&](const Triangle& t) {
-    return gap(t.a) < low || gap(t.a + t.ab) < low || gap(t.a + t.ac) < low || gap(t.a + (t.ab + t.ac) / 3) < low;
+/// A corner or the middle of the triangle is at a gap below `low`.
+template <class Gap>
+bool finds_nearer(double low, const Gap& gap, const Triangle& t) {
+  return gap(t.a) < low || gap(t.a + t.ab) < low || gap(t.a + t.ac) < low || gap(t.a + (t.ab + t.ac) / 3) < low;
+}
+/// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`; deeper in it than -low
+/// where that is below zero. False for bodies of other kinds.
+bool finds_deeper(double low, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
+  if (solid.shape->kind != FclShape::Kind::kSolid || !body.shape->triangles) return false;
+  const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
+  const auto seek = [&](const auto& shape) {
+    const auto gap = [&](const Vector3d& p) { return signed_distance(shape, to_solid * p); };
+    return body.shape->triangles->seek(
+        low, gap, [&](const Triangle& t) { return finds_nearer(low, gap, t); }, first);
   };
-  return body.seek(low, gap, nearer, first);
+  if (const auto* box = std::get_if<Box>(&solid.shape->shape)) return seek(*box);
+  return seek(std::get<Cylinder>(solid.shape->shape));
 }
 /// A surface need not be searched as a whole to find a part of it that is well inside the other body. Proves only what the search
 /// of the whole would (a prism lacks what is beyond it), so that it is a matter of time alone.
 bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
-  if (solid.shape->kind != FclShape::Kind::kSolid) return false;
   const double low = d - solid.shape->beyond_triangles;
-  if (!(low > 0)) return false;
-  const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
-  if (const auto* box = std::get_if<Box>(&solid.shape->shape))
-    return finds_nearer(low, *box, to_solid, *body.shape->triangles, first);
-  return finds_nearer(low, std::get<Cylinder>(solid.shape->shape), to_solid, *body.shape->triangles, first);
+  return low > 0 && finds_deeper(low, solid, body, first);
 }
 
-Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness) {
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
   if (!a.shape->triangles || !b.shape->triangles) return {};
-  const Range range(d, ahead, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
+  const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
   if (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)) return kCollides;
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far, witness));
@@ -148,10 +152,30 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 
 }  // namespace
 
-Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness) {
-  if (is_round(a)) return prove_round(a, b, d, ahead, witness.b);
-  if (is_round(b)) return prove_round(b, a, d, ahead, witness.a);
-  return prove_triangles(a, b, d, ahead, witness);
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
+  if (is_round(a)) return prove_round(a, b, d, margin, witness.b);
+  if (is_round(b)) return prove_round(b, a, d, margin, witness.a);
+  return prove_triangles(a, b, d, margin, witness);
+}
+
+bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness) {
+  if (is_round(b) && !is_round(a)) {
+    TrianglePair swapped{witness.b, witness.a};
+    const bool proved = proves_below(b, a, d, swapped);
+    witness = {swapped.b, swapped.a};
+    return proved;
+  }
+  const double low = d - kVerdictBand - kRounding;
+  if (!is_round(a)) return finds_deeper(low, b, a, witness.a) || finds_deeper(low, a, b, witness.b);
+  if (b.shape->mesh) {
+    const Segment core = in_frame(core_of(a), *b.pose);
+    const double radius = radius_of(a.shape->shape);
+    const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
+    return b.shape->triangles->seek(
+        low, gap, [&](const Triangle& t) { return finds_nearer(low, gap, t); }, witness.b);
+  }
+  int unused = 0;  // nothing but the distance of the core decides where b has no triangles of its own
+  return prove_round(a, b, d, 0, unused).certificate == Certificate::kColliding;
 }
 
 Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {

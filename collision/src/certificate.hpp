@@ -16,13 +16,18 @@ enum class Certificate { kFree, kColliding, kNone };
 /// A function of its arguments alone. Const-safe from many threads.
 [[nodiscard]] Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
 
-/// The same, with a number that the clearance is not below where it is kFree, m: looks `ahead` beyond d for a larger one.
+/// The same, with a number that the clearance is not below where it is kFree, m: looks `margin` beyond d for a larger one.
 /// `witness`: triangles (of a and of b, where they have any) at which the search for a proof begins, and where it ended. Of bodies
 /// that have moved little since, one look there often proves the same again; the answer does not depend on it.
 struct Proof {
   Certificate certificate = Certificate::kNone;
-  double floor = 0;
+  double bound = 0;
 };
-[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double ahead, TrianglePair& witness);
+[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness);
+
+/// Proves by a point of one body near or inside the other that their clearance is below d - kVerdictBand; where d is below zero,
+/// that the point is by as much inside. A point is a corner or the middle of a triangle, the end of a capsule, the centre of a
+/// sphere; the other body a box, a cylinder, a capsule or a sphere. Where it finds none there may be one.
+[[nodiscard]] bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness);
 
 }  // namespace swivel::detail

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "swivel/collision/world.hpp"
@@ -21,7 +23,7 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 
 namespace {
 
-/// below(q, level, suspect) names a pair too near, or none. No pair comes nearer by more than `bound` on the whole motion.
+/// below(q, level, likely) names a pair too near, or none. No pair comes nearer by more than `bound` on the whole motion.
 template <class Below>
 std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, const Budget& budget,
                                const Below& below) {
@@ -40,9 +42,9 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
         if (const auto pair = below(q, Keep::kMidpoint, std::nullopt)) return pair;
         continue;
       }
-      const auto suspect = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt);
-      if (!suspect) continue;
-      if (const auto pair = below(q, Keep::kMotion, suspect)) return pair;
+      const auto likely = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt);
+      if (!likely) continue;
+      if (const auto pair = below(q, Keep::kMotion, likely)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }
@@ -56,39 +58,40 @@ double distance_of(const Level& level, const EdgeRule::Near& pair) {
   return pair.d_edge + (level.keep == Keep::kMidpoint ? pair.h : 0) + level.more;
 }
 
+bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
+                const Budget& budget) {
+  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
+    return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
+  };
+  const double bound = rule.motion(q0, q1, near.first_joint, near.last);
+  return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, budget, this_one).has_value();
+}
+
 }  // namespace
 
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                     const Budget& budget) {
-  query.forget();
-  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
-    return query.next_below(q, level, suspect);
+                                     const Budget& budget, double* spare) {
+  if (spare) *spare = std::numeric_limits<double>::infinity();
+  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
+    const auto pair = query.next_below(q, level, likely);
+    // What is asked of motions says whether to go on, and proves nothing.
+    if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
+    return pair;
   };
   if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), budget, any)) return pair;
-  for (const EdgeRule::Near& near : rule.near) {
-    const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
-      return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
-    };
-    const double bound = rule.motion(q0, q1, near.first_joint, near.last);
-    if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, budget, this_one)) return pair;
-  }
+  for (const EdgeRule::Near& near : rule.near)
+    if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
   return std::nullopt;
 }
 
-std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
-  const Config delta = q1 - q0;
-  const auto midpoint = [&](std::int64_t m, std::int64_t leaves) -> Config {
-    return q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(leaves) * delta;
+bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
+                     const Budget& budget) {
+  for (const EdgeRule::Near& near : rule.near)
+    if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
+  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
+    return query.pair_below(q, pair, level) ? std::optional(pair) : std::nullopt;
   };
-  const std::int64_t leaves = rule.midpoints(q0, q1);
-  for (std::int64_t m = 0; m < leaves; ++m)
-    if (const auto pair = query.first_below(midpoint(m, leaves), Keep::kMidpoint)) return pair;
-  for (const EdgeRule::Near& near : rule.near) {
-    const std::int64_t own = rule.midpoints(q0, q1, near.h);
-    for (std::int64_t m = 0; m < own; ++m)
-      if (query.pair_below(midpoint(m, own), near.pair, near.d_edge + near.h)) return near.pair;
-  }
-  return std::nullopt;
+  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), budget, this_one).has_value();
 }
 
 }  // namespace swivel

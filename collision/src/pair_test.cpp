@@ -78,7 +78,7 @@ bool PairTest::meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fc
   const fcl::CollisionRequestd request(1, false);
   fcl::CollisionResultd result;
   ++counters_.fcl_calls;
-  const Span span("fcl::collide");
+  const TraceSpan span("fcl::collide");
   try {
     return fcl::collide<double>(&a, X_a, &b, X_b, request, result) > 0;
   } catch (const std::exception&) {
@@ -125,7 +125,7 @@ double PairTest::distance(const fcl::CollisionGeometryd& a, const Pose& X_a, con
   const fcl::DistanceRequestd request(false, false, 0.0, 0.0, kGjkTolerance, fcl::GST_LIBCCD);
   fcl::DistanceResultd result(bound);
   ++counters_.fcl_calls;
-  const Span span("fcl::distance");
+  const TraceSpan span("fcl::distance");
   try {
     fcl::distance<double>(&a, X_a, &b, X_b, request, result);
     return result.min_distance;

@@ -50,7 +50,7 @@ struct PlacedPair {
   [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
   [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
   [[nodiscard]] Certificate certificate(double d) const {
-    if (surely_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound, place(shape_b->bound, pose_b),
+    if (proved_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound, place(shape_b->bound, pose_b),
                      d + kVerdictBand))
       return Certificate::kFree;
     return certify(a(), b(), d);
@@ -104,20 +104,20 @@ RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem
 }
 
 void RobotPart::drop_always_touching(const Budget& budget) {
-  const Span span("pairs that touch by design");
-  std::vector<Candidate*> suspects;
+  const TraceSpan span("pairs that touch by design");
+  std::vector<Candidate*> open;
   for (Candidate& candidate : candidates_)
-    if (candidate.sampled) suspects.push_back(&candidate);
+    if (candidate.sampled) open.push_back(&candidate);
   Samples samples(chain);
   PairTest fcl(PairTest::Meshes::kNear);
-  for (int sample = 0; sample < kSamples && !suspects.empty(); ++sample) {
+  for (int sample = 0; sample < kSamples && !open.empty(); ++sample) {
     const auto moved = samples.next();
-    std::erase_if(suspects, [&](const Candidate* c) {
+    std::erase_if(open, [&](const Candidate* c) {
       budget.poll();
       return !PlacedPair(*this, c->pair, moved).touching(fcl);
     });
   }
-  for (Candidate* candidate : suspects) candidate->dropped = true;
+  for (Candidate* candidate : open) candidate->dropped = true;
 }
 
 double RobotPart::median(const BodyPair& pair, double far, const std::vector<std::array<Pose, kDof + 1>>& samples,
@@ -152,7 +152,7 @@ std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<con
 }
 
 void RobotPart::find_medians(double far, const Budget& budget) {
-  const Span span("medians of robot pairs");
+  const TraceSpan span("medians of robot pairs");
   std::vector<std::array<Pose, kDof + 1>> samples;
   Samples random(chain);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {

@@ -26,6 +26,13 @@ Kept kept(const PairKeeps& keeps, double forgiven) {
   return {0, std::max(0.0, keeps.node - forgiven), motion, motion + keeps.tolerance};
 }
 
+/// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
+constexpr double kBoundSafety = 1e-6;
+/// A clearance kept says "free" only where FCL would.
+constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
+/// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
+constexpr double kMargin = 0.01;
+
 std::string millimetres(double metres) {
   char text[32];
   std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
@@ -65,7 +72,7 @@ struct World::Impl {
         limits(of_problem),
         robot_pairs(robot->pairs(limits)),
         warnings(robot->warnings()) {
-    const Span span("world");
+    const TraceSpan span("world");
     for (const RobotPair& p : robot_pairs)
       if (!p.dropped) pairs.push_back(p.pair);
     for (std::size_t i = 0; i < robot->bodies.size(); ++i)
@@ -115,15 +122,15 @@ struct World::Impl {
     return &*std::find_if(robot_pairs.begin(), robot_pairs.end(), [&](const RobotPair& x) { return x.pair == p; });
   }
 
-  void keep_pairs_of(const std::vector<int>& objects) {
+  void keep_pairs(const std::vector<int>& objects, Pairs wanted) {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
     const auto all = std::move(pairs);
     const auto all_keeps = std::move(keeps);
     pairs.clear();
     keeps.clear();
-    near.clear();
+    if (wanted == Pairs::kOf) near.clear();
     for (std::size_t k = 0; k < all.size(); ++k)
-      if (std::find(objects.begin(), objects.end(), all[k].b - robot_bodies) != objects.end()) {
+      if ((std::find(objects.begin(), objects.end(), all[k].b - robot_bodies) != objects.end()) == (wanted == Pairs::kOf)) {
         pairs.push_back(all[k]);
         keeps.push_back(all_keeps[k]);
       }
@@ -197,8 +204,8 @@ World::World(const World& like, const std::vector<SceneObject>& scene, const Bud
 World::World(const World& like, const Problem& problem, const Budget& budget, double forgiven)
     : impl_(std::make_unique<Impl>(RobotPart::for_limits(like.impl_->robot, problem.limits, budget), like.impl_->meshes,
                                    problem.scene, problem.limits, budget, forgiven, like.impl_.get())) {}
-World::World(const World& whole, const std::vector<int>& objects) : impl_(std::make_unique<Impl>(*whole.impl_)) {
-  impl_->keep_pairs_of(objects);
+World::World(const World& whole, const std::vector<int>& objects, Pairs pairs) : impl_(std::make_unique<Impl>(*whole.impl_)) {
+  impl_->keep_pairs(objects, pairs);
 }
 World::~World() = default;
 World::World(World&&) noexcept = default;
@@ -223,6 +230,10 @@ bool World::has_meshes() const {
 PairKeeps World::keeps(const BodyPair& pair) const {
   return impl_->keeps_of(pair);
 }
+double World::displacement(int object, const Pose& from, const Pose& to) const {
+  const Bound& bound = impl_->bodies[impl_->robot->bodies.size() + static_cast<std::size_t>(object)].shape.bound;
+  return motion(bound, place(bound, from), place(bound, to)) + kBoundSafety;
+}
 const std::vector<RobotPair>& World::robot_pairs() const {
   return impl_->robot_pairs;
 }
@@ -236,32 +247,25 @@ const std::vector<std::string>& World::warnings() const {
   return impl_->warnings;
 }
 
-/// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
-static constexpr double kBoundSafety = 1e-6;
-/// A clearance kept says "free" only where FCL would.
-static constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
-/// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
-static constexpr double kAhead = 0.01;
-
 struct World::Query::Impl {
   const World::Impl* world;
   Certificates certificates;
   PairTest test;
-  CollisionCounters own;  // all but what the test counts
-  bool certain = false;   // no verdict of this question needed FCL
-  bool surely = false;    // the last verdict was a certificate's
+  CollisionCounters own;        // all but what the test counts
+  bool all_certified = false;   // no verdict of this question needed FCL
+  bool last_certified = false;  // the last verdict was a certificate's
   std::vector<Pose> poses;
   std::vector<PlacedBound> bounds;
   Config q = Config::Constant(std::numeric_limits<double>::quiet_NaN());
   std::array<Pose, kDof + 1> displacements;
   int displaced = 0;           // up to this group
   std::vector<char> in_place;  // bodies, at q
-  // For next_below. What a pair's two bodies have moved in all is subtracted from its reserve, and is its clearance at least.
+  // For next_below. What a pair's two bodies have moved in all is subtracted from its lower bound of the distance.
   std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
-  std::vector<PlacedBound> moved_to;  // by body; empty after forget()
-  std::vector<double> reserve;        // by pair, m
+  std::vector<PlacedBound> moved_to;  // by body; empty before the first posture
+  std::vector<double> lower_bound;    // by pair, m
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
-  std::vector<std::size_t> due;       // pairs that their reserve does not prove free
+  std::vector<std::size_t> open;      // pairs whose bound does not prove them free
 
   Impl(const World::Impl& w, Certificates c)
       : world(&w),
@@ -270,9 +274,9 @@ struct World::Query::Impl {
         in_place(w.bodies.size()),
         moved(w.bodies.size()),
         step(w.bodies.size()),
-        reserve(w.pairs.size(), std::numeric_limits<double>::lowest()),
+        lower_bound(w.pairs.size(), std::numeric_limits<double>::lowest()),
         witness(w.pairs.size()) {
-    due.reserve(reserve.size());
+    open.reserve(lower_bound.size());
     moved_to.reserve(moved.size());
     displacements[0].setIdentity();
     for (const auto& body : w.bodies) {
@@ -288,7 +292,7 @@ struct World::Query::Impl {
     displaced = 0;
     std::fill(in_place.begin(), in_place.end(), 0);
   }
-  void put(int index) {
+  void place_body(int index) {
     const auto i = static_cast<std::size_t>(index);
     const auto& body = world->bodies[i];
     if (in_place[i] || body.group == 0) return;
@@ -300,58 +304,68 @@ struct World::Query::Impl {
     bounds[i] = place(body.shape.bound, poses[i]);
     in_place[i] = 1;
   }
-  void put_all() {
-    for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) put(i);
+  void place_bodies() {
+    for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) place_body(i);
   }
 
-  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& suspect, bool keep) {
-    certain = certificates != Certificates::kOff;
-    const auto found = first(level, suspect, keep && certain);
-    (found ? own.certified_colliding : own.certified_free) += certain;
+  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& likely, bool keep) {
+    all_certified = certificates != Certificates::kOff;
+    const auto found = first(level, likely, keep && all_certified);
+    (found ? own.certified_colliding : own.certified_free) += all_certified;
     return found;
   }
-  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& suspect, bool keep) {
-    if (suspect && below(*suspect, level)) return suspect;
-    put_all();
-    if (keep) return first_due(level, suspect);
+  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& likely, bool keep) {
+    if (likely && below(*likely, level)) return likely;
+    place_bodies();
+    if (keep) return first_open(level, likely);
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
       const double d = world->required(k, level);
-      if (d >= 0 && p != suspect && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
+      if (d >= 0 && p != likely && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
     }
     return std::nullopt;
   }
-  std::optional<BodyPair> first_due(const Level& level, const std::optional<BodyPair>& suspect) {
+  std::optional<BodyPair> first_open(const Level& level, const std::optional<BodyPair>& likely) {
     move_on();
-    find_due(level);
-    if (certificates == Certificates::kCompared) compare_others(level);
-    for (const std::size_t k : due) {
+    find_open(level);
+    for (const std::size_t k : open) {
       const BodyPair& p = world->pairs[k];
       const double d = world->required(k, level);
-      if (d >= 0 && p != suspect && is_below(p, d, renewed(k, d))) return p;
+      if (d >= 0 && p != likely && is_below(p, d, renewed(k, d))) return p;
     }
     return std::nullopt;
+  }
+  /// Of one of the world's pairs.
+  [[nodiscard]] std::optional<std::size_t> number_of(const BodyPair& p) const {
+    const auto found = std::find(world->pairs.begin(), world->pairs.end(), p);
+    return found == world->pairs.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - world->pairs.begin()));
   }
   bool below(const BodyPair& p, const Level& level) {
     const double d = world->required(p, level);
     if (!(d >= 0)) return false;
-    put(p.a);
-    put(p.b);
-    const auto found = std::find(world->pairs.begin(), world->pairs.end(), p);
+    place_body(p.a);
+    place_body(p.b);
     TrianglePair none;
-    const bool known = found != world->pairs.end();
-    return is_below(p, d, certify_pair(p, d, known ? witness[static_cast<std::size_t>(found - world->pairs.begin())] : none));
+    const auto k = number_of(p);
+    return is_below(p, d, certify_pair(p, d, k ? witness[*k] : none));
+  }
+  bool surely_below(const BodyPair& p, const Level& level) {
+    if (certificates == Certificates::kOff) return false;
+    const auto k = number_of(p);
+    if (!k) return false;
+    place_body(p.a);
+    place_body(p.b);
+    const bool below = proves_below(placed(p.a), placed(p.b), world->required(*k, level), witness[*k]);
+    own.certified_colliding += below;
+    return below;
   }
   bool is_below(const BodyPair& p, double d, Certificate certificate) {
-    surely = certificate != Certificate::kNone;
-    certain &= surely;
-    if (certificates != Certificates::kCompared && certificate != Certificate::kNone) return certificate == Certificate::kColliding;
-    const bool verdict = test.below(placed(p.a), placed(p.b), d);
-    own.contradictions += certificate == (verdict ? Certificate::kFree : Certificate::kColliding);
-    return verdict;
+    last_certified = certificate != Certificate::kNone;
+    all_certified &= last_certified;
+    return last_certified ? certificate == Certificate::kColliding : test.below(placed(p.a), placed(p.b), d);
   }
   [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d, TrianglePair& from) const {
-    if (surely_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
     return certificates == Certificates::kOff ? Certificate::kNone : prove(placed(p.a), placed(p.b), d, 0, from).certificate;
   }
 
@@ -360,11 +374,6 @@ struct World::Query::Impl {
     return certificates == Certificates::kOn && certify_pair(world->pairs[k], d, witness[k]) == Certificate::kFree;
   }
 
-  void forget() {
-    moved_to.clear();
-    std::fill(moved.begin(), moved.end(), 0);
-    std::fill(reserve.begin(), reserve.end(), std::numeric_limits<double>::lowest());
-  }
   void move_on() {
     if (moved_to.empty()) moved_to = bounds;
     for (std::size_t i = 0; i < world->robot->bodies.size(); ++i) {
@@ -376,38 +385,41 @@ struct World::Query::Impl {
     }
   }
   [[nodiscard]] double moved_together(const BodyPair& p) const { return moved[p.a] + moved[p.b]; }
-  void find_due(const Level& level) {
-    due.resize(reserve.size());
+  [[nodiscard]] double spare(const Level& level) const {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < lower_bound.size(); ++k)
+      if (const double d = world->required(k, level); d >= 0) {
+        const double here = lower_bound[k] - moved_together(world->pairs[k]) - d - kKeptSafety;
+        if (!(here >= 0)) return -1;  // NaN
+        least = std::min(least, here);
+      }
+    return least;
+  }
+  void find_open(const Level& level) {
+    open.resize(lower_bound.size());
     std::size_t found = 0;
-    for (std::size_t k = 0; k < reserve.size(); ++k) {
-      due[found] = k;
-      found += !(reserve[k] - moved_together(world->pairs[k]) >= world->required(k, level) + kKeptSafety);  // NaN is due
+    for (std::size_t k = 0; k < lower_bound.size(); ++k) {
+      open[found] = k;
+      found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, level) + kKeptSafety);  // NaN is open
     }
-    due.resize(found);
-    own.pairs_kept += static_cast<std::int64_t>(reserve.size() - found);
+    open.resize(found);
+    own.pairs_kept += static_cast<std::int64_t>(lower_bound.size() - found);
   }
-  void compare_others(const Level& level) {
-    for (std::size_t k = 0; k < reserve.size(); ++k) {
-      const double d = world->required(k, level);
-      if (d < 0 || std::binary_search(due.begin(), due.end(), k)) continue;
-      own.contradictions += test.below(placed(world->pairs[k].a), placed(world->pairs[k].b), d);
-    }
-  }
-  /// certify_pair, which also renews the reserve.
+  /// certify_pair, which also renews the bound.
   Certificate renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
-    const double spent = moved_together(p);
-    const double ahead = step[p.a] + step[p.b] < kAhead ? kAhead : kBoundSafety;
-    const auto clear_by = [&](double floor) {
-      reserve[k] = floor + spent;
-      return floor >= d + ahead;
+    const double so_far = moved_together(p);
+    const double margin = step[p.a] + step[p.b] < kMargin ? kMargin : kBoundSafety;
+    const auto clear_by = [&](double bound_now) {
+      lower_bound[k] = bound_now + so_far;
+      return bound_now >= d + margin;
     };
-    if (clear_by(ball_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)))) return Certificate::kFree;
-    const double floor = distance_floor(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
-    if (clear_by(floor)) return Certificate::kFree;
-    const Proof proof = prove(placed(p.a), placed(p.b), d, ahead, witness[k]);
-    clear_by(std::max(floor, proof.floor));
-    return floor >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
+    if (clear_by(ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)))) return Certificate::kFree;
+    const double bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (clear_by(bound_now)) return Certificate::kFree;
+    const Proof proof = prove(placed(p.a), placed(p.b), d, margin, witness[k]);
+    clear_by(std::max(bound_now, proof.bound));
+    return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[i]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
@@ -419,22 +431,22 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::first_below(const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
+std::optional<BodyPair> World::Query::first_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
-  return impl_->first_below(level, suspect, false);
+  return impl_->first_below(level, likely, false);
 }
 
-std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& level, const std::optional<BodyPair>& suspect) {
+std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
-  return impl_->first_below(level, suspect, true);
+  return impl_->first_below(level, likely, true);
 }
 
-void World::Query::forget() {
-  impl_->forget();
+double World::Query::spare(const Level& level) const {
+  return impl_->spare(level);
 }
 
-bool World::Query::surely_below() const {
-  return impl_->surely;
+bool World::Query::certified() const {
+  return impl_->last_certified;
 }
 
 bool World::Query::pair_below(const Config& q, const BodyPair& pair, const Level& level) {
@@ -442,13 +454,18 @@ bool World::Query::pair_below(const Config& q, const BodyPair& pair, const Level
   return impl_->below(pair, level);
 }
 
+bool World::Query::surely_below(const Config& q, const BodyPair& pair, const Level& level) {
+  impl_->move_to(q);
+  return impl_->surely_below(pair, level);
+}
+
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {
   impl_->move_to(q);
-  impl_->put_all();
+  impl_->place_bodies();
   const World::Impl& world = *impl_->world;
   const auto& pairs = world.pairs;
   struct Candidate {
-    double floor;  ///< least possible distance, m
+    double bound;  ///< least possible distance, m
     std::size_t pair;
     double required;
   };
@@ -456,19 +473,19 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   order.reserve(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const BodyPair& p = pairs[k];
-    order.push_back({distance_floor(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b)), k,
+    order.push_back({distance_bound(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b)), k,
                      world.required(k, Keep::kNode)});
   }
   std::sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
-    return std::tuple(x.floor - x.required, x.pair) < std::tuple(y.floor - y.required, y.pair);
+    return std::tuple(x.bound - x.required, x.pair) < std::tuple(y.bound - y.required, y.pair);
   });
 
   constexpr double kMost = std::numeric_limits<double>::max();
   std::tuple<bool, double, std::size_t> least{true, kMost, pairs.size()};  // does not touch, margin, pair
   Clearance answer{kMost, {}, 0, kMost};
   for (const Candidate& c : order) {
-    const bool may_touch = c.floor <= kBoundSafety, may_be_nearest = c.floor - kBoundSafety <= answer.least;
-    if (!may_touch && !may_be_nearest && c.floor - c.required - kBoundSafety > std::get<1>(least)) continue;
+    const bool may_touch = c.bound <= kBoundSafety, may_be_nearest = c.bound - kBoundSafety <= answer.least;
+    if (!may_touch && !may_be_nearest && c.bound - c.required - kBoundSafety > std::get<1>(least)) continue;
     // Neither the least margin nor the least clearance, where it is proved to be further than both.
     const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
     if (std::get<0>(least) && beyond < kMost && impl_->proved_beyond(c.pair, beyond)) continue;
@@ -487,7 +504,7 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
   impl_->move_to(q);
-  impl_->put_all();
+  impl_->place_bodies();
   return detail::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
 }
 

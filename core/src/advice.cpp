@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/advice.hpp"
+#include "swivel/core/formatted.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -29,20 +30,14 @@ constexpr Limit kLimits[] = {
     {Advice::Change::kStepError, "step_error", "step error", "rad", 1},
 };
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 /// "10 mm along +y"; of a slanted way its three parts; "up to 20 mm" where no way was better than another.
 std::string words(const Vector3d& offset) {
-  if (offset.isZero(0)) return "up to 20 mm";
+  if (offset.isZero(0)) return formatted("up to %.3g mm", 1e3 * Advice::kMostMove);
   Eigen::Index axis = 0;
   const double most = offset.cwiseAbs().maxCoeff(&axis);
-  if (offset.norm() > most * (1 + 1e-9)) return text("(%.3g, %.3g, %.3g) mm", 1e3 * offset.x(), 1e3 * offset.y(), 1e3 * offset.z());
-  return text("%.3g mm along %c%c", 1e3 * most, offset[axis] < 0 ? '-' : '+', static_cast<char>('x' + axis));
+  if (offset.norm() > most * (1 + 1e-9))
+    return formatted("(%.3g, %.3g, %.3g) mm", 1e3 * offset.x(), 1e3 * offset.y(), 1e3 * offset.z());
+  return formatted("%.3g mm along %c%c", 1e3 * most, offset[axis] < 0 ? '-' : '+', static_cast<char>('x' + axis));
 }
 
 }  // namespace
@@ -82,7 +77,7 @@ std::string words(const Advice& advice) {
   for (const Limit& limit : kLimits)
     if (limit.change == advice.change) {
       const auto shown = [&](const std::optional<double>& value) {
-        return value ? text("%.3g%s%s", limit.scale * *value, *limit.unit ? " " : "", limit.unit) : std::string("none");
+        return value ? formatted("%.3g%s%s", limit.scale * *value, *limit.unit ? " " : "", limit.unit) : std::string("none");
       };
       return std::string(limit.phrase) + " of " + shown(advice.to) + " instead of " + shown(advice.from);
     }
@@ -90,7 +85,7 @@ std::string words(const Advice& advice) {
     case Advice::Change::kFreeStart:
       return "a free start";
     case Advice::Change::kFiner:
-      return "half the steps of the lattice (--ds, --dphi)";
+      return "half the steps of the lattice, and nodes on narrow arcs (--ds, --dphi, --arcs)";
     case Advice::Change::kMoveObject:
       return "'" + advice.object + "' moved by " + words(advice.offset);
     default:

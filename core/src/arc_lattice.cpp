@@ -226,7 +226,7 @@ Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
 
 ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
                                      const Budget& budget) {
-  const Span span("arcs");
+  const TraceSpan span("arcs");
   const SelfMotion motion(chain, method, problem.limits.joint_margin, weights_of(chain, problem.cost));
   Layers result;
   for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
@@ -308,17 +308,16 @@ ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolP
     : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
       method_(method),
       problem_(problem),
-      layers_{{}, layers.circles, layers.arcs} {}
+      layers_{{}, layers.circles, std::move(layers.windings), layers.arcs} {}
 
-int ArcLattice::branch(int layer, int slot) const {
-  const Config& q = point(layer, slot).q;
-  const auto J = chain().jacobian(q);
-  const int left_out = method_.best >= 0 ? method_.best : 2;
+int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
+  const auto J = chain.jacobian(q);
+  const int left_out = method.best >= 0 ? method.best : 2;
   Matrix6 rest;
   rest << J.leftCols(left_out), J.rightCols(kSix - left_out);
   const bool whole = rest.determinant() < 0;
-  if (method_.best < 0) return whole ? 1 : 0;
-  const ClosedFormFit& fit = *method_.by_joint[static_cast<std::size_t>(method_.best)];
+  if (method.best < 0) return whole ? 1 : 0;
+  const ClosedFormFit& fit = *method.by_joint[static_cast<std::size_t>(method.best)];
   // The triple, or the last of three parallel axes and the two behind it.
   const int first = fit.structure == Structure::kParallel ? (fit.first == 1 ? 3 : 0) : fit.first;
   const auto axis = [&](int k) -> Vector3d { return rest.block<3, 1>(3, std::min(first + k, kSix - 1)); };
@@ -326,15 +325,23 @@ int ArcLattice::branch(int layer, int slot) const {
   return (triple ? 1 : 0) | (whole != triple ? 2 : 0);
 }
 
-double ArcLattice::phi(int layer, int slot) const {
-  if (chain().roll) return point(layer, slot).q[kDof - 1];
-  const auto G = chain().displacements(point(layer, slot).q);
-  const Vector3d S = G[1] * foot(chain(), 1, 0), E = G[3] * foot(chain(), 3, 2), W = G[5] * foot(chain(), 5, 6);
+double arc_angle(const Chain& chain, const Config& q) {
+  if (chain.roll) return q[kDof - 1];
+  const auto G = chain.displacements(q);
+  const Vector3d S = G[1] * foot(chain, 1, 0), E = G[3] * foot(chain, 3, 2), W = G[5] * foot(chain, 5, 6);
   const Vector3d u = (W - S).normalized();
   Vector3d r = u.cross(Vector3d::UnitZ());
   if (r.norm() < 1e-3) r = u.cross(Vector3d::UnitX());
   const Vector3d up = r.cross(u), elbow = E - S;
   return std::atan2(u.dot(up.cross(elbow)), up.dot(elbow));
+}
+
+int ArcLattice::branch(int layer, int slot) const {
+  return arc_branch(chain(), method_, point(layer, slot).q);
+}
+
+double ArcLattice::phi(int layer, int slot) const {
+  return arc_angle(chain(), point(layer, slot).q);
 }
 
 std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std::vector<int>& slots) const {
@@ -372,6 +379,8 @@ ArcLattice ArcLattice::with_windings(const Joints& joints) const {
   Layers wound;
   wound.arcs = layers_.arcs;
   wound.circles = circles();
+  wound.windings = windings();
+  wound.windings.push_back(joints);
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
   for (int i = 0; i < layers(); ++i) {
     auto& points = wound.points.emplace_back();

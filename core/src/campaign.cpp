@@ -5,9 +5,17 @@
 #include <cmath>
 #include <utility>
 
+#include "episode_draw.hpp"
+#include "swivel/core/placement.hpp"
+
 namespace swivel {
 
 namespace {
+
+/// k: of kCoordinates.
+bool varies(const Variation& vary, int k) {
+  return (k < 3 ? vary.xyz[k] : vary.rpy[k - 3]) != 0;
+}
 
 template <class Value>
 Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
@@ -25,7 +33,24 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
 
 }  // namespace
 
-EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result)
+std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary) {
+  std::vector<std::string> names;
+  for (const Variation& one : vary)
+    for (int k = 0; k < 6; ++k)
+      if (varies(one, k)) names.push_back(one.object + "." + kCoordinates[static_cast<std::size_t>(k)]);
+  return names;
+}
+
+std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode) {
+  std::vector<double> offsets;
+  draw_episode(vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
+    for (int k = 0; k < 6; ++k)
+      if (varies(one, k)) offsets.push_back(k < 3 ? offset[k] : rpy[k - 3]);
+  });
+  return offsets;
+}
+
+EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result, const Problem& problem)
     : episode(number), status(result.status), nodes_checked(result.counters.nodes_checked), fcl_calls(result.counters.fcl_calls) {
   if (const auto plan = result.time_ms.find("plan"); plan != result.time_ms.end()) plan_ms = plan->second;
   if (status == PlanStatus::kSolved) {
@@ -34,6 +59,8 @@ EpisodeRow::EpisodeRow(std::uint64_t number, const PlanResult& result)
     tool_path_error_mm_max = result.tool_path_error_mm.max;
   } else if (status == PlanStatus::kInfeasible) {
     failed_s = result.diagnosis.reached_s;
+    if (result.diagnosis.cause.kind != Cause::Kind::kNone) cause = to_string(result.diagnosis.cause.kind);
+    by = subject_of(result.diagnosis.cause, problem);
     reason = words(result.diagnosis.cause);
   }
 }

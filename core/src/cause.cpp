@@ -4,21 +4,15 @@
 #include <cmath>
 #include <cstdio>
 
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
 
 namespace {
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char buffer[128];
-  std::snprintf(buffer, sizeof buffer, format, values...);
-  return buffer;
-}
-
 std::string range(double low, double high) {
-  const std::string first = text("%.3g", low), last = text("%.3g", high);
+  const std::string first = formatted("%.3g", low), last = formatted("%.3g", high);
   return first == last ? first : first + " to " + last;
 }
 
@@ -131,18 +125,18 @@ std::string figures(const Cause& cause, std::optional<double> most) {
   const auto by = cause.by();
   if (!by) return "";
   const auto misses = [&](double unit) { return range(unit * *by, unit * std::max(*by, most.value_or(*by))); };
-  const auto of = [&](const char* format, double unit) { return text(format, unit * *cause.value, unit * *cause.limit); };
+  const auto of = [&](const char* format, double unit) { return formatted(format, unit * *cause.value, unit * *cause.limit); };
   switch (cause.kind) {
     case Cause::Kind::kReach:
       return (cause.side == Cause::Side::kUpper ? "out of reach by " : "too near to the shoulder by ") + misses(kMillimetres) +
              " mm";
     case Cause::Kind::kLimit:
       return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
-             text("%.2f deg", kDegrees * *cause.limit);
+             formatted("%.2f deg", kDegrees * *cause.limit);
     case Cause::Kind::kPair:
       return of("%.3g mm apart, asked %.3g mm", kMillimetres);
     case Cause::Kind::kContact:
-      return text("they touch, asked %.3g mm", kMillimetres * *cause.limit);
+      return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed:
       return cause.joint + ": " + of("%.3g rad, allowed %.3g rad", 1);

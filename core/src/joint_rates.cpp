@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <limits>
+
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/time_path.hpp"
 
@@ -11,6 +13,10 @@ JointRates joint_rates(const Chain& chain, const Limits& limits, const std::stri
   for (std::size_t j = 0; j < kDof; ++j) {
     const auto joint = static_cast<Eigen::Index>(j);
     const JointLimit& model = chain.limit[j];
+    if (chain.roll && j + 1 == kDof) {  // it is no joint
+      rates.speed[joint] = rates.acceleration[joint] = rates.jerk[joint] = std::numeric_limits<double>::infinity();
+      continue;
+    }
     rates.speed[joint] = limits.joint_speed ? (*limits.joint_speed)[j] : model.velocity;
     rates.acceleration[joint] = limits.joint_acceleration ? (*limits.joint_acceleration)[j] : model.acceleration;
     rates.jerk[joint] = limits.joint_jerk ? (*limits.joint_jerk)[j] : model.jerk;

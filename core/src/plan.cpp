@@ -19,4 +19,16 @@ const char* to_string(PlanStatus status) {
   return "?";
 }
 
+const char* to_string(Diagnosis::Holds holds) {
+  switch (holds) {
+    case Diagnosis::Holds::kThisResolution:
+      return "this_resolution";
+    case Diagnosis::Holds::kExactTool:
+      return "exact_tool";
+    case Diagnosis::Holds::kEveryResolution:
+      return "every_resolution";
+  }
+  return "?";
+}
+
 }  // namespace swivel

@@ -4,52 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "episode_draw.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/rpy.hpp"
 
 namespace swivel {
 
-namespace {
-
-/// Steele, Lea, Flood 2014: the generator whose every output is a mix of a counter.
-class SplitMix64 {
- public:
-  explicit SplitMix64(std::uint64_t state) : state_(state) {}
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return z ^ (z >> 31);
-  }
-  /// Uniform in [-1, 1).
-  double symmetric() { return static_cast<double>(next() >> 11) * 0x1.0p-52 - 1.0; }
-
- private:
-  std::uint64_t state_;
-};
-
-Matrix3d from_rpy(const Vector3d& rpy) {
-  return (Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-          Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX()))
-      .toRotationMatrix();
-}
-
-}  // namespace
-
 Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
   Problem result = problem;
-  SplitMix64 mixed_seed(seed);
-  SplitMix64 random(mixed_seed.next() ^ episode);
-  random.next();  // one more mix, so that neighbouring episodes share nothing
-  for (const Vary& vary : problem.vary) {
-    Vector3d offset, rpy;
-    for (int k = 0; k < 3; ++k) offset[k] = vary.xyz[k] * random.symmetric();
-    for (int k = 0; k < 3; ++k) rpy[k] = vary.rpy[k] * random.symmetric();
+  draw_episode(problem.vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
     for (SceneObject& object : result.scene)
-      if (object.name == vary.object) {
+      if (object.name == one.object) {
         object.pose.translation() += offset;
-        object.pose.linear() = from_rpy(rpy) * object.pose.linear();
+        object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
       }
-  }
+  });
   return result;
 }
 

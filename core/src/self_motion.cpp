@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "pose_newton.hpp"
+#include "swivel/core/alignment.hpp"
 #include "swivel/core/angle.hpp"
 
 namespace swivel {
@@ -25,7 +26,6 @@ constexpr double kFar = 1;             // rad: more than a chord and what is nea
 constexpr double kFarSlack = 1;        // relative discriminant of complex roots that give seeds
 constexpr int kMostPoints = 4000;      // of one curve
 constexpr double kSingular = 1e-6;     // rad from alignment of a triple
-constexpr double kMeets = 1e-4;        // m, rad: axes this near a common point or direction make a triple
 constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
 constexpr double kLeastWeight = 1e-2;  // of the largest
 constexpr int kStarts = 96;            // of Newton, where there is no closed form
@@ -50,13 +50,6 @@ bool maybe_near(const Config& a, const Config& b, int joint, double within) {
   const double apart = std::abs(a[joint] - b[joint]);
   return apart < within || apart > kTwoPi - within;
 }
-
-/// Where the outer axes of a triple are one line, so that they swing against each other while the middle one stands. A curve comes
-/// near, swings, and leaves on the same side; a long step would pass over the swing.
-struct Alignment {
-  int joint;
-  double angle;
-};
 
 /// The cubic with the tangents of its ends, as long as its chord: relative to its first point, at + u (b + u (c + u d)).
 struct Cubic {
@@ -658,45 +651,6 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
     }
     if (arc.q.size() > 1) finish(std::move(arc));
   }
-}
-
-/// Values of the middle joint of a triple at which the axes on both sides of it are one line, or one direction where three
-/// parallel axes go before.
-void add_alignments(const Chain& chain, int first, std::vector<Alignment>& out) {
-  const auto f = static_cast<std::size_t>(first);
-  const Vector3d &a = chain.axis[f], &b = chain.axis[f + 1], &c = chain.axis[f + 2];
-  const Vector3d along = b.dot(c) * b, across = c - along, aside = b.cross(c);
-  // det(a, b, c) vanishes where across and aside together lie in the plane of a and b.
-  const Vector3d normal = a.cross(b);
-  const double angle = std::atan2(-normal.dot(across), normal.dot(aside));
-  for (const double x : {angle, angle + kPi}) {
-    const Vector3d turned = along + std::cos(x) * across + std::sin(x) * aside;
-    if (a.cross(turned).norm() < kMeets) out.push_back({first + 1, wrap_angle(x)});
-  }
-}
-
-std::vector<Alignment> alignments_of(const Chain& chain) {
-  std::vector<Alignment> result;
-  const auto distance = [&](std::size_t i, const Vector3d& p) {
-    const Vector3d d = p - chain.point[i];
-    return (d - chain.axis[i].dot(d) * chain.axis[i]).norm();
-  };
-  for (std::size_t k = 0; k + 2 < kDof; ++k) {
-    // Where axes k and k + 1 come nearest; do all three meet there?
-    const Vector3d &a = chain.axis[k], &b = chain.axis[k + 1];
-    const double sine2 = a.cross(b).squaredNorm();
-    if (sine2 < 1e-6) continue;
-    const Vector3d d = chain.point[k + 1] - chain.point[k];
-    const Vector3d meet = chain.point[k] + (d.cross(b).dot(a.cross(b)) / sine2) * a;
-    if (distance(k + 1, meet) < kMeets && distance(k + 2, meet) < kMeets) add_alignments(chain, static_cast<int>(k), result);
-  }
-  for (std::size_t k = 0; k + 2 < kDof; ++k) {
-    if (chain.axis[k].cross(chain.axis[k + 1]).norm() > kMeets || chain.axis[k].cross(chain.axis[k + 2]).norm() > kMeets) continue;
-    // A fourth axis parallel to these three, beyond one joint.
-    if (k + 4 < kDof) add_alignments(chain, static_cast<int>(k) + 2, result);
-    if (k >= 2) add_alignments(chain, static_cast<int>(k) - 2, result);
-  }
-  return result;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel {
@@ -46,12 +47,6 @@ Crossing cross(const Line& first, const Line& second) {
   return result;
 }
 
-std::string text(const char* format, double a, double b = 0) {
-  char buffer[200];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
 /// Axes i, i+1, i+2 (0-based) through one point, neighbours perpendicular; appends what is wrong.
 Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what, FitDeviation& deviation,
                     std::string& problem) {
@@ -69,10 +64,10 @@ Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const cha
     deviation.offset = std::max(deviation.offset, crossing[k].miss);
     if (crossing[k].miss > kMissTolerance) {
       problem += problem.empty() ? "" : "; ";
-      problem += pair + " miss each other by " + text("%.1f mm", 1e3 * crossing[k].miss);
+      problem += pair + " miss each other by " + formatted("%.1f mm", 1e3 * crossing[k].miss);
     } else if (crossing[k].right > kAngleTolerance) {
       problem += problem.empty() ? "" : "; ";
-      problem += pair + text(" are %.2f deg off perpendicular", crossing[k].right * 180 / kPi);
+      problem += pair + formatted(" are %.2f deg off perpendicular", crossing[k].right * 180 / kPi);
     }
   }
   const double gap = std::abs(crossing[0].along_b - crossing[1].along_b);
@@ -80,7 +75,7 @@ Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const cha
   if (gap > kMissTolerance) {
     problem += problem.empty() ? "" : "; ";
     problem += "axes " + std::to_string(i + 1) + " and " + std::to_string(i + 3) + " meet axis " + std::to_string(i + 2) +
-               text(" %.1f mm apart", 1e3 * gap) + " (no spherical " + what + ")";
+               formatted(" %.1f mm apart", 1e3 * gap) + " (no spherical " + what + ")";
   }
   return 0.5 * (crossing[0].middle + crossing[1].middle);
 }
@@ -137,8 +132,8 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   if (problem.empty()) {
     arm.deviation.offset = std::max(arm.deviation.offset, std::abs(out_of_plane));
     if (std::abs(out_of_plane) > kMissTolerance)
-      problem = text("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to",
-                     1e3 * std::abs(out_of_plane));
+      problem = formatted("the wrist centre is %.1f mm out of the plane through the shoulder centre that axis 4 is normal to",
+                          1e3 * std::abs(out_of_plane));
   }
   if (!problem.empty()) throw NotSrs(source, problem, "a spherical shoulder and wrist within 1 mm and 0.57 deg");
 

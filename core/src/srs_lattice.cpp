@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -52,7 +53,7 @@ std::string gigabytes(double bytes) {
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
     : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm) {
-  const Span span("lattice");
+  const TraceSpan span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
   double windings = 1;
@@ -87,7 +88,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
 
   tracks_ = 2;
   for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
-  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(labels());
+  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(sheets());
 
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
@@ -126,6 +127,9 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   }
 
   if (problem.start) place_start(problem);
+  if (!arm.exact) row_shift_.emplace(chain, arm);
+  prepare_arcs();
+  if (resolution.arcs) move_cells(budget);
 }
 
 std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget) {
@@ -227,7 +231,8 @@ std::uint8_t SrsLattice::joints_outside(const Config& row) const {
 
 double SrsLattice::phi(int layer, int slot) const {
   if (layer == 0 && start_) return start_->phi;
-  return -kPi + kTwoPi * angle_of(slot) / angles_;
+  if (const Moved* moved = find_moved(layer, slot)) return moved->phi;
+  return cell_angle(slot);
 }
 
 int SrsLattice::winding_images(int winding, int joint) const {
@@ -257,12 +262,15 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   out.layer_ = layer;
   out.first_ = first;
   const bool start = layer == 0 && start_;
-  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start};
+  const std::uint8_t moved = moved_.empty() ? std::uint8_t{0} : moved_branches_[static_cast<std::size_t>(layer)];
+  const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start, moved};
   if (layout == out.layout_ && !start) return;
   out.layout_ = layout;
   out.count_ = count;
-  out.offsets_.resize(static_cast<std::size_t>(labels()));
-  const auto needed = static_cast<Eigen::Index>(tracks_ * n);
+  out.offsets_.resize(static_cast<std::size_t>(sheets()));
+  constexpr std::size_t kOwn = kDof + 1;  // joints and a mask
+  const auto own = static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
+  const auto needed = static_cast<Eigen::Index>((tracks_ + own) * n);
   if (out.data_.size() < needed) out.data_.setZero(needed);
   std::size_t used = 0;
   const auto allot = [&](int arrays = 1) {
@@ -274,121 +282,193 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
   if (start) {
-    for (LayerNodes::Offsets& label : out.offsets_) label = {.q = {}, .bar = {never, free}, .alive = false};
+    for (LayerNodes::Offsets& sheet : out.offsets_) sheet = {.q = {}, .mask = {never, free}, .alive = false};
     return lay_out_start(out);
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
-    // One array per (joint, sign of its triple, image), and a bar per (triple, sign) or, with windings, per label.
+    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with windings, per sheet.
     std::array<std::array<std::size_t, kDof>, 2> track{};
-    std::array<std::array<std::size_t, 2>, 2> bar{};  // [sign][triple]
+    std::array<std::array<std::size_t, 2>, 2> mask{};  // [sign][triple]
     if (alive)
       for (std::size_t sign = 0; sign < 2; ++sign) {
         for (std::size_t j = 0; j < kDof; ++j)
           track[sign][j] = j == kElbowJoint && sign == 1 ? track[0][j] : allot(images_[j].count);
-        for (std::size_t& triple : bar[sign]) triple = windings_ == 1 ? allot() : never;
+        for (std::size_t& triple : mask[sign]) triple = windings_ == 1 ? allot() : never;
+        out.shared_[static_cast<std::size_t>(elbow)][sign] = {track[sign], mask[sign], alive};
       }
-    for (int winding = 0, first_label = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
-      const int label = first_label + winding, branch = label / windings_;
-      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+    for (int winding = 0, first_sheet = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
+      const int sheet = first_sheet + winding, branch = sheet / windings_;
+      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
       offsets.alive = alive;
-      offsets.bar = {never, free};
+      offsets.mask = {never, free};
       if (!alive) continue;
       const std::size_t shoulder = branch & kShoulderBit ? 1 : 0, wrist = branch & kWristBit ? 1 : 0;
       if (windings_ == 1)
-        offsets.bar = {bar[shoulder][0], bar[wrist][1]};
+        offsets.mask = {mask[shoulder][0], mask[wrist][1]};
       else
-        offsets.bar = {allot(), free};
+        offsets.mask = {allot(), free};
       for (int j = 0; j < kDof; ++j)
         offsets.q[static_cast<std::size_t>(j)] = track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
-                                                 static_cast<std::size_t>(winding_images(label % windings_, j)) * n;
+                                                 static_cast<std::size_t>(winding_images(sheet % windings_, j)) * n;
     }
+  }
+  if (!moved) return;
+  used = tracks_ * n;
+  for (int sheet = 0; sheet < sheets(); ++sheet) {
+    if (!(moved >> (sheet / windings_) & 1)) continue;
+    LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
+    for (std::size_t& joint : offsets.q) joint = allot();
+    offsets.mask = {allot(), free};
   }
 }
 
 void SrsLattice::lay_out_start(LayerNodes& out) const {
-  const int label = label_of(start_->slot), n = out.count_;
-  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(label)];
+  const int sheet = sheet_of(start_->slot), n = out.count_;
+  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
   offsets.alive = true;
   std::size_t used = 2 * static_cast<std::size_t>(n);
   for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
     offsets.q[j] = used;
     std::fill_n(out.data_.data() + used, n, start_->node[static_cast<Eigen::Index>(j)]);
   }
-  offsets.bar[0] = used;
-  double* const bar = out.data_.data() + used;
-  std::fill_n(bar, n, std::numeric_limits<double>::infinity());
+  offsets.mask[0] = used;
+  double* const mask = out.data_.data() + used;
+  std::fill_n(mask, n, std::numeric_limits<double>::infinity());
   if (fault(0, start_->slot).status != NodeStatus::kValid) return;
-  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_) bar[k] = 0;
+  for (int k = wrapped_index(static_cast<long long>(angle_of(start_->slot)) - out.first_, angles_); k < n; k += angles_)
+    mask[k] = 0;
+}
+
+TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const {
+  TripleTask task;
+  const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
+  for (std::size_t row = 0; row < 5; ++row)
+    for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
+  task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
+  task.least_sine = kSingularSine;
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Images& images = images_[static_cast<std::size_t>(triple == 0 ? kShoulderJoints : kWristJoints) + j];
+    task.base[j] = images.base;
+    task.upper[j] = windings_ == 1 ? images.upper : std::numeric_limits<double>::infinity();
+  }
+  return task;
 }
 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
   if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
   const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
-  const int first_label = elbow ? kElbowBit * windings_ : 0;
+  const int first_sheet = elbow ? kElbowBit * windings_ : 0;
   double* const data = out.data_.data();
-  // Of the first winding: the images 0.
-  const std::array<LayerNodes::Offsets*, 2> sign{&out.offsets_[static_cast<std::size_t>(first_label)],
-                                                 &out.offsets_[static_cast<std::size_t>(first_label + 3 * windings_)]};
-  static_assert((kShoulderBit | kWristBit) == 3);
-  const bool shares_bars = windings_ == 1;
-  std::vector<double> unlimited;  // bars of singularity alone, where the limits are each winding's own
-  if (!shares_bars) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
+  const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[static_cast<std::size_t>(elbow)];
+  const bool shares_masks = windings_ == 1;
+  std::vector<double> unlimited;  // masks of singularity alone, where the limits are each winding's own
+  if (!shares_masks) unlimited.resize(static_cast<std::size_t>(4 * (end - begin)));
   for (int triple = 0; triple < 2; ++triple) {
     const int joint0 = triple == 0 ? kShoulderJoints : kWristJoints;
-    TripleTask task;
-    const TripleCircle& m = triple == 0 ? circle.shoulder : circle.wrist;
-    for (std::size_t row = 0; row < 5; ++row)
-      for (std::size_t column = 0; column < 3; ++column) task.m[row][column] = m[row][column];
-    task.shift = triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift;
-    task.least_sine = kSingularSine;
+    TripleTask task = triple_task(circle, triple);
     task.n = end - begin;
     task.sin_phi = sine_.data() + out.first_ + begin;
     task.cos_phi = cosine_.data() + out.first_ + begin;
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Images& images = images_[static_cast<std::size_t>(joint0) + j];
-      task.base[j] = images.base;
-      task.upper[j] = shares_bars ? images.upper : std::numeric_limits<double>::infinity();
-      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s]->q[static_cast<std::size_t>(joint0) + j] + begin;
-    }
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t s = 0; s < 2; ++s) task.q[s][j] = data + sign[s].q[static_cast<std::size_t>(joint0) + j] + begin;
     for (std::size_t s = 0; s < 2; ++s)
-      task.bar[s] = shares_bars ? data + sign[s]->bar[static_cast<std::size_t>(triple)] + begin
-                                : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
+      task.mask[s] = shares_masks
+                         ? data + sign[s].mask[static_cast<std::size_t>(triple)] + begin
+                         : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
     circle_kernels().solve_triple(task);
   }
-  std::fill(data + sign[0]->q[kElbowJoint] + begin, data + sign[0]->q[kElbowJoint] + end,
+  std::fill(data + sign[0].q[kElbowJoint] + begin, data + sign[0].q[kElbowJoint] + end,
             image_from(circle.q4, images_[kElbowJoint].base));
-  if (shares_bars) return;
-
   const std::size_t n = static_cast<std::size_t>(out.count_);
-  for (std::size_t s = 0; s < 2; ++s)
+  for (std::size_t s = 0; s < 2 && !shares_masks; ++s)
     for (std::size_t j = 0; j < kDof; ++j)
       for (std::size_t image = 1; image < static_cast<std::size_t>(images_[j].count); ++image) {
-        const double* from = data + sign[s]->q[j];
-        double* to = data + sign[s]->q[j] + image * n;
+        const double* from = data + sign[s].q[j];
+        double* to = data + sign[s].q[j] + image * n;
         for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
       }
+  for (int sheet = first_sheet; sheet < first_sheet + 4 * windings_ && out.layout_.moved; ++sheet)
+    if (out.layout_.moved >> (sheet / windings_) & 1) copy_shared(sheet, begin, end, out);
   const auto length = static_cast<std::size_t>(end - begin);
-  for (int label = first_label; label < first_label + 4 * windings_; ++label) {
-    const int branch = label / windings_;
+  for (int sheet = first_sheet; sheet < first_sheet + 4 * windings_ && !shares_masks; ++sheet) {
+    const int branch = sheet / windings_;
     const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
     const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
-    double* bar = data + out.offsets_[static_cast<std::size_t>(label)].bar[0] + begin;
+    double* mask = data + out.offsets_[static_cast<std::size_t>(sheet)].mask[0] + begin;
     for (std::size_t k = 0; k < length; ++k) {
       double excess = shoulder[k] + wrist[k];
       for (int j = 0; j < kDof; ++j)
         excess =
-            std::max(excess, out.q(label, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
-      bar[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
+            std::max(excess, out.q(sheet, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
+      mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
+    }
+  }
+  for (const Moved& moved : this->moved(out.layer_)) {
+    const int sheet = sheet_of(moved.slot);
+    if (family_of(sheet) != elbow) continue;
+    const LayerNodes::Offsets& own = out.at(sheet);
+    for (int k = wrapped_index(static_cast<long long>(angle_of(moved.slot)) - out.first_, angles_); k < end; k += angles_) {
+      if (k < begin) continue;
+      for (std::size_t j = 0; j < kDof; ++j) data[own.q[j] + static_cast<std::size_t>(k)] = moved.q[static_cast<Eigen::Index>(j)];
+      data[own.mask[0] + static_cast<std::size_t>(k)] = 0;
     }
   }
 }
 
+void SrsLattice::copy_shared(int sheet, int begin, int end, LayerNodes& out) const {
+  const int branch = branch_of(sheet * angles_);
+  double* const data = out.data_.data();
+  const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[branch & kElbowBit ? 1 : 0];
+  const LayerNodes::Offsets &shoulder = sign[branch & kShoulderBit ? 1 : 0], &wrist = sign[branch & kWristBit ? 1 : 0];
+  const LayerNodes::Offsets& own = out.at(sheet);
+  for (int j = 0; j < kDof; ++j) {
+    const auto image = static_cast<std::size_t>(winding_images(sheet % windings_, j)) * static_cast<std::size_t>(out.count_);
+    const double* from = data + (j < kWristJoints ? shoulder : wrist).q[static_cast<std::size_t>(j)] + image;
+    std::copy(from + begin, from + end, data + own.q[static_cast<std::size_t>(j)] + begin);
+  }
+  if (windings_ > 1) return;  // each winding has a mask of its own
+  for (int k = begin; k < end; ++k)
+    data[own.mask[0] + static_cast<std::size_t>(k)] =
+        data[shoulder.mask[0] + static_cast<std::size_t>(k)] + data[wrist.mask[1] + static_cast<std::size_t>(k)];
+}
+
 std::optional<Config> SrsLattice::node(int layer, int slot) const {
-  LayerNodes nodes;
-  solve(layer, angle_of(slot), 1, nodes);
-  if (!nodes.valid(label_of(slot), 0)) return std::nullopt;
-  return nodes.config(label_of(slot), 0);
+  if (layer == 0 && start_) return fault(0, slot).status == NodeStatus::kValid ? std::optional(start_->node) : std::nullopt;
+  if (const Moved* moved = find_moved(layer, slot)) return moved->q;
+  const auto j = static_cast<std::size_t>(angle_of(slot));
+  return solved(layer, slot, sine_[j], cosine_[j]);
+}
+
+std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, double cosine) const {
+  const int branch = branch_of(slot), elbow = branch & kElbowBit ? 1 : 0;
+  if (!elbow_alive(layer, elbow)) return std::nullopt;
+  const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)];
+  Config q;
+  double excess = 0;
+  for (int triple = 0; triple < 2; ++triple) {
+    std::array<std::array<double, 3>, 2> joints;
+    std::array<double, 2> mask;
+    TripleTask task = triple_task(circle, triple);
+    task.n = 1;
+    task.sin_phi = &sine;
+    task.cos_phi = &cosine;
+    for (std::size_t s = 0; s < 2; ++s) {
+      for (std::size_t j = 0; j < 3; ++j) task.q[s][j] = &joints[s][j];
+      task.mask[s] = &mask[s];
+    }
+    circle_kernels().solve_triple(task);
+    const std::size_t sign = branch & (triple == 0 ? kShoulderBit : kWristBit) ? 1 : 0;
+    for (int j = 0; j < 3; ++j) q[(triple == 0 ? kShoulderJoints : kWristJoints) + j] = joints[sign][static_cast<std::size_t>(j)];
+    excess += mask[sign];
+  }
+  q[kElbowJoint] = image_from(circle.q4, images_[kElbowJoint].base);
+  if (windings_ > 1)
+    for (int j = 0; j < kDof; ++j) {
+      q[j] += kTwoPi * static_cast<double>(winding_images(sheet_of(slot) % windings_, j));
+      excess = std::max(excess, q[j] - images_[static_cast<std::size_t>(j)].upper);
+    }
+  return excess <= 0 ? std::optional(q) : std::nullopt;
 }
 
 std::optional<Config> SrsLattice::row(int layer, int slot, const Config& q) const {
@@ -410,7 +490,7 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   Config q = given ? start_->row : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
-  const int winding = label_of(slot) % windings_;
+  const int winding = sheet_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
     const double first = image_from(q[j], images.base), below = first - kTwoPi;
@@ -443,29 +523,42 @@ void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   solve(layer, nodes);
   out.clear();
   for (int slot = 0; slot < width(); ++slot)
-    if (nodes.valid(label_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(label_of(slot), angle_of(slot))});
+    if (nodes.valid(sheet_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(sheet_of(slot), angle_of(slot))});
 }
 
 int SrsLattice::beside(int, int slot, int by) const {
-  return label_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
+  return sheet_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
 }
 
 int SrsLattice::along(int layer, int slot, int by) const {
   return layer + by < 0 || layer + by >= layers() ? -1 : slot;
 }
 
-void SrsLattice::alike(int, int slot, unsigned groups, std::vector<int>& out) const {
+void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
   constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000;  // bit g: of group g
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
-  if (!stand_alike(groups)) return out.assign(1, slot);
   out.clear();
   const int signs =
       (groups & kShoulderLinks ? kShoulderBit : 0) | (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
-  for (int label = 0; label < labels(); ++label) {
-    if ((label / windings_ ^ branch_of(slot)) & signs) continue;
+  for (int sheet = 0; sheet < sheets(); ++sheet) {
+    if ((sheet / windings_ ^ branch_of(slot)) & signs) continue;
     const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
-    for (int j = first; j <= last; ++j) out.push_back(label * angles_ + j);
+    for (int j = first; j <= last; ++j) out.push_back(sheet * angles_ + j);
   }
+  if (all_angles || moved(layer).empty()) return;
+  const double angle = phi(layer, slot);  // cells move sheet by sheet
+  std::erase_if(out, [&](int other) { return phi(layer, other) != angle; });
+}
+
+PoseShift SrsLattice::row_shift(int layer, int group, const Config& q) const {
+  if (!row_shift_) return {};
+  return layer == 0 && start_ ? PoseShift::unknown(row_shift_->about(group)) : row_shift_->from_node(group, plane(layer).reach, q);
+}
+
+PoseShift SrsLattice::rows_apart(int layer, int group, const Config& q) const {
+  if (!row_shift_) return {};
+  return layer == 0 && start_ ? PoseShift::unknown(row_shift_->about(group))
+                              : row_shift_->between_rows(group, plane(layer).reach, q);
 }
 
 bool SrsLattice::families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const {
@@ -481,7 +574,7 @@ bool SrsLattice::step_error_allowed(int layer, int a, int b) const {
 }
 
 bool SrsLattice::in_window(int layer, int a, int b) const {
-  if (layer == 0 && start_) return std::abs(wrap_angle(phi(1, b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
+  if (layer == 0 && start_) return std::abs(wrap_angle(cell_angle(b) - start_->phi)) <= window_ * kTwoPi / angles_ + 1e-9;
   const int apart = std::abs(angle_of(a) - angle_of(b));
   return std::min(apart, angles_ - apart) <= window_;
 }
@@ -496,8 +589,8 @@ SrsLattice::Run SrsLattice::grid_run(double phi_from) const {
 void SrsLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
   const Run run = run_after(layer, a);
   out.clear();
-  for (int label = 0; label < labels(); ++label) {
-    const int zero = label * angles_, end = run.first + run.count;
+  for (int sheet = 0; sheet < sheets(); ++sheet) {
+    const int zero = sheet * angles_, end = run.first + run.count;
     out.push_back({zero + run.first, zero + std::min(end, angles_)});
     if (end > angles_) out.push_back({zero, zero + end - angles_});
   }

@@ -72,7 +72,8 @@ class Piece {
     speed_.assign(n_, 0);
     const auto r = [](double limit, double value) { return value > 0 ? limit / value : kInfinity; };
     filter_ = 0;
-    for (int j = 0; j < kDof; ++j) filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
+    for (int j = 0; j < kDof; ++j)
+      if (std::isfinite(rates.acceleration[j])) filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
     filter_ = std::max(filter_, 1e-4);
     for (std::size_t k = 0; k < n_; ++k) {
       const Place& place = places_[k];
@@ -163,6 +164,10 @@ class Piece {
   }
   /// Slower as a whole.
   void stretch(double factor) { stretch_ *= factor; }
+  /// By factors of speeds and of accelerations along the path, one for each place; plan() again then.
+  void slow_down(const std::vector<double>& slower, const std::vector<double>& gentler) {
+    for (std::size_t k = 0; k < n_; ++k) slower_[k] *= slower[k], gentler_[k] *= gentler[k];
+  }
   [[nodiscard]] const Brake& brake(std::size_t node) const { return brake_[node]; }
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 
@@ -229,7 +234,7 @@ class Piece {
   /// The factor by which the motion as a whole would have to be slower. Where a joint is beyond its rates, what lies within the
   /// filter's window is slowed down: the speed where the path's own bends are the reason, else the acceleration along it; both
   /// where that takes too many rounds.
-  double verify(bool both, bool slow_down) {
+  double verify(bool both, bool may_slow_down) {
     constexpr double kLeast = 0.5, kPath = 0.4;
     std::vector<double> slower(n_, 1), gentler(n_, 1);
     double worst = 1;
@@ -267,8 +272,7 @@ class Piece {
         gentler[k] = std::min(gentler[k], std::max(kLeast, along));
       }
     }
-    if (!slow_down) return worst;
-    for (std::size_t k = 0; k < n_; ++k) slower_[k] *= slower[k], gentler_[k] *= gentler[k];
+    if (may_slow_down) slow_down(slower, gentler);
     return worst;
   }
 
@@ -418,31 +422,61 @@ class Samples {
     return std::nullopt;
   }
 
-  /// The factor by which the motion would have to be slower.
-  double measure_peaks(TimedPath& out) const {
+  struct Excess {
+    double by = 1;  ///< the factor by which the motion would have to be slower
+    double s = 0;   ///< where, m along the path
+  };
+  Excess measure_peaks(TimedPath& out) const {
     const auto n = static_cast<long long>(out.rows.size());
-    const double dt = 1 / options_->rate;
-    const auto q = [&](long long k) -> const Config& {
-      return out.rows[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))].row.q;
-    };
-    double slower = 1;
+    Excess worst;
     out.peaks = {};
-    for (long long k = -1; k < n + 2; ++k) {
-      const Config step = q(k) - q(k - 1);
-      const Config differences[3] = {step / dt, (step - (q(k - 1) - q(k - 2))) / (dt * dt),
-                                     (step - 2 * (q(k - 1) - q(k - 2)) + (q(k - 2) - q(k - 3))) / (dt * dt * dt)};
+    for (long long k = -1; k < n + 2; ++k)
       for (int order = 0; order < 3; ++order)
         for (int j = 0; j < kDof; ++j) {
-          const double limit = (order == 0 ? rates_->speed : order == 1 ? rates_->acceleration : rates_->jerk)[j];
-          const double ratio = std::abs(differences[order][j]) / limit;
+          const double ratio = ratio_at(out, k, order, j);
           TimedPath::Peak& peak = out.peaks[static_cast<std::size_t>(order)][static_cast<std::size_t>(j)];
           if (ratio <= peak.ratio) continue;
           const TimedRow& row = out.rows[static_cast<std::size_t>(std::clamp(k - order / 2 - (order > 0 ? 1 : 0), 0LL, n - 1))];
           peak = {ratio, j, row.t, row.row.s};
-          slower = std::max(slower, order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio));
+          if (const double by = slower_by(ratio, order); by > worst.by) worst = {by, row.row.s};
         }
+    return worst;
+  }
+
+  /// Slows down where differences between samples are beyond the rates: at corners they are more than the places tell.
+  void slow_down(const TimedPath& out) {
+    constexpr double kLeast = 0.5;
+    const auto n = static_cast<long long>(out.rows.size());
+    std::vector<std::vector<double>> slower, gentler;
+    for (const Piece& piece : *pieces_) slower.emplace_back(piece.places().size(), 1), gentler.push_back(slower.back());
+    std::vector<bool> changed(pieces_->size(), false);
+    for (long long k = -1; k < n + 2; ++k) {
+      double speed = 1, pull = 1;
+      for (int order = 0; order < 3; ++order)
+        for (int j = 0; j < kDof; ++j)
+          if (const double ratio = ratio_at(out, k, order, j); ratio > 1) {
+            speed = std::min(speed, std::max(kLeast, 0.995 / slower_by(ratio, order)));
+            if (order > 0) pull = std::min(pull, std::max(kLeast, 0.98 / ratio));
+          }
+      if (speed == 1) continue;
+      const Asked &from = asked_[static_cast<std::size_t>(std::clamp(k - 3, 0LL, n - 1))],
+                  &to = asked_[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))];
+      for (const Asked* at : {&from, &to}) {
+        auto &speeds = slower[at->piece], &pulls = gentler[at->piece];
+        const std::size_t first = at->piece == from.piece ? from.node : 0,
+                          last = at->piece == to.piece ? to.node : speeds.size() - 1;
+        for (std::size_t place = first > 0 ? first - 1 : 0; place <= std::min(last + 1, speeds.size() - 1); ++place) {
+          speeds[place] = std::min(speeds[place], speed);
+          pulls[place] = std::min(pulls[place], pull);
+        }
+        changed[at->piece] = true;
+      }
     }
-    return slower;
+    for (std::size_t p = 0; p < pieces_->size(); ++p) {
+      if (!changed[p]) continue;
+      (*pieces_)[p].slow_down(slower[p], gentler[p]);
+      (*pieces_)[p].plan(*budget_);
+    }
   }
 
   void measure_between(TimedPath& out) const {
@@ -485,6 +519,19 @@ class Samples {
     std::size_t piece = 0, node = 0;
   };
 
+  /// The difference of some order that ends at sample k, at rest before the first and after the last, by what the joint can do.
+  [[nodiscard]] double ratio_at(const TimedPath& out, long long k, int order, int j) const {
+    const auto n = static_cast<long long>(out.rows.size());
+    const double dt = 1 / options_->rate;
+    const auto q = [&](long long i) { return out.rows[static_cast<std::size_t>(std::clamp(i, 0LL, n - 1))].row.q[j]; };
+    const double step = q(k) - q(k - 1);
+    if (order == 0) return std::abs(step / dt) / rates_->speed[j];
+    const double before = q(k - 1) - q(k - 2);
+    if (order == 1) return std::abs((step - before) / (dt * dt)) / rates_->acceleration[j];
+    return std::abs((step - 2 * before + (q(k - 2) - q(k - 3))) / (dt * dt * dt)) / rates_->jerk[j];
+  }
+  static double slower_by(double ratio, int order) { return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio); }
+
   /// Speeds and accelerations of a row by differences over a few milliseconds.
   bool differ(const Piece& piece, Piece::Walk& walk, double t, TimedRow& row) const {
     constexpr double kStep = 1e-3, kLeast = 1e-4;  // s
@@ -523,15 +570,8 @@ class Samples {
     slow.share = at.share;
     slow.joint = std::max(brake.joint, 0);
     slow.reason = brake.rate;
-    const SrsArm& arm = motion_->arm();
-    const Config& q = out.rows[lowest].row.q;
-    const std::pair<const char*, double> angles[] = {
-        {"shoulder", arm.shoulder_angle(q)}, {"elbow", arm.elbow_angle(q)}, {"wrist", arm.wrist_angle(q)}};
-    double nearest = 0.3;
-    for (const auto& [name, angle] : angles) {
-      const double from_singular = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));
-      if (from_singular < nearest) nearest = from_singular, slow.singular = name, slow.singular_angle = from_singular;
-    }
+    const auto singular = motion_->nearest_singular(out.rows[lowest].row.q);
+    if (singular && singular->angle < 0.3) slow.singular = singular->where, slow.singular_angle = singular->angle;
     out.slow.push_back(std::move(slow));
   }
 
@@ -560,6 +600,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   const ToolPath& path = motion.path();
   TimedPath out;
   out.rate = options.rate;
+  out.roll = motion.chain().roll;
   std::vector<double> rests{0};
   std::vector<int> at;
   for (const ToolPath::Corner& corner : path.corners()) {
@@ -583,12 +624,21 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
     out.ideal += pieces.back().ideal();
   }
   Samples samples(motion, rates, options, pieces, budget);
-  for (int round = 0; round < 20; ++round) {
+  constexpr int kLocalRounds = 12, kRounds = 32;
+  constexpr double kJump = 100;  // so much slower is not slower, but jumps in the joints that were not seen
+  for (int round = 1;; ++round) {
     result.failure = samples.take(out);
     if (result.failure) return result;
-    const double slower = samples.measure_peaks(out);
+    const auto [slower, worst] = samples.measure_peaks(out);
     if (slower <= 1) break;
-    for (Piece& piece : pieces) piece.stretch(slower * (1 + 1e-6));
+    if (round == kRounds || slower > kJump) {
+      result.failure = NoMotion{worst, "the joints would have to jump between layers"};
+      return result;
+    }
+    if (round <= kLocalRounds)
+      samples.slow_down(out);
+    else
+      for (Piece& piece : pieces) piece.stretch(slower * (1 + 1e-6));
   }
   double t = 0;
   for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {

@@ -58,14 +58,14 @@ std::vector<Timeline::Event> Timeline::events() const {
   return all;
 }
 
-void Span::begin(const char* name) {
+void TraceSpan::begin(const char* name) {
   const Timeline* const timeline = Timeline::active();
   if (timeline == nullptr) return;
   event_.name = name;
   event_.begin_ns = timeline->now();
 }
 
-void Span::end() {
+void TraceSpan::end() {
   Timeline* const timeline = Timeline::active();
   if (timeline == nullptr) return;
   event_.end_ns = timeline->now();

@@ -87,7 +87,7 @@ struct Visitor : boost::default_astar_visitor {
 }  // namespace
 
 SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
-  const Span span("best path");
+  const TraceSpan span("best path");
   if (cost_to_go.best() == kUnreachable) return {};
   const ImplicitLattice graph(cost_to_go);
   Records records;

@@ -16,6 +16,10 @@ bool CostToGo::restart(const Budget& budget) {
 
 void CostToGo::save_unremoved() {
   if (unremoved_ != Unremoved::kPresent) return;
+  if (!restarts_) {
+    unremoved_ = Unremoved::kUnknown;
+    return;
+  }
   save();
   unremoved_ = Unremoved::kSaved;
 }

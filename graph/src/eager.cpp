@@ -2,7 +2,6 @@
 #include "swivel/graph/eager.hpp"
 
 #include <algorithm>
-#include <boost/graph/astar_search.hpp>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <boost/iterator/transform_iterator.hpp>
@@ -43,7 +42,7 @@ struct PollingEdges {
 };
 
 Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
-  const Span span("all edges");
+  const TraceSpan span("all edges");
   Built built;
   std::size_t vertices = 1;
   for (const auto& layer : valid.layers) {
@@ -96,26 +95,6 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
   return built;
 }
 
-/// Stops once every vertex that can lie on an optimal path has its final distance.
-struct OptimumKnown {};
-struct AStarVisitor : boost::default_astar_visitor {
-  const Built* built;
-  const std::vector<double>* distance;
-  double* optimum;
-  std::int64_t* expansions;
-  const Budget* budget;
-  AStarVisitor(const Built* b, const std::vector<double>* d, double* o, std::int64_t* e, const Budget* w)
-      : built(b), distance(d), optimum(o), expansions(e), budget(w) {}
-  void examine_vertex(Vertex v, const Graph&) const {
-    if (++*expansions % 256 == 0) budget->poll();
-    if (v == 0) return;
-    const std::size_t layer = built->layer_of(v);
-    const double total = (*distance)[v] + built->least_before[layer];
-    if (total > *optimum) throw OptimumKnown{};
-    if (layer == 0) *optimum = std::min(*optimum, (*distance)[v]);
-  }
-};
-
 /// Polls as a search goes.
 struct PollingVisitor : boost::default_dijkstra_visitor {
   const Budget* budget;
@@ -126,31 +105,16 @@ struct PollingVisitor : boost::default_dijkstra_visitor {
   }
 };
 
-std::vector<double> costs_to_go(const Built& built, EagerSearch search, const Budget& budget, EagerOutcome& outcome) {
-  const Span span("graph search");
-  const Graph& graph = built.graph;
+std::vector<double> costs_to_go(const Graph& graph, const Budget& budget, EagerOutcome& outcome) {
+  const TraceSpan span("graph search");
   std::vector<double> distance(num_vertices(graph), kUnreachable);
   const auto index = get(boost::vertex_index, graph);
-  const auto distance_map = boost::make_iterator_property_map(distance.begin(), index);
-  const auto weight = get(&EdgeCost::cost, graph);
-  if (search == EagerSearch::kDijkstra) {
-    boost::dijkstra_shortest_paths(
-        graph, Vertex{0},
-        boost::weight_map(weight).distance_map(distance_map).distance_inf(kUnreachable).visitor(PollingVisitor(&budget)));
-    outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
-    return distance;
-  }
-  double optimum = kUnreachable;
-  // From the last layer back: what is left is at least the cheapest edge of every layer before.
-  const auto heuristic = [&](Vertex v) { return v == 0 ? built.least_before.back() : built.least_before[built.layer_of(v)]; };
-  try {
-    boost::astar_search(graph, Vertex{0}, heuristic,
-                        boost::weight_map(weight)
-                            .distance_map(distance_map)
-                            .distance_inf(kUnreachable)
-                            .visitor(AStarVisitor(&built, &distance, &optimum, &outcome.expansions, &budget)));
-  } catch (const OptimumKnown&) {
-  }
+  boost::dijkstra_shortest_paths(graph, Vertex{0},
+                                 boost::weight_map(get(&EdgeCost::cost, graph))
+                                     .distance_map(boost::make_iterator_property_map(distance.begin(), index))
+                                     .distance_inf(kUnreachable)
+                                     .visitor(PollingVisitor(&budget)));
+  outcome.expansions = static_cast<std::int64_t>(num_vertices(graph)) - 1;
   return distance;
 }
 
@@ -195,10 +159,10 @@ std::optional<int> deepest_layer(const Built& built, const ValidNodes& valid, co
 
 }  // namespace
 
-void eager_search(const Lattice& lattice, Validity& validity, EagerSearch search, const Budget& budget, EagerOutcome& outcome) {
+void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome) {
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   const Built built = build(lattice, valid, validity, budget, outcome);
-  const std::vector<double> distance = costs_to_go(built, search, budget, outcome);
+  const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);
   outcome.path = extract(built, valid, distance, outcome.cost);
   if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid, budget);
 }

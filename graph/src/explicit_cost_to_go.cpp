@@ -90,7 +90,7 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
   return best;
 }
 
-void ExplicitCostToGo::settle(int layer, Values& out) {
+void ExplicitCostToGo::solve_layer(int layer, Values& out) {
   const int count = lattice_->slots(layer);
   if (layer == goal_)
     out.assign(static_cast<std::size_t>(count), 0.0);
@@ -109,7 +109,7 @@ void ExplicitCostToGo::settle(int layer, Values& out) {
 }
 
 void ExplicitCostToGo::compute(int goal_layer) {
-  const Span span("sweep");
+  const TraceSpan span("sweep");
   verdicts_.pending.clear();
   for (int layer = lattice_->layers() - 1; layer > goal_layer; --layer) {
     Values& values = value_[static_cast<std::size_t>(layer)];
@@ -117,12 +117,12 @@ void ExplicitCostToGo::compute(int goal_layer) {
   }
   for (int layer = goal_layer; layer >= 0; --layer) {
     budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
-    settle(layer, value_[static_cast<std::size_t>(layer)]);
+    solve_layer(layer, value_[static_cast<std::size_t>(layer)]);
   }
 }
 
 void ExplicitCostToGo::compute_removals() {
-  const Span span("repair");
+  const TraceSpan span("repair");
   bool changed = false;  // the layer after
   Values settled;
   for (int layer = goal_; layer >= 0 && (changed || !verdicts_.pending.empty()); --layer) {
@@ -130,7 +130,7 @@ void ExplicitCostToGo::compute_removals() {
     if (!changed && verdicts_.pending.rbegin()->first < layer) continue;
     if (!verdicts_.pending.empty() && verdicts_.pending.rbegin()->first >= layer)
       verdicts_.pending.erase(verdicts_.pending.lower_bound(layer), verdicts_.pending.end());
-    settle(layer, settled);
+    solve_layer(layer, settled);
     Values& values = value_[static_cast<std::size_t>(layer)];
     changed = settled != values;
     values.swap(settled);
@@ -143,7 +143,7 @@ double ExplicitCostToGo::best() const {
 }
 
 int ExplicitCostToGo::deepest_reachable() {
-  const Span span("reach");
+  const TraceSpan span("reach");
   Values before(value_.front().size(), 0.0), here;
   for (int layer = 0;; ++layer) {
     budget_.poll();

@@ -36,7 +36,7 @@ class ExplicitCostToGo final : public CostToGo {
   [[nodiscard]] double relax_one(int layer, int slot);
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before);
   /// Values of a layer from those of the next, removals left out.
-  void settle(int layer, Values& out);
+  void solve_layer(int layer, Values& out);
   [[nodiscard]] bool removed(int layer, int slot) const { return verdicts_.node(layer, slot) == Verdict::kRemoved; }
 
   const Lattice* lattice_;

@@ -1,76 +1,77 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "grid_parts.hpp"
+#include "grid_tiles.hpp"
 #include "kernels/relax.hpp"
 
 namespace swivel {
 
-void GridCostToGo::clear(int layer, Block& block) {
+void GridCostToGo::begin_layer(int layer, Workspace& workspace) {
   const int n = lattice_->angles(), length = n + 2 * lattice_->window();
-  for (const int label : block.labels) {
-    const auto row = block.value.begin() + static_cast<std::ptrdiff_t>(label) * length;
+  for (const int sheet : workspace.sheets) {
+    const auto row = workspace.value.begin() + static_cast<std::ptrdiff_t>(sheet) * length;
     std::fill(row, row + length, kUnreachable);
   }
-  block.labels.clear();
-  block.layer = layer;
-  block.joints = &joints(layer, block);
-  block.parts.clear();
-  for (Marks& reached : block.reached) reached.assign(static_cast<std::size_t>(chunks()), 0);
+  workspace.sheets.clear();
+  workspace.layer = layer;
+  workspace.joints = &joints(layer, workspace);
+  workspace.tiles.clear();
+  for (ColumnSet& reached : workspace.reached) reached.assign(static_cast<std::size_t>(tile_columns()), 0);
 }
 
-void GridCostToGo::mark_reach(int step_layer, const Block& to, Block& from) {
+void GridCostToGo::reach_back(int step_layer, const Workspace& to, Workspace& from) {
   for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    const int first_label = family * lattice_->labels() / 2;
-    if (!from.nodes().alive(first_label)) continue;  // all of a family's labels, or none
+    const int first_sheet = family * lattice_->sheets() / 2;
+    if (!from.nodes().alive(first_sheet)) continue;  // all of a family's sheets, or none
     const std::array<bool, 2> reaches{lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 0),
                                       lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 1)};
     columns_.clear();
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      const auto c = static_cast<std::size_t>(chunk);
-      if ((reaches[0] && to.reached[0][c]) || (reaches[1] && to.reached[1][c])) columns_.push_back(chunk);
+    for (int column = 0; column < tile_columns(); ++column) {
+      const auto c = static_cast<std::size_t>(column);
+      if ((reaches[0] && to.reached[0][c]) || (reaches[1] && to.reached[1][c])) columns_.push_back(column);
     }
     for (std::size_t k = 0, next = 0; k < columns_.size(); k = next) {
       for (next = k + 1; next < columns_.size() && columns_[next] == columns_[next - 1] + 1;) ++next;
-      want(*from.joints, family, columns_[k], columns_[next - 1] + 1);
+      solve_columns(*from.joints, family, columns_[k], columns_[next - 1] + 1);
     }
-    for (int label = first_label; label < first_label + lattice_->labels() / 2; ++label)
-      for (const int chunk : columns_) from.parts.push_back({label, chunk});
+    for (int sheet = first_sheet; sheet < first_sheet + lattice_->sheets() / 2; ++sheet)
+      for (const int column : columns_) from.tiles.push_back({sheet, column});
   }
 }
 
-bool GridCostToGo::may_meet(int step_layer, const Middles& a, const Middles& b) const {
+bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const {
   const Config& bound = lattice_->step_bound(step_layer);
-  for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) {
-    const int joint = Middles::kJoints[m];
+  for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
+    const int joint = MiddleRanges::kJoints[m];
     if (!lattice_->continuous()[static_cast<std::size_t>(joint)] && a.joint[m].gap(b.joint[m]) > bound[joint]) return false;
   }
   return true;
 }
 
-bool GridCostToGo::may_connect(int step_layer, const Block& from, int label, int chunk, const Block& to, int other) const {
-  const Middles& own_middles = from.joints->of_chunk[mark(label, chunk)];
-  if (!may_meet(step_layer, own_middles, to.joints->of_layer[static_cast<std::size_t>(other)])) return false;
-  const Block::Near& near = to.near[mark(other, chunk)];
+bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to, int other) const {
+  const MiddleRanges& own_ranges = from.joints->of_tile[tile_of_layer(sheet, column)];
+  if (!may_meet(step_layer, own_ranges, to.joints->of_layer[static_cast<std::size_t>(other)])) return false;
+  const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
-  const auto theirs = [&](int joint) { return Interval(to.nodes().q(other, joint), value, near.first, near.last + 1); };
-  if (near.middles.joint[0].empty())
-    for (std::size_t m = 0; m < Middles::kJoints.size(); ++m) near.middles.joint[m] = theirs(Middles::kJoints[m]);
-  if (!may_meet(step_layer, own_middles, near.middles)) return false;
-  // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart. Continuous
-  // joints have no plain interval.
-  const int begin = lattice_->window() + chunk * kChunk, count = std::min(kChunk, lattice_->angles() - chunk * kChunk);
-  const bool one_family = lattice_->family_of(label) == lattice_->family_of(other);
+  const auto theirs = [&](int joint) { return JointRange(to.nodes().q(other, joint), value, windows.first, windows.last + 1); };
+  if (windows.ranges.joint[0].empty())
+    for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) windows.ranges.joint[m] = theirs(MiddleRanges::kJoints[m]);
+  if (!may_meet(step_layer, own_ranges, windows.ranges)) return false;
+  // Window a singular pose the outer joints of the triple must meet as well. LayerJoints of several turns tell windings apart.
+  // Continuous joints have no plain interval.
+  const int begin = lattice_->window() + column * kTileWidth,
+            count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
+  const bool one_family = lattice_->family_of(sheet) == lattice_->family_of(other);
   for (const int joint : SrsLattice::kOuterJoints) {
-    const bool shared = one_family && from.nodes().q(label, joint) == from.nodes().q(other, joint);  // tells nothing apart
+    const bool shared = one_family && from.nodes().q(sheet, joint) == from.nodes().q(other, joint);  // tells nothing apart
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
-    const Interval own(from.nodes().q(label, joint) + begin, count);
+    const JointRange own(from.nodes().q(sheet, joint) + begin, count);
     if (own.gap(theirs(joint)) > lattice_->step_bound(step_layer)[joint]) return false;
   }
   return true;
 }
 
-void GridCostToGo::relax_run(int step_layer, const Block& from, int label, int first, int count, const Block& to, int other,
+void GridCostToGo::relax_run(int step_layer, const Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
                              double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
   RelaxTask<double> task;
@@ -85,7 +86,7 @@ void GridCostToGo::relax_run(int step_layer, const Block& from, int label, int f
     task.turn[j] = turns ? kTwoPi : 0;
     task.scale[j] = lattice_->cost_scale()[static_cast<std::size_t>(j)];
     task.bound[j] = bound[j];
-    task.from[j] = from.nodes().q(label, j) + window + first;
+    task.from[j] = from.nodes().q(sheet, j) + window + first;
     task.to[j] = to.nodes().q(other, j) + first;
   }
   task.unit = lattice_->cost_unit();
@@ -95,78 +96,79 @@ void GridCostToGo::relax_run(int step_layer, const Block& from, int label, int f
   relax_kernels().relax(task);
 }
 
-void GridCostToGo::relax(int step_layer, Block& from, const Block& to) {
+void GridCostToGo::relax(int step_layer, Workspace& from, const Workspace& to) {
   const int n = lattice_->angles();
-  for (const Part& part : from.parts) {
-    double* const row = from.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
-    std::fill(row + part.begin(), row + part.end(n), kUnreachable);
+  for (const Tile& tile : from.tiles) {
+    double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
+    std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
   }
-  for (std::size_t first = 0, last = 0; first < from.parts.size(); first = last) {
+  for (std::size_t first = 0, last = 0; first < from.tiles.size(); first = last) {
     budget_.poll();
-    const int label = from.parts[first].label;
-    while (last < from.parts.size() && from.parts[last].label == label) ++last;
-    for (const int other : to.labels) {
-      if (label != other && (!lattice_->families_may_connect(step_layer, from.layer, lattice_->family_of(label), to.layer,
+    const int sheet = from.tiles[first].sheet;
+    while (last < from.tiles.size() && from.tiles[last].sheet == sheet) ++last;
+    for (const int other : to.sheets) {
+      if (sheet != other && (!lattice_->families_may_connect(step_layer, from.layer, lattice_->family_of(sheet), to.layer,
                                                              lattice_->family_of(other)) ||
-                             !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(label)],
+                             !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(sheet)],
                                        to.joints->of_layer[static_cast<std::size_t>(other)])))
         continue;
-      int begin = 0, end = 0;  // a run of chunks
-      const auto relax_chunks = [&] {
+      int begin = 0, end = 0;  // a run of columns
+      const auto relax_columns = [&] {
         if (begin == end) return;
-        const int stop = std::min(n, end * kChunk), start = std::max(0, std::min(begin * kChunk, stop - kChunk));  // whole vectors
-        relax_run(step_layer, from, label, start, stop - start, to, other, from.row.data() + label * n + start);
+        const int stop = std::min(n, end * kTileWidth),
+                  start = std::max(0, std::min(begin * kTileWidth, stop - kTileWidth));  // whole vectors
+        relax_run(step_layer, from, sheet, start, stop - start, to, other, from.row.data() + sheet * n + start);
       };
       for (std::size_t k = first; k < last; ++k) {
-        Part& part = from.parts[k];
-        if (to.near[mark(other, part.chunk)].last < 0 ||
-            (label != other && !may_connect(step_layer, from, label, part.chunk, to, other)))
+        Tile& tile = from.tiles[k];
+        if (to.windows[tile_of_layer(other, tile.column)].last < 0 ||
+            (sheet != other && !may_connect(step_layer, from, sheet, tile.column, to, other)))
           continue;
-        part.live = true;
-        if (part.chunk != end) {
-          relax_chunks();
-          begin = part.chunk;
+        tile.live = true;
+        if (tile.column != end) {
+          relax_columns();
+          begin = tile.column;
         }
-        end = part.chunk + 1;
+        end = tile.column + 1;
       }
-      relax_chunks();
+      relax_columns();
     }
   }
 }
 
-void GridCostToGo::settle(Block& block) {
+void GridCostToGo::publish_values(Workspace& workspace) {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
   std::size_t kept = 0;
-  for (const Part& part : block.parts) {
-    if (!part.live) continue;
-    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
-    double* value = block.value.data() + static_cast<std::ptrdiff_t>(part.label) * length;
-    Block::Near* near = block.near.data() + mark(part.label, 0);
-    Marks& reached = block.reached[static_cast<std::size_t>(lattice_->family_of(part.label))];
-    int first = part.begin(), last = part.end(n) - 1;
+  for (const Tile& tile : workspace.tiles) {
+    if (!tile.live) continue;
+    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
+    double* value = workspace.value.data() + static_cast<std::ptrdiff_t>(tile.sheet) * length;
+    Workspace::Window* windows = workspace.windows.data() + tile_of_layer(tile.sheet, 0);
+    ColumnSet& reached = workspace.reached[static_cast<std::size_t>(lattice_->family_of(tile.sheet))];
+    int first = tile.begin(), last = tile.end(n) - 1;
     while (first <= last && row[first] == kUnreachable) ++first;
     while (first <= last && row[last] == kUnreachable) --last;
     if (first > last) continue;
-    block.parts[kept++] = part;
-    if (block.labels.empty() || block.labels.back() != part.label) {
-      std::fill(near, near + chunks(), Block::Near{length, -1, {}});
-      block.labels.push_back(part.label);
+    workspace.tiles[kept++] = tile;
+    if (workspace.sheets.empty() || workspace.sheets.back() != tile.sheet) {
+      std::fill(windows, windows + tile_columns(), Workspace::Window{length, -1, {}});
+      workspace.sheets.push_back(tile.sheet);
     }
     std::copy(row + first, row + last + 1, value + window + first);
     for (const int turn : {0, n, -n}) {
       const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
       if (low > high) continue;
       if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
-      // The window of chunk c is at the padded positions c * kChunk ... c * kChunk + kChunk - 1 + 2 * window.
-      const int begin = std::max(0, low - 2 * window) / kChunk, end = std::min(chunks() - 1, high / kChunk);
+      // The window of column c is at the padded positions c * kTileWidth ... c * kTileWidth + kTileWidth - 1 + 2 * window.
+      const int begin = std::max(0, low - 2 * window) / kTileWidth, end = std::min(tile_columns() - 1, high / kTileWidth);
       for (int c = begin; c <= end; ++c) {
-        near[c].first = std::min(near[c].first, std::max(low, c * kChunk));
-        near[c].last = std::max(near[c].last, std::min(high, c * kChunk + kChunk - 1 + 2 * window));
+        windows[c].first = std::min(windows[c].first, std::max(low, c * kTileWidth));
+        windows[c].last = std::max(windows[c].last, std::min(high, c * kTileWidth + kTileWidth - 1 + 2 * window));
         reached[static_cast<std::size_t>(c)] = 1;
       }
     }
   }
-  block.parts.resize(kept);
+  workspace.tiles.resize(kept);
 }
 
 }  // namespace swivel

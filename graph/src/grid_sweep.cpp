@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "grid_parts.hpp"
+#include "grid_tiles.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -23,94 +23,91 @@ void each(int count, const F& f) {
 }  // namespace
 
 GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
-    : CostToGo(lattice, budget), lattice_(&lattice), bounded_(extent == Extent::kBounded) {
+    : CostToGo(lattice, budget),
+      lattice_(&lattice),
+      bounded_(extent == Extent::kBounded),
+      tiles_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.sheets() * tile_columns()),
+             retired ? std::move(retired->tiles_) : TileTable()) {
   if (retired) {
-    cell_ = std::move(retired->cell_);
-    cells_ = std::move(retired->cells_);
-    cells_.clear();
     spares_ = std::move(retired->spares_);
     for (auto& joints : retired->cache_)
       if (joints) spares_.push_back(std::move(joints));
   }
-  cell_.assign(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.labels() * chunks()), 0);
-  cells_.emplace_back().fill(kUnreachable);
-  const std::size_t marks = mark(lattice.labels(), 0);
-  for (auto& block : block_) {
-    block = std::make_unique<Block>();
-    block->row.resize(static_cast<std::size_t>(lattice.width()));
-    block->near.resize(marks);
-    block->value.assign(static_cast<std::size_t>(lattice.labels() * (lattice.angles() + 2 * lattice.window())), kUnreachable);
+  const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
+  for (auto& workspace : workspace_) {
+    workspace = std::make_unique<Workspace>();
+    workspace->row.resize(static_cast<std::size_t>(lattice.width()));
+    workspace->windows.resize(tiles);
+    workspace->value.assign(static_cast<std::size_t>(lattice.sheets() * (lattice.angles() + 2 * lattice.window())), kUnreachable);
   }
 }
 
-void GridCostToGo::bar(Block& block) const {
+void GridCostToGo::apply_masks(Workspace& workspace) const {
   const int n = lattice_->angles(), window = lattice_->window();
-  for (const Part& part : block.parts) {
-    if (!part.live) continue;
-    const int slot = part.label * n + part.begin(), at = window + part.begin(), count = part.end(n) - part.begin();
-    double* const values = block.row.data() + slot;
-    const double* one = block.nodes().bar(part.label, 0) + at;
-    const double* other = block.nodes().bar(part.label, 1) + at;
-    each<kChunk>(count, [&](int k) { values[k] += one[k] + other[k]; });
-    const Verdict* verdict = verdicts_.nodes(block.layer, slot);
+  for (const Tile& tile : workspace.tiles) {
+    if (!tile.live) continue;
+    const int slot = tile.sheet * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
+    double* const values = workspace.row.data() + slot;
+    const double* one = workspace.nodes().mask(tile.sheet, 0) + at;
+    const double* other = workspace.nodes().mask(tile.sheet, 1) + at;
+    each<kTileWidth>(count, [&](int k) { values[k] += one[k] + other[k]; });
+    const Verdict* verdict = verdicts_.nodes(workspace.layer, slot);
     if (std::memchr(verdict, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
-      each<kChunk>(count, [&](int k) {
+      each<kTileWidth>(count, [&](int k) {
         if (verdict[k] == Verdict::kRemoved) values[k] = kUnreachable;
       });
   }
 }
 
-void GridCostToGo::cut(Block& block) const {
+void GridCostToGo::prune_above_limit(Workspace& workspace) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
-  const float* bound = chords_->row(block.layer);
-  for (const Part& part : block.parts) {
-    if (!part.live) continue;
-    const int slot = part.label * n + part.begin(), count = part.end(n) - part.begin();
-    double* const values = block.row.data() + slot;
+  const float* bound = coarse_bound_->row(workspace.layer);
+  for (const Tile& tile : workspace.tiles) {
+    if (!tile.live) continue;
+    const int slot = tile.sheet * n + tile.begin(), count = tile.end(n) - tile.begin();
+    double* const values = workspace.row.data() + slot;
     if (const float* before = bound ? bound + slot : nullptr)
-      each<kChunk>(count, [&](int k) { values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k]; });
+      each<kTileWidth>(count, [&](int k) { values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k]; });
     else
-      each<kChunk>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
+      each<kTileWidth>(count, [&](int k) { values[k] = values[k] > limit_ ? kUnreachable : values[k]; });
   }
 }
 
-void GridCostToGo::store(const Block& block) {
+void GridCostToGo::store_tiles(const Workspace& workspace) {
   const int n = lattice_->angles();
-  for (const Part& part : block.parts) {
-    cell_[cell_index(block.layer, part.label, part.chunk)] = static_cast<std::uint32_t>(cells_.size());
-    Cell& cell = cells_.emplace_back();
-    const double* row = block.row.data() + static_cast<std::ptrdiff_t>(part.label) * n;
-    std::fill(std::copy(row + part.begin(), row + part.end(n), cell.begin()), cell.end(), kUnreachable);
+  for (const Tile& tile : workspace.tiles) {
+    TileTable::Costs& costs = tiles_.hold(tile_index(workspace.layer, tile.sheet, tile.column));
+    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
+    std::fill(std::copy(row + tile.begin(), row + tile.end(n), costs.begin()), costs.end(), kUnreachable);
   }
 }
 
-void GridCostToGo::load(int layer, const Marks& columns, Block& block) {
-  clear(layer, block);
+void GridCostToGo::load_tiles(int layer, const ColumnSet& columns, Workspace& workspace) {
+  begin_layer(layer, workspace);
   const int n = lattice_->angles();
-  for (int label = 0; label < lattice_->labels(); ++label)
-    for (int chunk = 0; chunk < chunks(); ++chunk) {
-      const std::uint32_t cell = columns[static_cast<std::size_t>(chunk)] ? cell_[cell_index(layer, label, chunk)] : 0;
-      if (cell == 0) continue;
-      want(*block.joints, lattice_->family_of(label), chunk, chunk + 1);
-      const Part& part = block.parts.emplace_back(Part{label, chunk, true});
-      std::copy_n(cells_[cell].begin(), part.end(n) - part.begin(),
-                  block.row.begin() + static_cast<std::ptrdiff_t>(label) * n + part.begin());
+  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+    for (int column = 0; column < tile_columns(); ++column) {
+      const std::size_t held = tile_index(layer, sheet, column);
+      if (!columns[static_cast<std::size_t>(column)] || !tiles_.holds(held)) continue;
+      solve_columns(*workspace.joints, lattice_->family_of(sheet), column, column + 1);
+      const Tile& tile = workspace.tiles.emplace_back(Tile{sheet, column, true});
+      std::copy_n(tiles_[held].begin(), tile.end(n) - tile.begin(),
+                  workspace.row.begin() + static_cast<std::ptrdiff_t>(sheet) * n + tile.begin());
     }
-  settle(block);
+  publish_values(workspace);
 }
 
 GridCostToGo::~GridCostToGo() = default;
 
 void GridCostToGo::save() {
-  saved_ = {goal_, limit_, cell_, cells_};
+  saved_ = {goal_, limit_, tiles_.held()};
 }
 
 void GridCostToGo::restore() {
   goal_ = saved_.goal;
   limit_ = saved_.limit;
-  cell_ = saved_.cell;
-  cells_ = saved_.cells;
+  tiles_.restore(saved_.tiles);
 }
 
 void GridCostToGo::compute(int goal_layer) {
@@ -118,21 +115,21 @@ void GridCostToGo::compute(int goal_layer) {
   bool hopeless = false;
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
   if (!hopeless && bounded_ && goal_layer == lattice_->layers() - 1) {
-    if (!chords_) {
-      chords_ = std::make_unique<ChordBound>(*lattice_, budget_);
-      ik_nodes_ += chords_->ik_nodes();
+    if (!coarse_bound_) {
+      coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_);
+      ik_nodes_ += coarse_bound_->ik_nodes();
     }
-    hopeless = chords_->best() == kUnreachable;
+    hopeless = coarse_bound_->best() == kUnreachable;
     if (!hopeless) raise_limit();
   }
-  if (hopeless) return forget();
+  if (hopeless) return clear_values();
   sweep_once();
-  make_exact();
+  raise_limit_until_exact();
 }
 
 void GridCostToGo::raise_limit() {
-  if (chords_->row(0)) {
-    const double least = chords_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
+  if (coarse_bound_->row(0)) {
+    const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     for (const double share : {0.01, 0.2, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
       limit_ = least * (1 + share);
@@ -142,65 +139,64 @@ void GridCostToGo::raise_limit() {
   limit_ = kUnreachable;
 }
 
-void GridCostToGo::make_exact() {
+void GridCostToGo::raise_limit_until_exact() {
   while (limit_ != kUnreachable && !(best() <= limit_)) {
     raise_limit();
     sweep_once();
   }
 }
 
-void GridCostToGo::start_from(int layer, Block& block) {
-  clear(layer, block);
-  std::fill(block.row.begin(), block.row.end(), 0.0);
-  for (int label = 0; label < lattice_->labels(); ++label) {
-    if (!block.nodes().alive(label)) continue;
-    want(*block.joints, lattice_->family_of(label), 0, chunks());
-    for (int chunk = 0; chunk < chunks(); ++chunk) block.parts.push_back({label, chunk, true});
+void GridCostToGo::begin_with_all(int layer, Workspace& workspace) {
+  begin_layer(layer, workspace);
+  std::fill(workspace.row.begin(), workspace.row.end(), 0.0);
+  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet) {
+    if (!workspace.nodes().alive(sheet)) continue;
+    solve_columns(*workspace.joints, lattice_->family_of(sheet), 0, tile_columns());
+    for (int column = 0; column < tile_columns(); ++column) workspace.tiles.push_back({sheet, column, true});
   }
-  bar(block);
+  apply_masks(workspace);
 }
 
-void GridCostToGo::forget() {
+void GridCostToGo::clear_values() {
   verdicts_.pending.clear();
-  std::fill(cell_.begin(), cell_.end(), 0U);
-  cells_.resize(1);
+  tiles_.clear();
 }
 
 void GridCostToGo::sweep_once() {
-  const Span span("sweep");
-  forget();
-  Block* next = block_[0].get();
-  Block* here = block_[1].get();
-  start_from(goal_, *next);
-  add_costs(*next);
-  cut(*next);
-  settle(*next);
-  store(*next);
-  for (int layer = goal_ - 1; layer >= 0 && !next->labels.empty(); --layer) {
+  const TraceSpan span("sweep");
+  clear_values();
+  Workspace* next = workspace_[0].get();
+  Workspace* here = workspace_[1].get();
+  begin_with_all(goal_, *next);
+  add_node_costs(*next);
+  prune_above_limit(*next);
+  publish_values(*next);
+  store_tiles(*next);
+  for (int layer = goal_ - 1; layer >= 0 && !next->sheets.empty(); --layer) {
     if (layer == 0 && lattice_->has_start()) {
       const double value = relax_one(0, lattice_->start_slot());
-      if (value <= limit_) cell_value(0, lattice_->start_slot()) = value;
+      if (value <= limit_) value_at(0, lattice_->start_slot()) = value;
       break;
     }
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
-    clear(layer, *here);
-    mark_reach(layer, *next, *here);
+    begin_layer(layer, *here);
+    reach_back(layer, *next, *here);
     relax(layer, *here, *next);
-    bar(*here);
-    add_costs(*here);
+    apply_masks(*here);
+    add_node_costs(*here);
     relax_removed(*here);
-    cut(*here);
-    settle(*here);
-    store(*here);
+    prune_above_limit(*here);
+    publish_values(*here);
+    store_tiles(*here);
     std::swap(here, next);
   }
 }
 
 double GridCostToGo::best() const {
   double best = kUnreachable;
-  for (std::size_t k = 0; k < mark(lattice_->labels(), 0); ++k)
-    if (cell_[k] != 0)
-      for (const double value : cells_[cell_[k]]) best = std::min(best, value);
+  for (std::size_t k = 0; k < tile_of_layer(lattice_->sheets(), 0); ++k)
+    if (tiles_.holds(k))
+      for (const double value : tiles_[k]) best = std::min(best, value);
   return best;
 }
 

@@ -9,22 +9,23 @@ BOOST_CONCEPT_ASSERT((boost::IncidenceGraphConcept<ImplicitLattice>));
 BOOST_CONCEPT_ASSERT((boost::VertexListGraphConcept<ImplicitLattice>));
 BOOST_CONCEPT_ASSERT((boost::ReadablePropertyMapConcept<ImplicitCostMap, ImplicitLattice::Edge>));
 
-ImplicitLattice::ImplicitLattice(CostToGo& cost_to_go, double slack) : togo_(&cost_to_go), slack_(slack) {
-  for (int layer = 0; layer < togo_->lattice().layers(); ++layer)
-    width_ = std::max<std::int64_t>(width_, togo_->lattice().slots(layer));
+ImplicitLattice::ImplicitLattice(CostToGo& cost_to_go, double slack) : cost_to_go_(&cost_to_go), slack_(slack) {
+  for (int layer = 0; layer < cost_to_go_->lattice().layers(); ++layer)
+    width_ = std::max<std::int64_t>(width_, cost_to_go_->lattice().slots(layer));
 }
 
 const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) const {
   edges_.clear();
   const double bound = cost_to_go(v) + slack_;
   if (v == root()) {
-    for (int slot = 0; slot < togo_->lattice().slots(0); ++slot)
-      if (togo_->at(0, slot) != kUnreachable && togo_->at(0, slot) <= bound) edges_.push_back({v, vertex(0, slot), 0.0});
+    for (int slot = 0; slot < cost_to_go_->lattice().slots(0); ++slot)
+      if (cost_to_go_->at(0, slot) != kUnreachable && cost_to_go_->at(0, slot) <= bound)
+        edges_.push_back({v, vertex(0, slot), 0.0});
     return edges_;
   }
   const int layer = layer_of(v);
-  if (layer >= togo_->goal_layer()) return edges_;
-  togo_->steps(layer, slot_of(v), bound, steps_);
+  if (layer >= cost_to_go_->goal_layer()) return edges_;
+  cost_to_go_->steps(layer, slot_of(v), bound, steps_);
   for (const CostToGo::Step& step : steps_) edges_.push_back({v, vertex(layer + 1, step.slot), step.cost});
   return edges_;
 }

@@ -17,7 +17,7 @@ class FailFirst {
  public:
   explicit FailFirst(int layers) : score_(static_cast<std::size_t>(layers), 0.0) {}
   void failed(int layer) {
-    // An obstacle blocks a stretch of layers, so its neighbours are suspects too.
+    // An obstacle blocks a stretch of layers, so the same place in neighbouring layers is asked about too.
     for (int i = std::max(0, layer - 2); i <= std::min(static_cast<int>(score_.size()) - 1, layer + 2); ++i)
       score_[static_cast<std::size_t>(i)] += i == layer ? 1.0 : 0.5;
   }
@@ -37,55 +37,55 @@ class FailFirst {
 
 class Search {
  public:
-  Search(CostToGo& togo, Validity& validity, const PathFirstOptions& options, bool asks_costs)
-      : togo_(togo),
-        verdicts_(togo.verdicts()),
-        lattice_(togo.lattice()),
+  Search(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, bool asks_costs)
+      : cost_to_go_(cost_to_go),
+        verdicts_(cost_to_go.verdicts()),
+        lattice_(cost_to_go.lattice()),
         validity_(validity),
         options_(options),
         asks_costs_(asks_costs),
         fail_first_(lattice_.layers()) {}
 
-  SearchOutcome run(SearchCounters& counters, const Suspects& suspects) {
-    ask(std::span<const NodeQuestion>(suspects.nodes));
-    ask(std::span<const EdgeQuestion>(suspects.edges));
-    if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) togo_.repair();
+  SearchOutcome run(SearchCounters& counters, const AskedFirst& first) {
+    ask(std::span<const NodeQuestion>(first.nodes));
+    ask(std::span<const EdgeQuestion>(first.edges));
+    if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) cost_to_go_.repair();
     for (;;) {
-      togo_.budget().poll();
-      const SlotPath path = best_path(togo_, counters.expansions);
+      cost_to_go_.budget().poll();
+      const SlotPath path = best_path(cost_to_go_, counters.expansions);
       if (path.empty()) return {};
       counters.candidate = path;
       ++counters.iterations;
       if (asks_costs_ && costs_more(path)) {
-        togo_.repair();
+        cost_to_go_.repair();
         continue;
       }
       fail_first_.next_round();
       const std::int64_t removed = verdicts_.removed();
-      if (valid(path)) return {path, togo_.best()};
+      if (valid(path)) return {path, cost_to_go_.best()};
       if (verdicts_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
-      togo_.repair();
+      cost_to_go_.repair();
     }
   }
 
  private:
   struct Failure {
     int layer, slot;
-    Fault fault;
+    FailureId failure;
   };
 
   /// Asks what the path's nodes cost, where that is not known and counts as 0, and sets it; true where a node costs something. A
   /// node's neighbours often cost as much, and each round in which a path turns out to cost more asks about twice as many of them
   /// as the one before: so rounds are few where every node costs something, and questions are few where hardly any does.
   bool costs_more(const SlotPath& path) {
-    const Span span("costs");
+    const TraceSpan span("costs");
     std::vector<NodeQuestion> questions;
     std::unordered_set<std::int64_t> asked;
     const auto ask_about = [&](int layer, int slot) {
-      if (verdicts_.knows_cost(layer, slot) || togo_.at(layer, slot) == kUnreachable) return;
+      if (verdicts_.knows_cost(layer, slot) || cost_to_go_.at(layer, slot) == kUnreachable) return;
       if (!asked.insert((std::int64_t{layer} << 32) + slot).second) return;
-      if (questions.size() % 256 == 0) togo_.budget().poll();
-      questions.push_back({layer, slot, togo_.config(layer, slot)});
+      if (questions.size() % 256 == 0) cost_to_go_.budget().poll();
+      questions.push_back({layer, slot, cost_to_go_.config(layer, slot)});
     };
     for (int layer = 0; layer < static_cast<int>(path.size()); ++layer) {
       const int slot = path[static_cast<std::size_t>(layer)];
@@ -116,12 +116,12 @@ class Search {
 
   /// Asks what is not known of the path, failures first, and removes what fails.
   bool valid(const SlotPath& path) {
-    const Span span("candidate path");
+    const TraceSpan span("candidate path");
     const int layers = static_cast<int>(path.size());
     std::vector<Config> joints;
     for (int i = 0; i < layers; ++i) {
-      if (i % 64 == 0) togo_.budget().poll();
-      joints.push_back(togo_.config(i, path[static_cast<std::size_t>(i)]));
+      if (i % 64 == 0) cost_to_go_.budget().poll();
+      joints.push_back(cost_to_go_.config(i, path[static_cast<std::size_t>(i)]));
     }
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     std::vector<NodeQuestion> nodes;
@@ -130,7 +130,7 @@ class Search {
     fail_first_.order(nodes);
     const auto known = layers - static_cast<int>(nodes.size());
     for (std::size_t first = 0; first < nodes.size(); first += batch()) {
-      togo_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(first), layers);
+      cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(first), layers);
       const std::vector<Failure> failed =
           ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
       for (const Failure& node : failed) fail_first_.failed(node.layer);
@@ -160,71 +160,71 @@ class Search {
   /// The region of failing nodes around those just found, breadth first along the path and the arm angle: an obstacle blocks many
   /// neighbours, and each found now saves a round.
   void grow(const std::vector<Failure>& failed) {
-    std::deque<Failure> suspects;
-    const auto suspect_neighbours = [&](const Failure& x) {
+    std::deque<Failure> frontier;
+    const auto add_neighbours = [&](const Failure& x) {
       for (const int by : {-1, 1}) {
-        const int slot = x.layer + by <= togo_.goal_layer() ? lattice_.along(x.layer, x.slot, by) : -1;
-        if (slot >= 0) suspects.push_back({x.layer + by, slot, x.fault});
+        const int slot = x.layer + by <= cost_to_go_.goal_layer() ? lattice_.along(x.layer, x.slot, by) : -1;
+        if (slot >= 0) frontier.push_back({x.layer + by, slot, x.failure});
       }
       for (const int by : {1, -1})
-        if (const int slot = lattice_.beside(x.layer, x.slot, by); slot >= 0) suspects.push_back({x.layer, slot, x.fault});
+        if (const int slot = lattice_.beside(x.layer, x.slot, by); slot >= 0) frontier.push_back({x.layer, slot, x.failure});
     };
-    for (const Failure& node : failed) suspect_neighbours(node);
+    for (const Failure& node : failed) add_neighbours(node);
     std::vector<NodeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !suspects.empty();) {
+    for (int left = most_grown(); left > 0 && !frontier.empty();) {
       questions.clear();
-      while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
-        const auto [layer, slot, fault] = suspects.front();
-        suspects.pop_front();
+      while (!frontier.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+        const auto [layer, slot, failure] = frontier.front();
+        frontier.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
                                        [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
-        if (!again && verdicts_.node(layer, slot) == Verdict::kUnknown && togo_.at(layer, slot) != kUnreachable)
-          questions.push_back({layer, slot, togo_.config(layer, slot), fault});
+        if (!again && verdicts_.node(layer, slot) == Verdict::kUnknown && cost_to_go_.at(layer, slot) != kUnreachable)
+          questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure});
       }
       left -= static_cast<int>(questions.size());
-      for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) suspect_neighbours(node);
+      for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) add_neighbours(node);
     }
   }
 
   /// The same for edges: those beside a failing edge, and its continuations along the path, often fail as it does.
   void grow(const std::vector<EdgeQuestion>& failed) {
-    struct Suspect {
+    struct Edge {
       int layer, a, b;
-      bool operator==(const Suspect&) const = default;
+      bool operator==(const Edge&) const = default;
     };
-    std::deque<Suspect> suspects;
-    const auto suspect = [&](int layer, int a, int b) {
-      if (a >= 0 && b >= 0) suspects.push_back({layer, a, b});
+    std::deque<Edge> frontier;
+    const auto add = [&](int layer, int a, int b) {
+      if (a >= 0 && b >= 0) frontier.push_back({layer, a, b});
     };
-    const auto suspect_neighbours = [&](const EdgeQuestion& x) {
+    const auto add_neighbours = [&](const EdgeQuestion& x) {
       const auto shifted = [&](int layer, int slot, int by) { return by == 0 ? slot : lattice_.beside(layer, slot, by); };
       constexpr std::pair<int, int> kShifts[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}};
-      for (const auto& [da, db] : kShifts) suspect(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
+      for (const auto& [da, db] : kShifts) add(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
       for (const int by : {-1, 1})
-        if (x.layer + by >= 0 && x.layer + by < togo_.goal_layer())
-          suspect(x.layer + by, lattice_.along(x.layer, x.a, by), lattice_.along(x.layer + 1, x.b, by));
+        if (x.layer + by >= 0 && x.layer + by < cost_to_go_.goal_layer())
+          add(x.layer + by, lattice_.along(x.layer, x.a, by), lattice_.along(x.layer + 1, x.b, by));
     };
-    for (const EdgeQuestion& edge : failed) suspect_neighbours(edge);
-    std::vector<Suspect> asked;
+    for (const EdgeQuestion& edge : failed) add_neighbours(edge);
+    std::vector<Edge> asked;
     std::vector<EdgeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !suspects.empty();) {
+    for (int left = most_grown(); left > 0 && !frontier.empty();) {
       asked.clear();
       questions.clear();
-      while (!suspects.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
-        const Suspect x = suspects.front();
-        suspects.pop_front();
-        if (togo_.at(x.layer, x.a) == kUnreachable || togo_.at(x.layer + 1, x.b) == kUnreachable ||
+      while (!frontier.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+        const Edge x = frontier.front();
+        frontier.pop_front();
+        if (cost_to_go_.at(x.layer, x.a) == kUnreachable || cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
             verdicts_.node(x.layer, x.a) == Verdict::kRemoved || verdicts_.node(x.layer + 1, x.b) == Verdict::kRemoved ||
             verdicts_.edge(x.layer, x.a, x.b) != Verdict::kUnknown || !lattice_.in_window(x.layer, x.a, x.b) ||
             std::find(asked.begin(), asked.end(), x) != asked.end())
           continue;
-        const EdgeQuestion edge{x.layer, x.a, x.b, togo_.config(x.layer, x.a), togo_.config(x.layer + 1, x.b)};
+        const EdgeQuestion edge{x.layer, x.a, x.b, cost_to_go_.config(x.layer, x.a), cost_to_go_.config(x.layer + 1, x.b)};
         if (!lattice_.step_allowed(x.layer, lattice_.delta(edge.qa, edge.qb))) continue;
         asked.push_back(x);
         questions.push_back(edge);
       }
       left -= static_cast<int>(questions.size());
-      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions))) suspect_neighbours(edge);
+      for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions))) add_neighbours(edge);
     }
   }
   [[nodiscard]] int most_grown() const {
@@ -246,7 +246,7 @@ class Search {
         else
           alike_.assign(1, x.slot);
         for (const int slot : alike_) verdicts_.remove_node(x.layer, slot);
-        failed.push_back({x.layer, x.slot, answers_[k].fault});
+        failed.push_back({x.layer, x.slot, answers_[k].failure});
       }
     }
     return failed;
@@ -261,7 +261,7 @@ class Search {
       if (edge_answers_[k]) {
         verdicts_.keep_edge(x.layer, x.a, x.b);
       } else {
-        togo_.remove_edge(x.layer, x.a, x.b);
+        cost_to_go_.remove_edge(x.layer, x.a, x.b);
         failed.push_back(x);
       }
     }
@@ -270,7 +270,7 @@ class Search {
 
   [[nodiscard]] std::size_t batch() const { return static_cast<std::size_t>(options_.batch); }
 
-  CostToGo& togo_;
+  CostToGo& cost_to_go_;
   Verdicts& verdicts_;
   const Lattice& lattice_;
   Validity& validity_;
@@ -287,18 +287,19 @@ class Search {
 }  // namespace
 
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
-                         const Suspects& suspects) {
-  return Search(cost_to_go, validity, options, validity.asks_costs()).run(counters, suspects);
+                         const AskedFirst& first) {
+  return Search(cost_to_go, validity, options, validity.asks_costs()).run(counters, first);
 }
 
-int deepest_valid_layer(CostToGo& togo, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
+int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
   for (;;) {
-    const int optimistic = togo.deepest_reachable();
+    const int optimistic = cost_to_go.deepest_reachable();
     if (optimistic < 0) return -1;
-    const std::int64_t removed = togo.verdicts().removed();
-    togo.sweep(optimistic);
-    if (!Search(togo, validity, options, false).run(counters, {}).path.empty()) return optimistic;  // at whatever cost
-    if (togo.verdicts().removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
+    const std::int64_t removed = cost_to_go.verdicts().removed();
+    cost_to_go.sweep(optimistic);
+    if (!Search(cost_to_go, validity, options, false).run(counters, {}).path.empty()) return optimistic;  // at whatever cost
+    if (cost_to_go.verdicts().removed() == removed)
+      throw std::logic_error("a round of the search removed nothing: it would never end");
   }
 }
 

@@ -8,7 +8,7 @@
 namespace swivel {
 
 ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes) {
-  const Span span("all nodes");
+  const TraceSpan span("all nodes");
   ValidNodes valid;
   valid.layers.resize(static_cast<std::size_t>(lattice.layers()));
   if (validity.asks_costs()) valid.costs.resize(valid.layers.size());

@@ -10,7 +10,7 @@ Verdicts::Verdicts(const Lattice& lattice) {
     first_.push_back(nodes);
     nodes += static_cast<std::size_t>(lattice.slots(layer));
   }
-  node_.resize(nodes, Verdict::kUnknown);
+  node_ = ZeroedArray<Verdict>(nodes);
 }
 
 void Verdicts::clear() {

@@ -4,13 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <cstring>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
@@ -18,8 +15,10 @@
 #include "bad_input.hpp"
 #include "csv.hpp"
 #include "files.hpp"
+#include "run_settings.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "table_rows.hpp"
 
 namespace swivel::io {
 
@@ -30,134 +29,84 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kHeader =
-    "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason\n";
-constexpr std::size_t kColumns = 10;
-
-/// The shortest digits that read back as the same double.
-std::string number(double value) {
-  std::array<char, 32> digits{};
-  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
-}
-
-std::string number(const std::optional<double>& value) {
-  return value ? number(*value) : "";
-}
+    "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,cause,by,reason";
+constexpr std::size_t kColumns = 12;  // and one for each of the coordinates that vary
 
 std::string milliseconds(double value) {
   std::array<char, 64> digits{};
   return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed, 3).ptr};
 }
 
-/// On one line whatever bodies are called, so that the rows of a file that was cut off can be told apart.
-std::string quoted(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < ' ') c = ' ';
-  return csv_field(text);
-}
-
-std::string line_of(const EpisodeRow& row) {
-  return std::to_string(row.episode) + ',' + to_string(row.status) + ',' + number(row.cost) + ',' + milliseconds(row.plan_ms) +
-         ',' + std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) + ',' + number(row.tool_path_error_mm_mean) +
-         ',' + number(row.tool_path_error_mm_max) + ',' + number(row.failed_s) + ',' + quoted(row.reason) + '\n';
-}
-
-/// Empty where a quote is left open.
-std::vector<std::string> fields_of(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool inside = false;
-  for (std::size_t k = 0; k < line.size(); ++k) {
-    if (line[k] == '"') {
-      if (inside && k + 1 < line.size() && line[k + 1] == '"')
-        fields.back() += line[k++];
-      else
-        inside = !inside;
-    } else if (line[k] == ',' && !inside) {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[k];
-    }
-  }
-  return inside ? std::vector<std::string>{} : fields;
-}
-
-template <class Value>
-bool parse(const std::string& field, Value& value) {
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  return error == std::errc() && end == field.data() + field.size();
-}
-
-bool parse(const std::string& field, std::optional<double>& value) {
-  return field.empty() || (parse(field, value.emplace()) && std::isfinite(*value));
-}
-
-std::optional<EpisodeRow> row_of(std::string_view line) {
-  const std::vector<std::string> fields = fields_of(line);
-  if (fields.size() != kColumns) return std::nullopt;
-  EpisodeRow row;
-  const auto statuses = {PlanStatus::kSolved, PlanStatus::kInfeasible, PlanStatus::kError};
-  const auto* const status =
-      std::find_if(statuses.begin(), statuses.end(), [&](PlanStatus s) { return fields[1] == to_string(s); });
-  if (status == statuses.end()) return std::nullopt;
-  row.status = *status;
-  const bool read = parse(fields[0], row.episode) && parse(fields[2], row.cost) && parse(fields[3], row.plan_ms) &&
-                    parse(fields[4], row.nodes_checked) && parse(fields[5], row.fcl_calls) &&
-                    parse(fields[6], row.tool_path_error_mm_mean) && parse(fields[7], row.tool_path_error_mm_max) &&
-                    parse(fields[8], row.failed_s);
-  row.reason = fields[9];
-  return read ? std::optional(row) : std::nullopt;
-}
-
-/// The rows of a text from a byte on that is the beginning of a line; `line` is its number. `visit` gets each, what names its
-/// place, and the byte after it.
-template <class Visit>
-void read_rows(std::string_view text, std::size_t begin, const std::string& file, int line, const std::string& allowed,
-               const Visit& visit) {
-  for (; begin < text.size(); ++line) {
-    const std::size_t end = text.find('\n', begin) + 1;
-    const std::string where = at_line(file, line);
-    const auto row = row_of(text.substr(begin, end - 1 - begin));
-    if (!row) bad_input(where, "not a row of results", allowed);
-    visit(*row, where, end);
-    begin = end;
-  }
-}
-
-constexpr std::string_view kSettingsMark = "# swivel campaign ";
+constexpr const char* kSettingsMark = "# swivel campaign ";
 
 /// One line, for people and for comparison.
-std::string line_of(const CampaignSettings& settings) {
-  Json json = {{"settings", Json::object()}, {"files", Json::object()}};
-  for (const auto& [name, value] : settings.values) json["settings"][name] = value;
-  for (const auto& [name, hash] : settings.files) json["files"][name] = hash;
-  return std::string(kSettingsMark) + json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+std::string line_of(const RunSettings& settings) {
+  return kSettingsMark + to_json(settings).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-/// What a file that begins with the first line has otherwise than one that begins with the second; empty if nothing.
-std::string difference(std::string_view found, std::string_view wanted) {
-  if (found == wanted) return {};
-  found.remove_prefix(kSettingsMark.size());
-  wanted.remove_prefix(kSettingsMark.size());
-  const Json was = Json::parse(found, nullptr, false), is = Json::parse(wanted);
-  const auto has = [&](const char* key) { return was.is_object() && was.contains(key) && was[key].is_object(); };
-  if (!has("settings") || !has("files")) return "its settings cannot be read";
-  const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); };
-  for (const auto& [name, value] : is["settings"].items()) {
-    const auto old = was["settings"].find(name);
-    if (old == was["settings"].end()) return "begun without " + name;
-    if (*old != value) return "begun with " + name + " " + text(*old) + ", this is " + text(value);
-  }
-  for (const auto& [name, hash] : is["files"].items()) {
-    const auto old = was["files"].find(name);
-    if (old == was["files"].end()) return "begun without " + name;
-    if (*old != hash) return name + " was another when it was begun";
-  }
-  return "begun with more settings or files";
+/// What a file that begins with that line has otherwise than a campaign of the settings; empty if nothing.
+std::string unlike(std::string_view found, const RunSettings& wanted) {
+  if (found == line_of(wanted)) return {};
+  found.remove_prefix(std::string_view(kSettingsMark).size());
+  auto was = settings_from(Json::parse(found, nullptr, false));
+  if (!was) return "its settings cannot be read";
+  was->coordinates = wanted.coordinates;  // the header has them
+  const auto other = difference(*was, wanted);
+  if (!other || (other->first && !other->second)) return "begun with more settings or files";
+  if (!other->first && other->second) return "begun without " + other->name;
+  if (other->file) return other->name + " was another when it was begun";
+  return "begun with " + other->name + " " + *other->first + ", this is " + *other->second;
 }
 
 }  // namespace
 
-CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings, const Shard& shard, std::uint64_t episodes)
-    : part_(csv) {
+std::string episode_header(const std::vector<std::string>& coordinates) {
+  std::string header(kHeader);
+  for (const std::string& name : coordinates) header += ',' + csv_line_field(name);
+  return header + '\n';
+}
+
+std::optional<std::vector<std::string>> coordinates_of(std::string_view line) {
+  constexpr std::size_t kMostCoordinates = 100'000;
+  const std::vector<std::string> names = csv_fields(line, kColumns + kMostCoordinates);
+  if (names.size() < kColumns) return std::nullopt;
+  std::vector<std::string> coordinates(names.begin() + kColumns, names.end());
+  return episode_header(coordinates) == std::string(line) + '\n' ? std::optional(std::move(coordinates)) : std::nullopt;
+}
+
+std::string csv_line(const EpisodeRow& row) {
+  std::string line = std::to_string(row.episode) + ',' + to_string(row.status) + ',' + csv_number(row.cost) + ',' +
+                     milliseconds(row.plan_ms) + ',' + std::to_string(row.nodes_checked) + ',' + std::to_string(row.fcl_calls) +
+                     ',' + csv_number(row.tool_path_error_mm_mean) + ',' + csv_number(row.tool_path_error_mm_max) + ',' +
+                     csv_number(row.failed_s) + ',' + row.cause + ',' + csv_line_field(row.by) + ',' + csv_line_field(row.reason);
+  for (const double offset : row.offsets) line += ',' + csv_number(offset);
+  return line + '\n';
+}
+
+std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordinates) {
+  const std::vector<std::string> fields = csv_fields(line, kColumns + coordinates);
+  if (fields.size() != kColumns + coordinates) return std::nullopt;
+  EpisodeRow row;
+  bool read = read_field(fields[0], row.episode) && read_field(fields[1], row.status) && read_field(fields[2], row.cost) &&
+              read_field(fields[3], row.plan_ms) && read_field(fields[4], row.nodes_checked) &&
+              read_field(fields[5], row.fcl_calls) && read_field(fields[6], row.tool_path_error_mm_mean) &&
+              read_field(fields[7], row.tool_path_error_mm_max) && read_field(fields[8], row.failed_s);
+  row.cause = fields[9];
+  row.by = fields[10];
+  row.reason = fields[11];
+  row.offsets.resize(coordinates);
+  for (std::size_t k = 0; k < coordinates; ++k) read = read && read_field(fields[kColumns + k], row.offsets[k]);
+  return read ? std::optional(row) : std::nullopt;
+}
+
+std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates) {
+  std::string text = episode_header(coordinates);
+  for (const EpisodeRow& row : rows) text += csv_line(row);
+  return text;
+}
+
+CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, const Shard& shard, std::uint64_t episodes)
+    : part_(csv), coordinates_(settings.coordinates) {
   part_ += ".part";
   for (const fs::path& file : {csv, part_}) {
     std::error_code ignored;
@@ -179,30 +128,33 @@ CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings
 
   const std::string text = read_file(part_, "CSV file", kMostTableBytes);
   const std::string mine = "the first rows of this campaign and shard; remove the file to start anew";
-  const std::string mine_settings = line_of(settings), preamble = mine_settings + std::string(kHeader);
+  const std::string header = episode_header(coordinates_), preamble = line_of(settings) + header;
   const std::size_t complete = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
   const std::string first = text.substr(0, std::min(complete, text.find('\n') + 1));
-  if (!std::string_view(text).substr(0, kSettingsMark.size()).starts_with(kSettingsMark.substr(0, text.size())))
+  const std::string_view mark = kSettingsMark;
+  if (!std::string_view(text).substr(0, mark.size()).starts_with(mark.substr(0, text.size())))
     refuse(part_.string() + ":1", "does not say which campaign it is of", mine);
-  if (const std::string other = first.empty() ? "" : difference(first, mine_settings); !other.empty())
+  if (const std::string other = first.empty() ? "" : unlike(first, settings); !other.empty())
     refuse(part_.string() + ":1", other, "a file of the same problem and settings; remove it to start anew");
-  if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(kHeader))
+  if (complete > first.size() && !std::string_view(text).substr(first.size()).starts_with(header))
     refuse(part_.string() + ":2", "another header", mine);
 
   const std::size_t begin = complete > first.size() ? preamble.size() : 0;
   ends_.push_back(begin);
   if (begin > 0) try {
-      read_rows(std::string_view(text).substr(0, complete), begin, part_.string(), 3, mine,
-                [&](const EpisodeRow& row, const std::string& where, std::size_t end) {
-                  const std::size_t k = rows_.size();
-                  if (k >= shard.size(episodes)) bad_input(where, "more rows than the shard has episodes", mine);
-                  if (row.episode != shard.episode(k))
-                    bad_input(where,
-                              "episode " + std::to_string(row.episode) + " where the shard has " + std::to_string(shard.episode(k)),
-                              mine);
-                  rows_.push_back(row);
-                  ends_.push_back(end);
-                });
+      read_lines(
+          std::string_view(text).substr(0, complete), begin, part_.string(), 3, mine,
+          [&](std::string_view line) { return episode_row(line, coordinates_.size()); },
+          [&](const EpisodeRow& row, const std::string& where, std::size_t end) {
+            const std::size_t k = rows_.size();
+            if (k >= shard.size(episodes)) bad_input(where, "more rows than the shard has episodes", mine);
+            if (row.episode != shard.episode(k))
+              bad_input(where,
+                        "episode " + std::to_string(row.episode) + " where the shard has " + std::to_string(shard.episode(k)),
+                        mine);
+            rows_.push_back(row);
+            ends_.push_back(end);
+          });
     } catch (const InputError&) {
       close(descriptor_);
       throw;
@@ -214,14 +166,19 @@ CampaignFile::CampaignFile(const fs::path& csv, const CampaignSettings& settings
   }
 }
 
-std::vector<EpisodeRow> load_rows(const fs::path& csv) {
+EpisodeTable load_rows(const fs::path& csv) {
   const std::string text = read_file(csv, "CSV file", kMostTableBytes);
-  const std::string allowed = "the results of a campaign or a shard, as it wrote them";
-  if (!std::string_view(text).starts_with(kHeader) || text.back() != '\n') bad_input(csv.string(), "not a results file", allowed);
-  std::vector<EpisodeRow> rows;
-  read_rows(text, kHeader.size(), csv.string(), 2, allowed,
-            [&](const EpisodeRow& row, const std::string&, std::size_t) { rows.push_back(row); });
-  return rows;
+  const std::string allowed = "the results of a whole campaign, as it wrote them";
+  if (std::string_view(text).starts_with(kRunMark))
+    bad_input(csv.string(), "the results of a shard, which swivel merge joins", allowed);
+  const std::size_t end = std::min(text.size(), text.find('\n'));
+  const auto coordinates = coordinates_of(std::string_view(text).substr(0, end));
+  if (!coordinates || text.back() != '\n') bad_input(csv.string(), "not a results file", allowed);
+  EpisodeTable table{*coordinates, {}};
+  read_lines(
+      text, end + 1, csv.string(), 2, allowed, [&](std::string_view line) { return episode_row(line, coordinates->size()); },
+      [&](const EpisodeRow& row, const std::string&, std::size_t) { table.rows.push_back(row); });
+  return table;
 }
 
 CampaignFile::~CampaignFile() {
@@ -238,16 +195,14 @@ void CampaignFile::keep(std::size_t count) {
 }
 
 void CampaignFile::append(const EpisodeRow& row) {
-  const std::string line = line_of(row);
+  const std::string line = csv_line(row);
   write(line);
   rows_.push_back(row);
   ends_.push_back(ends_.back() + line.size());
 }
 
 std::string CampaignFile::csv() const {
-  std::string text(kHeader);
-  for (const EpisodeRow& row : rows_) text += line_of(row);
-  return text;
+  return to_csv(rows_, coordinates_);
 }
 
 void CampaignFile::finish() {

@@ -19,6 +19,21 @@ std::string csv_field(const std::string& text) {
   return field + '"';
 }
 
+std::string csv_line_field(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return csv_field(text);
+}
+
+std::string csv_number(double value) {
+  std::array<char, 32> digits{};
+  return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr};
+}
+
+std::string csv_number(const std::optional<double>& value) {
+  return value ? csv_number(*value) : "";
+}
+
 namespace {
 
 std::string_view trimmed(std::string_view text) {
@@ -27,8 +42,15 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// RFC 4180: a field that begins with a quote goes to the next single one. Bytes after that are part of the field, and so wrong.
-std::vector<std::string> fields_of(std::string_view line) {
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ",") + csv_field(name);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
   std::vector<std::string> fields;
   while (true) {
     std::string field;
@@ -43,23 +65,15 @@ std::vector<std::string> fields_of(std::string_view line) {
     const auto comma = line.find(',');
     field += trimmed(line.substr(0, comma));
     fields.push_back(std::move(field));
-    if (comma == std::string_view::npos) return fields;
+    if (comma == std::string_view::npos || fields.size() > most) return fields;
     line.remove_prefix(comma + 1);
   }
 }
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ",") + csv_field(name);
-  return text;
-}
-
-}  // namespace
-
 CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers) : file_(file.string()) {
   std::string allowed;
   for (const std::vector<std::string>& header : headers) allowed += (allowed.empty() ? "" : " or ") + joined(header);
-  constexpr std::size_t kMostRows = 1'000'000;
+  constexpr std::size_t kMostRows = 1'000'000, kMostLineBytes = std::size_t{1} << 20;
   const std::string text = read_file(file, "CSV file", kMostTableBytes);
   std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
@@ -69,7 +83,10 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vec
     const std::string_view line = trimmed(rest.substr(0, end));
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     if (line.empty()) continue;
-    const std::vector<std::string> fields = fields_of(line);
+    // A field takes many times its bytes.
+    if (line.size() > kMostLineBytes)
+      bad_input(at_line(file_, line_number), "has " + std::to_string(line.size()) + " bytes", "a line of at most 1 MiB");
+    const std::vector<std::string> fields = csv_fields(line, line.size());
     if (!header_seen) {
       const auto found = std::find(headers.begin(), headers.end(), fields);
       if (found == headers.end())

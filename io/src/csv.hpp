@@ -1,14 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace swivel::io {
 
 /// In quotes where it needs them.
 [[nodiscard]] std::string csv_field(const std::string& text);
+/// The same on one line, whatever is in it, so that the rows of a file that was cut off can be told apart.
+[[nodiscard]] std::string csv_line_field(std::string text);
+/// The shortest digits that read back as the same double; nothing where there is none.
+[[nodiscard]] std::string csv_number(double value);
+[[nodiscard]] std::string csv_number(const std::optional<double>& value);
+
+/// The fields of a line without its end (RFC 4180), without outer spaces that are not quoted; none where a quote is left open.
+/// Bytes behind a quoted field are part of it. Ends with the field after the first `most`: a field takes many times its bytes.
+[[nodiscard]] std::vector<std::string> csv_fields(std::string_view line, std::size_t most);
 
 /// A comma-separated table of numbers with a fixed header, or with one of several.
 class CsvTable {

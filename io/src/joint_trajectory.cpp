@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "files.hpp"
+#include "moved_joints.hpp"
 #include "stamp.hpp"
 #include "swivel/io/motion.hpp"
 
@@ -15,15 +16,16 @@ std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
-std::string list(const Config& values) {
+/// Of the joints that controllers move.
+std::string list(const TimedPath& motion, const Config& values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "[" : ", ") + format_double(value);
+  for (const double value : moved_joints(motion, values)) text += (text.empty() ? "[" : ", ") + format_double(value);
   return text + "]";
 }
 
-std::string list(const JointNames& names) {
+std::string list(const TimedPath& motion, const JointNames& names) {
   std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "[" : ", ") + quoted(name);
+  for (const std::string& name : moved_joints(motion, names)) text += (text.empty() ? "[" : ", ") + quoted(name);
   return text + "]";
 }
 
@@ -31,12 +33,13 @@ std::string list(const JointNames& names) {
 
 std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
   std::string text = "{\"header\": {\"stamp\": {\"sec\": 0, \"nanosec\": 0}, \"frame_id\": " + quoted(frame_id) +
-                     "},\n \"joint_names\": " + list(joint_names) + ",\n \"points\": [";
+                     "},\n \"joint_names\": " + list(motion, joint_names) + ",\n \"points\": [";
   const char* before = "\n";
   for (const TimedRow& row : motion.rows) {
     const Stamp stamp = stamp_of(row.t);
     text += before;
-    text += "  {\"positions\": " + list(row.row.q) + ", \"velocities\": " + list(row.v) + ", \"accelerations\": " + list(row.a) +
+    text += "  {\"positions\": " + list(motion, row.row.q) + ", \"velocities\": " + list(motion, row.v) +
+            ", \"accelerations\": " + list(motion, row.a) +
             ", \"effort\": [], \"time_from_start\": {\"sec\": " + std::to_string(stamp.sec) +
             ", \"nanosec\": " + std::to_string(stamp.nanosec) + "}}";
     before = ",\n";
@@ -46,11 +49,11 @@ std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_
 
 std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
   std::string text = "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: " + quoted(frame_id) +
-                     "\njoint_names: " + list(joint_names) + "\npoints:\n";
+                     "\njoint_names: " + list(motion, joint_names) + "\npoints:\n";
   for (const TimedRow& row : motion.rows) {
     const Stamp stamp = stamp_of(row.t);
-    text += "- positions: " + list(row.row.q) + "\n  velocities: " + list(row.v) + "\n  accelerations: " + list(row.a) +
-            "\n  effort: []\n  time_from_start: {sec: " + std::to_string(stamp.sec) +
+    text += "- positions: " + list(motion, row.row.q) + "\n  velocities: " + list(motion, row.v) +
+            "\n  accelerations: " + list(motion, row.a) + "\n  effort: []\n  time_from_start: {sec: " + std::to_string(stamp.sec) +
             ", nanosec: " + std::to_string(stamp.nanosec) + "}\n";
   }
   return text;

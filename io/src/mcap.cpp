@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstdint>
 #include <cstring>
+#include <span>
 #include <string_view>
 #include <type_traits>
 
+#include "moved_joints.hpp"
 #include "stamp.hpp"
 #include "swivel/io/motion.hpp"
 
@@ -85,7 +87,7 @@ class Cdr {
     bytes_.raw(text).add(std::uint8_t{0});
     return *this;
   }
-  Cdr& add(const Config& values) {
+  Cdr& add(std::span<const double> values) {
     add(static_cast<std::uint32_t>(values.size()));
     for (const double value : values) add(value);
     return *this;
@@ -97,13 +99,14 @@ class Cdr {
   Bytes bytes_;
 };
 
-std::string joint_state(const TimedRow& row, const JointNames& joint_names, const std::string& frame_id) {
+std::string joint_state(const TimedPath& motion, const TimedRow& row, const JointNames& joint_names, const std::string& frame_id) {
   const Stamp stamp = stamp_of(row.t);
   Cdr cdr;
   cdr.add(stamp.sec).add(stamp.nanosec).add(frame_id);
-  cdr.add(static_cast<std::uint32_t>(joint_names.size()));
-  for (const std::string& name : joint_names) cdr.add(name);
-  cdr.add(row.row.q).add(row.v).add(std::uint32_t{0});
+  const auto names = moved_joints(motion, joint_names);
+  cdr.add(static_cast<std::uint32_t>(names.size()));
+  for (const std::string& name : names) cdr.add(name);
+  cdr.add(moved_joints(motion, row.row.q)).add(moved_joints(motion, row.v)).add(std::uint32_t{0});
   return cdr.message();
 }
 
@@ -129,8 +132,8 @@ std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, cons
   for (const TimedRow& row : motion.rows) {
     const std::uint64_t time = nanoseconds(row.t);
     index.add(time).add(static_cast<std::uint64_t>(chunk.size()));
-    chunk +=
-        record(kMessage, Bytes().add(kChannelId).add(sequence++).add(time).add(time).raw(joint_state(row, joint_names, frame_id)));
+    chunk += record(
+        kMessage, Bytes().add(kChannelId).add(sequence++).add(time).add(time).raw(joint_state(motion, row, joint_names, frame_id)));
   }
 
   std::string file = magic + record(kHeader, Bytes().counted("ros2").counted("swivel"));

@@ -39,7 +39,7 @@ class DaeReader {
     const Element* scene = root.FirstChildElement("scene");
     const Element* instance = scene == nullptr ? nullptr : scene->FirstChildElement("instance_visual_scene");
     if (instance == nullptr) fail(root, "shows no scene", "a <scene> with <instance_visual_scene>");
-    read_node(target(*instance, "url", "visual_scene"), Affine3d(Eigen::Scaling(unit)), 0);
+    place_node(target(*instance, "url", "visual_scene"), Affine3d(Eigen::Scaling(unit)), 0);
   }
 
  private:
@@ -91,21 +91,45 @@ class DaeReader {
     return result;
   }
 
-  /// A <node> or <visual_scene>: transforms in their order, then what is in it.
-  void read_node(const Element& node, Affine3d pose, int depth) {
-    constexpr int kMostNodes = 100'000, kMostDepth = 200;
-    if (depth > kMostDepth) fail(node, "is nested too deep, or in itself", "at most " + std::to_string(kMostDepth) + " levels");
-    if (++nodes_ > kMostNodes) fail(node, "too many nodes", "at most " + std::to_string(kMostNodes));
+  /// What is in a <node> or <visual_scene>, in its order: a transform of what follows, a node, or a surface.
+  struct Part {
+    Affine3d transform = Affine3d::Identity();
+    const Element* node = nullptr;
+    const Surface* surface = nullptr;
+  };
+
+  /// Read once, however often the node is instanced.
+  const std::vector<Part>& parts_of(const Element& node) {
+    const auto [at, fresh] = parts_.try_emplace(&node);
+    std::vector<Part>& parts = at->second;
+    if (!fresh) return parts;
     const Element* unread = nullptr;
     for (auto* child = node.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
       const std::string_view name = child->Name();
-      if (name == "matrix" || name == "rotate" || name == "scale" || name == "translate") pose = pose * transform(*child, name);
+      if (name == "matrix" || name == "rotate" || name == "scale" || name == "translate")
+        parts.push_back({transform(*child, name)});
       if (name == "lookat" || name == "skew") unread = child;  // cameras have it
-      if (name == "node") read_node(*child, pose, depth + 1);
-      if (name == "instance_node") read_node(target(*child, "url", "node"), pose, depth + 1);
+      if (name == "node") parts.push_back({.node = child});
+      if (name == "instance_node") parts.push_back({.node = &target(*child, "url", "node")});
       if (name != "instance_geometry" && name != "instance_controller") continue;
       if (unread != nullptr) fail(*unread, "of a mesh", "matrix, rotate, scale, translate");
-      if (const Element* geometry = geometry_of(*child)) place_(surface(*geometry), pose);
+      if (const Element* geometry = geometry_of(*child)) parts.push_back({.surface = &surface(*geometry)});
+    }
+    return parts;
+  }
+
+  void place_node(const Element& node, Affine3d pose, int depth) {
+    constexpr int kMostParts = 300'000, kMostDepth = 200;
+    if (depth > kMostDepth) fail(node, "is nested too deep, or in itself", "at most " + std::to_string(kMostDepth) + " levels");
+    for (const Part& part : parts_of(node)) {
+      if (++placed_parts_ > kMostParts)
+        fail(node, "too many parts, those of instances counted each time", "at most " + std::to_string(kMostParts));
+      if (part.node != nullptr)
+        place_node(*part.node, pose, depth + 1);
+      else if (part.surface != nullptr)
+        place_(*part.surface, pose);
+      else
+        pose = pose * part.transform;
     }
   }
 
@@ -153,7 +177,7 @@ class DaeReader {
     if (count == 0 && faces.FirstChildElement("p") == nullptr) return;
     if (source == nullptr) fail(faces, "has no positions", "an input VERTEX with vertices of POSITION");
     if (!placed.contains(source)) placed[source] = read_positions(*source, surface);
-    const auto [first, points] = placed[source];
+    const std::int64_t first = placed[source].first, points = placed[source].second;
 
     std::size_t found = 0;
     std::vector<std::int64_t> corners;
@@ -180,6 +204,9 @@ class DaeReader {
       const Element* const vcount = faces.FirstChildElement("vcount");
       if (vcount == nullptr) fail(faces, "has no <vcount>", "<vcount> and <p>");
       sizes = numbers(*vcount);
+      const Element* const p = faces.FirstChildElement("p");
+      if (p != nullptr && p->NextSiblingElement("p") != nullptr)
+        fail(faces, "has several <p>", "one <p>, whose corners <vcount> counts");
     }
     for (auto* p = faces.FirstChildElement("p"); p != nullptr; p = p->NextSiblingElement("p")) {
       read_p(*p);
@@ -228,7 +255,10 @@ class DaeReader {
     const Element* const common = source.FirstChildElement("technique_common");
     const Element* const accessor = common == nullptr ? nullptr : common->FirstChildElement("accessor");
     if (accessor == nullptr) fail(source, "has no accessor", "<technique_common> with <accessor>");
-    const std::vector<double> values = numbers(target(*accessor, "source", "float_array"));
+    const Element& array = target(*accessor, "source", "float_array");
+    const auto [found, fresh] = arrays_.try_emplace(&array);  // read once, however many sources name it
+    if (fresh) found->second = numbers(array);
+    const std::vector<double>& values = found->second;
     const std::size_t stride = size_attribute(*accessor, "stride", 1), offset = size_attribute(*accessor, "offset", 0),
                       count = size_attribute(*accessor, "count", 0);
     std::array<std::size_t, 3> at{0, 1, 2};
@@ -254,7 +284,9 @@ class DaeReader {
   tinyxml2::XMLDocument document_;
   std::map<std::string_view, const Element*> by_id_;
   std::map<const Element*, Surface> surfaces_;
-  int nodes_ = 0;
+  std::map<const Element*, std::vector<double>> arrays_;
+  std::map<const Element*, std::vector<Part>> parts_;
+  int placed_parts_ = 0;
 };
 
 }  // namespace

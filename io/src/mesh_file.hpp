@@ -7,6 +7,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "swivel/core/types.hpp"
@@ -21,6 +22,11 @@ struct MeshFile {
   /// Throws InputError; line < 1 where it is unknown.
   [[noreturn]] void fail(int line, const std::string& what, const std::string& allowed) const;
 };
+
+/// A word for messages, in quotes. Of one of hundreds of megabytes the beginning is enough.
+inline std::string quoted(std::string_view word) {
+  return "'" + std::string(word.substr(0, 400)) + "'";
+}
 
 /// Points and triangles over them. Coordinates are rounded to single precision, which is what most mesh files hold: corners of text
 /// files that differ by less are one, so that a solid stays closed.

@@ -6,6 +6,12 @@
 
 namespace swivel::io {
 
+namespace {
+
+constexpr std::size_t kMostLineBytes = std::size_t{16} << 20;  // a face of millions of corners
+
+}  // namespace
+
 void read_obj(const MeshFile& file, const PlaceSurface& place) {
   Surface surface(file);
   std::string joined;
@@ -22,6 +28,7 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
       if (part.ends_with('\r')) part.remove_suffix(1);
       more = part.ends_with('\\');
       if (more) part.remove_suffix(1);
+      if (joined.size() + part.size() > kMostLineBytes) file.fail(here, "is too long", "lines of at most 16 MiB");
       joined += part;
       joined += ' ';
     }
@@ -32,7 +39,7 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
       for (double& coordinate : x) {
         const std::string_view word = words.next();
         const auto value = to_number<double>(word);
-        if (!value) file.fail(here, "'" + std::string(word) + "' is no coordinate", "v with three finite numbers");
+        if (!value) file.fail(here, quoted(word) + " is no coordinate", "v with three finite numbers");
         coordinate = *value;
       }
       surface.add_point(x[0], x[1], x[2], here);
@@ -42,7 +49,7 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
         const auto number = to_number<std::int64_t>(word.substr(0, word.find('/')));  // vertex/texture/normal
         const auto count = static_cast<std::int64_t>(surface.points().size());
         if (!number || *number == 0 || *number > count || *number < -count)
-          file.fail(here, "a face names vertex '" + std::string(word) + "' of " + std::to_string(count),
+          file.fail(here, "a face names vertex " + quoted(word) + " of " + std::to_string(count),
                     "vertices before it, counted from 1, or from -1 backwards");
         corners.push_back(*number > 0 ? *number - 1 : count + *number);
       }

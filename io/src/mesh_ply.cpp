@@ -38,7 +38,8 @@ class PlyReader {
     for (const Element& element : elements_) {
       // Every element of a binary file takes bytes, and of a text file a word, unless it has no property.
       if (element.count > (element.properties.empty() ? 0 : file_.text.size()))
-        fail("has " + std::to_string(element.count) + " of " + std::string(element.name) + ", more than the file holds",
+        fail("has " + std::to_string(element.count) + " of " + std::string(element.name.substr(0, 400)) +
+                 ", more than the file holds",
              "the number that follows the header");
       for (std::uint64_t k = 0; k < element.count; ++k) read_element(element);
     }
@@ -61,25 +62,29 @@ class PlyReader {
                                                                      {"double", "float64"}}};
     for (std::size_t k = 0; k < kNames.size(); ++k)
       if (word == kNames[k][0] || word == kNames[k][1]) return static_cast<Type>(k);
-    fail("'" + std::string(word) + "' is no type", "char, uchar, short, ushort, int, uint, float, double");
+    fail(quoted(word) + " is no type", "char, uchar, short, ushort, int, uint, float, double");
   }
 
   void read_header() {
     const char* const allowed = "a PLY header";
+    constexpr std::size_t kMostProperties = 1000;
+    std::size_t properties = 0;
     if (words_.next() != "ply") fail("does not begin with 'ply'", allowed);
     for (std::string_view word = words_.next(); word != "end_header"; word = words_.next()) {
+      if ((properties += word == "element" || word == "property") > kMostProperties)
+        fail("too many elements and properties", "at most " + std::to_string(kMostProperties));
       if (word == "format") {
         const std::string_view format = words_.next();
         binary_ = format != "ascii";
         big_ = format == "binary_big_endian";
         if (binary_ && !big_ && format != "binary_little_endian")
-          fail("unknown format '" + std::string(format) + "'", "ascii, binary_little_endian, binary_big_endian");
+          fail("unknown format " + quoted(format), "ascii, binary_little_endian, binary_big_endian");
         (void)words_.rest_of_line();
       } else if (word == "element") {
         Element element{words_.next(), 0, {}};
         const std::string_view count = words_.next();
         const auto value = to_number<std::uint64_t>(count);
-        if (!value) fail("'" + std::string(count) + "' is no number of elements", "a whole number");
+        if (!value) fail(quoted(count) + " is no number of elements", "a whole number");
         element.count = *value;
         elements_.push_back(std::move(element));
       } else if (word == "property") {
@@ -96,7 +101,7 @@ class PlyReader {
       } else if (word == "comment" || word == "obj_info") {
         (void)words_.rest_of_line();
       } else {
-        fail(word.empty() ? "the header has no end" : "'" + std::string(word) + "' in the header", allowed);
+        fail(word.empty() ? "the header has no end" : quoted(word) + " in the header", allowed);
       }
     }
     (void)words_.rest_of_line();
@@ -110,7 +115,7 @@ class PlyReader {
       const std::string_view word = words_.next();
       if (word.empty()) fail("is cut short", "as many elements as the header says");
       const auto number = to_number<double>(word);
-      if (!number) fail("'" + std::string(word) + "' is not a number", "numbers after the header");
+      if (!number) fail(quoted(word) + " is not a number", "numbers after the header");
       return *number;
     }
     const std::size_t size = size_of(type);
@@ -150,6 +155,8 @@ class PlyReader {
       if (property.count) {
         const bool corners = face && (property.name == "vertex_indices" || property.name == "vertex_index");
         const std::int64_t count = whole(*property.count, static_cast<std::int64_t>(file_.text.size()));
+        if (corners && count > static_cast<std::int64_t>(kMostTriangles) + 2)
+          fail("a face has " + std::to_string(count) + " corners", "at most " + std::to_string(kMostTriangles) + " triangles");
         for (std::int64_t k = 0; k < count; ++k) {
           if (corners)
             corners_.push_back(whole(property.type, INT32_MAX));

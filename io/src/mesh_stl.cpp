@@ -37,12 +37,12 @@ void read_text(const MeshFile& file, Surface& surface) {
   Words words(file.text);
   const auto expect = [&](std::string_view wanted) {
     if (const std::string_view word = words.next(); word != wanted)
-      file.fail(words.line(), word.empty() ? "is cut short" : "'" + std::string(word) + "'", "'" + std::string(wanted) + "'");
+      file.fail(words.line(), word.empty() ? "is cut short" : quoted(word), "'" + std::string(wanted) + "'");
   };
   const auto coordinate = [&] {
     const std::string_view word = words.next();
     const auto value = to_number<double>(word);
-    if (!value) file.fail(words.line(), "'" + std::string(word) + "' is no coordinate", "a finite number");
+    if (!value) file.fail(words.line(), quoted(word) + " is no coordinate", "a finite number");
     return *value;
   };
   while (!words.peek().empty()) {

@@ -8,6 +8,7 @@
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
+#include "swivel/core/rpy.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/io/io.hpp"
 #include "urdf.hpp"
@@ -20,50 +21,36 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostBodies = 10'000;  // in the scene, attached
-const std::vector<std::string> kPoseKeys{"xyz", "rpy", "quat"};
-const std::vector<std::string> kShapeKeys{"box", "cylinder", "sphere", "capsule", "mesh"};
 
-std::vector<std::string> keys(std::initializer_list<std::vector<std::string>> groups) {
-  std::vector<std::string> all;
-  for (const auto& group : groups) all.insert(all.end(), group.begin(), group.end());
-  return all;
-}
-
-Vector3d vector3_or_zero(const YamlSection& section, const std::string& key, Range range) {
+Vector3d vector3_or_zero(const YamlSection& section, const std::string& key) {
   const auto value = section.find_filled(key);
-  return value ? value->vector3(range) : Vector3d::Zero();
-}
-
-/// rpy = Rz Ry Rx.
-Quaterniond from_rpy(const Vector3d& rpy) {
-  return Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
-         Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
+  return value ? value->vector3() : Vector3d::Zero();
 }
 
 /// As written: not zero, but not yet of unit length.
 Quaterniond orientation(const YamlSection& section) {
-  const auto rpy = section.find_filled("rpy"), quat = section.find_filled("quat");
-  if (rpy && quat) quat->fail("rpy and quat are both given", "one of rpy, quat");
-  if (rpy) return from_rpy(rpy->vector3(Range::kFinite));
-  if (!quat) return Quaterniond::Identity();
-  const std::vector<double> q = quat->numbers(4, Range::kFinite);
+  const auto given = section.chosen("quat");
+  if (!given) return Quaterniond::Identity();
+  const auto& [key, value] = *given;
+  if (key == "rpy") return from_rpy(value.vector3());
+  const std::vector<double> q = value.numbers();
   const Quaterniond result(q[0], q[1], q[2], q[3]);
   if (!(result.norm() > 1e-9) || !std::isfinite(result.norm()))
-    quat->fail("quaternion has no direction", "[w, x, y, z] of length 1");
+    value.fail("quaternion has no direction", "[w, x, y, z] of length 1");
   return result;
 }
 
 Pose pose(const YamlSection& section) {
   Pose result = Pose::Identity();
-  result.translation() = vector3_or_zero(section, "xyz", Range::kCoordinate);
+  result.translation() = vector3_or_zero(section, "xyz");
   result.linear() = orientation(section).normalized().toRotationMatrix();
   return result;
 }
 
 Waypoint waypoint(const YamlValue& value) {
-  const YamlSection section = value.section(kPoseKeys);
+  const YamlSection section = value.section();
   Waypoint result;
-  result.position = section.require("xyz", "a list of 3 numbers").vector3(Range::kCoordinate);
+  result.position = section.require("xyz").vector3();
   result.orientation = orientation(section);
   const double norm = result.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3))
@@ -73,14 +60,14 @@ Waypoint waypoint(const YamlValue& value) {
 
 template <class Round>
 Round round_shape(const YamlValue& value) {
-  const YamlSection section = value.section({"radius", "length"});
-  const double radius = section.require("radius", kLengthAllowed).number(Range::kLength);
-  return {radius, section.require("length", kLengthAllowed).number(Range::kLength)};
+  const YamlSection section = value.section();
+  const double radius = section.require("radius").number();
+  return {radius, section.require("length").number()};
 }
 
 Sphere sphere(const YamlValue& value) {
-  if (!value.is_map()) return {value.number(Range::kLength)};
-  return {value.section({"radius"}).require("radius", kLengthAllowed).number(Range::kLength)};
+  if (!value.is_map()) return {value.number()};
+  return {value.section().require("radius").number()};
 }
 
 /// Calls `read`; what it finds wrong in another file is reported with the key that named that file.
@@ -95,16 +82,13 @@ auto with_key(const YamlValue& key, const Read& read) {
 
 class ProblemReader {
  public:
-  explicit ProblemReader(const fs::path& file)
-      : file_(file),
-        root_(load_yaml(file).section({"robot", "path", "scene", "resolution", "limits", "start", "start_at", "start_tolerance",
-                                       "cost", "refine", "vary"})) {}
+  explicit ProblemReader(const fs::path& file) : file_(file), root_(load_yaml(file, problem_schema()).section()) {}
 
   Problem read() {
     problem_.source = file_.string();
-    read_robot(root_.require("robot", "a section with urdf, base_link, tip_link"));
+    read_robot(root_.require("robot"));
     read_scene();
-    read_path(root_.require("path", "a section with waypoints or file"));
+    read_path(root_.require("path"));
     if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
     if (const auto value = root_.find_filled("limits")) read_limits(*value);
     if (const auto value = root_.find_filled("start")) read_start(*value);
@@ -135,18 +119,17 @@ class ProblemReader {
   }
 
   void read_robot(const YamlValue& value) {
-    const YamlSection section = value.section({"urdf", "srdf", "packages", "base_link", "tip_link", "tool", "hold", "attached"});
-    const YamlValue urdf = section.require("urdf", "the name of a URDF file");
+    const YamlSection section = value.section();
+    const YamlValue urdf = section.require("urdf");
     const auto srdf = section.find_filled("srdf");
-    const YamlValue base = section.require("base_link", "the name of a link"),
-                    tip = section.require("tip_link", "the name of a link");
+    const YamlValue base = section.require("base_link"), tip = section.require("tip_link");
     const auto packages = read_packages(section);
     const std::shared_ptr<RobotModel> robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages); });
-    if (srdf) with_key(*srdf, [&] { load_srdf(resolve(*srdf), *robot); });
+    if (srdf) with_key(*srdf, [&] { load_srdf({resolve(*srdf)}, *robot); });
     problem_.model = robot;
     problem_.base_link = link_name(base);
     problem_.tip_link = link_name(tip);
-    if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section(kPoseKeys));
+    if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());
     if (const auto hold = section.find_filled("hold")) read_hold(*hold);
     if (const auto attached = section.find_filled("attached"))
       for (const YamlValue& item : attached->items()) read_attached(item);
@@ -178,14 +161,14 @@ class ProblemReader {
       if (problem_.model->find_joint(joint) < 0)
         position.fail("unknown joint '" + joint + "', nearest is '" + nearest_name(joint, joint_names()) + "'",
                       "a joint of " + problem_.model->source);
-      problem_.hold[joint] = position.number(Range::kCoordinate);
+      problem_.hold[joint] = position.number();
     }
   }
 
   void read_attached(const YamlValue& value) {
-    const YamlSection section = value.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"link"}}));
+    const YamlSection section = value.section();
     AttachedBody body;
-    const YamlValue name = section.require("name", "a name");
+    const YamlValue name = section.require("name");
     body.name = name.name();
     if (problem_.model->find_link(body.name) >= 0) name.fail("'" + body.name + "' is a link of the robot", "a name of its own");
     if (is_attached(body.name)) name.fail("'" + body.name + "' is attached twice", "a name of its own");
@@ -197,20 +180,10 @@ class ProblemReader {
   }
 
   Shape shape(const YamlSection& section) {
-    std::vector<YamlValue> given;
-    std::string kind;
-    for (const std::string& key : kShapeKeys)
-      if (const auto value = section.find(key)) {
-        given.push_back(*value);
-        kind = key;
-      }
-    const std::string allowed = "exactly one of box, cylinder, sphere, capsule, mesh";
-    if (given.empty()) section.self().fail("has no shape", allowed);
-    if (given.size() > 1) given.back().fail("a second shape", allowed);
-    const YamlValue& value = given.front();
+    const auto [kind, value] = *section.chosen("mesh");
     const auto scale = section.find_filled("scale");
     if (scale && kind != "mesh") scale->fail("scale of a " + kind, "scale with mesh only");
-    if (kind == "box") return Box{value.vector3(Range::kLength)};
+    if (kind == "box") return Box{value.vector3()};
     if (kind == "cylinder") return round_shape<Cylinder>(value);
     if (kind == "capsule") return round_shape<Capsule>(value);
     if (kind == "sphere") return sphere(value);
@@ -220,7 +193,7 @@ class ProblemReader {
   }
 
   static Vector3d mesh_scale(const YamlValue& value) {
-    const Vector3d factors = value.is_sequence() ? value.vector3(Range::kFinite) : Vector3d::Constant(value.number(Range::kFinite));
+    const Vector3d factors = value.is_sequence() ? value.vector3() : Vector3d::Constant(value.number());
     if ((factors.array() == 0).any()) value.fail("is zero", "a number or [x, y, z], none of them 0");
     return factors;
   }
@@ -232,8 +205,8 @@ class ProblemReader {
     if (items.size() > kMostBodies)
       value->fail(std::to_string(items.size()) + " objects", "at most " + std::to_string(kMostBodies));
     for (const YamlValue& item : items) {
-      const YamlSection section = item.section(keys({{"name"}, kShapeKeys, {"scale"}, kPoseKeys, {"allow"}}));
-      const YamlValue name = section.require("name", "a name");
+      const YamlSection section = item.section();
+      const YamlValue name = section.require("name");
       SceneObject object;
       object.name = name.name();
       if (object.name == problem_.base_link) name.fail("'" + object.name + "' is the base link", "a name of its own");
@@ -254,7 +227,7 @@ class ProblemReader {
   }
 
   void read_path(const YamlValue& value) {
-    const YamlSection section = value.section({"frame", "waypoints", "file", "smooth", "roll"});
+    const YamlSection section = value.section();
     if (const auto smooth = section.find("smooth")) read_smooth(*smooth);
     if (const auto roll = section.find_filled("roll")) read_roll(*roll);
     problem_.path_frame = problem_.base_link;
@@ -263,17 +236,14 @@ class ProblemReader {
       if (problem_.path_frame != problem_.base_link && !is_object(problem_.path_frame))
         frame->fail("unknown frame '" + problem_.path_frame + "'", "'" + problem_.base_link + "' or the name of a scene object");
     }
-    const auto waypoints = section.find_filled("waypoints"), file = section.find_filled("file");
-    const char* const allowed = "exactly one of waypoints, file";
-    if (waypoints && file) file->fail("waypoints and file are both given", allowed);
-    if (!waypoints && !file) value.fail("has neither waypoints nor file", allowed);
-    if (file) {
-      problem_.waypoints = with_key(*file, [&] { return load_path(resolve(*file)); });
+    const auto [key, poses] = *section.chosen("waypoints");
+    if (key == "file") {
+      problem_.waypoints = with_key(poses, [&, &file = poses] { return load_path(resolve(file)); });
       return;
     }
-    for (const YamlValue& item : waypoints->items()) problem_.waypoints.push_back(waypoint(item));
+    for (const YamlValue& item : poses.items()) problem_.waypoints.push_back(waypoint(item));
     if (problem_.waypoints.size() < 2)
-      waypoints->fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
+      poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
   }
 
   void read_roll(const YamlValue& value) {
@@ -283,7 +253,7 @@ class ProblemReader {
       if (value.text() != "free") value.fail("is '" + value.text() + "'", "free, or [lower, upper] in rad");
       return;
     }
-    const std::vector<double> ends = value.numbers(2, Range::kFinite);
+    const std::vector<double> ends = value.numbers();
     problem_.roll = Roll{ends[0], ends[1]};
     if (!(ends[0] < ends[1])) value.fail("is empty", "[lower, upper] with lower < upper");
   }
@@ -292,77 +262,72 @@ class ProblemReader {
   void read_smooth(const YamlValue& value) {
     problem_.smooth = value.is_null() ? PathSmoothing{0, 0} : PathSmoothing{};
     if (value.is_null()) return;
-    const YamlSection section = value.section({"position", "angle"});
-    set(section, "position", Range::kExtent, problem_.smooth->position);
-    set(section, "angle", Range::kNonNegative, problem_.smooth->angle);
+    const YamlSection section = value.section();
+    set(section, "position", problem_.smooth->position);
+    set(section, "angle", problem_.smooth->angle);
   }
 
   void read_refine(const YamlValue& value) {
-    const YamlSection section = value.section({"smoothing", "joint_margin", "singular_margin"});
-    set(section, "smoothing", Range::kNonNegative, problem_.refinement.smoothing);
-    set(section, "joint_margin", Range::kNonNegative, problem_.refinement.joint_margin);
-    set(section, "singular_margin", Range::kNonNegative, problem_.refinement.singular_margin);
+    const YamlSection section = value.section();
+    set(section, "smoothing", problem_.refinement.smoothing);
+    set(section, "joint_margin", problem_.refinement.joint_margin);
+    set(section, "singular_margin", problem_.refinement.singular_margin);
   }
 
   void read_resolution(const YamlValue& value) {
-    const YamlSection section = value.section({"ds", "dphi", "dalpha", "arc"});
+    const YamlSection section = value.section();
     Resolution& resolution = problem_.resolution;
-    set(section, "ds", Range::kLength, resolution.ds);
-    set(section, "dphi", Range::kPositive, resolution.dphi);
-    set(section, "dalpha", Range::kPositive, resolution.dalpha);
-    set(section, "arc", Range::kPositive, resolution.arc);
-    if (resolution.dphi > kTwoPi) section.find("dphi")->fail("is more than a turn", "a finite number > 0, at most 2*pi");
+    set(section, "ds", resolution.ds);
+    set(section, "dphi", resolution.dphi);
+    set(section, "dalpha", resolution.dalpha);
+    set(section, "arc", resolution.arc);
+    if (const auto arcs = section.find("arcs")) resolution.arcs = word(*arcs, {false, true});
   }
 
   void read_limits(const YamlValue& value) {
-    const YamlSection section =
-        value.section({"clearance", "self_clearance", "manipulability", "joint_margin", "joint_step", "arm_slope", "roll_slope",
-                       "step_error", "tool_path_error", "tool_angle_error", "tool_speed", "tool_turn_speed", "edges",
-                       "edge_clearance", "edge_tolerance", "joint_speed", "joint_acceleration", "joint_jerk"});
+    const YamlSection section = value.section();
     Limits& limits = problem_.limits;
-    set(section, "clearance", Range::kExtent, limits.clearance);
-    set(section, "self_clearance", Range::kExtent, limits.self_clearance);
-    set(section, "manipulability", Range::kNonNegative, limits.manipulability);
-    set(section, "joint_margin", Range::kNonNegative, limits.joint_margin);
-    set(section, "joint_step", Range::kPositive, limits.joint_step);
-    set(section, "arm_slope", Range::kPositive, limits.arm_slope);
-    set(section, "roll_slope", Range::kPositive, limits.roll_slope);
-    set(section, "step_error", Range::kPositive, limits.step_error);
-    set(section, "tool_path_error", Range::kPositive, limits.tool_path_error);
-    set(section, "tool_angle_error", Range::kPositive, limits.tool_angle_error);
-    set(section, "tool_speed", Range::kPositive, limits.tool_speed);
-    set(section, "tool_turn_speed", Range::kPositive, limits.tool_turn_speed);
-    set(section, "edge_clearance", Range::kExtent, limits.edge_clearance);
-    set(section, "edge_tolerance", Range::kPositive, limits.edge_tolerance);
+    set(section, "clearance", limits.clearance);
+    set(section, "self_clearance", limits.self_clearance);
+    set(section, "manipulability", limits.manipulability);
+    set(section, "joint_margin", limits.joint_margin);
+    set(section, "joint_step", limits.joint_step);
+    set(section, "arm_slope", limits.arm_slope);
+    set(section, "roll_slope", limits.roll_slope);
+    set(section, "step_error", limits.step_error);
+    set(section, "tool_path_error", limits.tool_path_error);
+    set(section, "tool_angle_error", limits.tool_angle_error);
+    set(section, "tool_speed", limits.tool_speed);
+    set(section, "tool_turn_speed", limits.tool_turn_speed);
+    set(section, "edge_clearance", limits.edge_clearance);
+    set(section, "edge_tolerance", limits.edge_tolerance);
     set(section, "joint_speed", limits.joint_speed);
     set(section, "joint_acceleration", limits.joint_acceleration);
     set(section, "joint_jerk", limits.joint_jerk);
-    if (const auto edges = section.find("edges"))
-      limits.edges = choice<EdgeMode>(*edges, {{"continuous", EdgeMode::kContinuous}, {"nodes", EdgeMode::kNodes}});
+    if (const auto edges = section.find("edges")) limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
   }
 
   void read_start(const YamlValue& value) {
-    const YamlValue joints = value.section({"joints"}).require("joints", "a list of 7 numbers");
-    problem_.start = Config::Map(joints.numbers(kDof, Range::kFinite).data());
+    const YamlValue joints = value.section().require("joints");
+    problem_.start = Config::Map(joints.numbers().data());
   }
 
   void read_start_place() {
     const auto at = root_.find_filled("start_at"), tolerance = root_.find_filled("start_tolerance");
     for (const auto& value : {at, tolerance})
       if (value && !problem_.start) value->fail("is given without start", "this key beside start");
-    if (at) problem_.start_at = at->number(Range::kExtent);
+    if (at) problem_.start_at = at->number();
     if (!tolerance) return;
-    problem_.start_tolerance = tolerance->number(Range::kPositive);
+    problem_.start_tolerance = tolerance->number();
     if (problem_.start_tolerance > kMostStartTolerance) tolerance->fail("is more than 0.1", "a number > 0, at most 0.1");
   }
 
   void read_cost(const YamlValue& value) {
-    const YamlSection section = value.section({"metric", "weights"});
+    const YamlSection section = value.section();
     if (const auto metric = section.find("metric"))
-      problem_.cost.metric =
-          choice<CostMetric>(*metric, {{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}});
-    if (const auto weights = section.find("weights")) {
-      const std::vector<double> values = weights->numbers(kDof, Range::kNonNegative);
+      problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
+    if (const auto weights = section.find_filled("weights")) {
+      const std::vector<double> values = weights->numbers();
       for (std::size_t k = 0; k < values.size(); ++k)
         if (!weight_allowed(values[k])) weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
       std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
@@ -371,21 +336,20 @@ class ProblemReader {
 
   void read_vary(const YamlValue& value) {
     for (const YamlValue& item : value.items()) {
-      const YamlSection section = item.section({"object", "xyz", "rpy"});
-      const YamlValue object = section.require("object", "the name of a scene object");
+      const YamlSection section = item.section();
+      const YamlValue object = section.require("object");
       if (!is_object(object.text())) object.fail("unknown object '" + object.text() + "'", "the name of a scene object");
-      problem_.vary.push_back(
-          {object.text(), vector3_or_zero(section, "xyz", Range::kExtent), vector3_or_zero(section, "rpy", Range::kNonNegative)});
+      problem_.vary.push_back({object.text(), vector3_or_zero(section, "xyz"), vector3_or_zero(section, "rpy")});
     }
   }
 
   /// Keeps the default where the key is absent.
-  static void set(const YamlSection& section, const char* key, Range range, double& target) {
-    if (const auto value = section.find(key)) target = value->number(range);
+  static void set(const YamlSection& section, const char* key, double& target) {
+    if (const auto value = section.find(key)) target = value->number();
   }
   /// The same; an explicit null means "no such limit".
-  static void set(const YamlSection& section, const char* key, Range range, std::optional<double>& target) {
-    if (const auto value = section.find(key)) target = value->is_null() ? std::nullopt : std::optional(value->number(range));
+  static void set(const YamlSection& section, const char* key, std::optional<double>& target) {
+    if (const auto value = section.find(key)) target = value->is_null() ? std::nullopt : std::optional(value->number());
   }
 
   /// A number for all joints, or one each.
@@ -395,19 +359,15 @@ class ProblemReader {
     target.reset();
     if (value->is_null()) return;
     target.emplace();
-    if (!value->is_sequence()) return target->fill(value->number(Range::kPositive));
-    const std::vector<double> values = value->numbers(kDof, Range::kPositive);
+    if (!value->is_sequence()) return target->fill(value->number());
+    const std::vector<double> values = value->numbers();
     std::copy(values.begin(), values.end(), target->begin());
   }
 
+  /// What the word stands for; `values` in the order of the schema's words.
   template <class Enum>
-  static Enum choice(const YamlValue& value, const std::vector<std::pair<std::string, Enum>>& choices) {
-    std::string allowed;
-    for (const auto& [name, result] : choices) {
-      if (value.text() == name) return result;
-      allowed += (allowed.empty() ? "" : ", ") + name;
-    }
-    value.fail("is '" + value.text() + "'", "one of " + allowed);
+  static Enum word(const YamlValue& value, std::initializer_list<Enum> values) {
+    return std::vector<Enum>(values).at(value.word());
   }
 
   const fs::path& file_;

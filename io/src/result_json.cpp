@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nlohmann/json.hpp>
 
+#include "schema.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 
@@ -45,7 +46,7 @@ Json counters_json(const Counters& counters) {
 }
 
 Json time_json(const std::map<std::string, double>& time_ms) {
-  Json json = {{"load", 0.0}, {"prepare", 0.0}, {"plan", 0.0}, {"report", 0.0}};
+  Json json = {{"load", 0.0}, {"prepare", 0.0}, {"plan", 0.0}, {"check", 0.0}, {"report", 0.0}};
   Json stages = Json::object();
   for (const auto& [name, value] : time_ms) (json.contains(name) ? json : stages)[name] = value;
   json["stages"] = std::move(stages);
@@ -99,6 +100,11 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
           {"together", std::move(together)},
           {"empty_layers", std::move(empty)},
           {"removed", std::move(removed)},
+          {"holds", to_string(diagnosis.holds())},
+          {"unreachable", diagnosis.unreachable ? Json{{"layer", diagnosis.unreachable->layer},
+                                                       {"s", diagnosis.unreachable->s},
+                                                       {"waypoint", waypoint_json(diagnosis.unreachable->waypoint)}}
+                                                : Json(nullptr)},
           {"complete", diagnosis.complete},
           {"layers_known", diagnosis.layers_known}};
 }
@@ -178,6 +184,21 @@ Json advice_json(const std::vector<Advice>& advice) {
   return list;
 }
 
+/// What the certificate holds; the whole is a file of its own.
+Json certificate_json(const Cut& cut, std::size_t bytes) {
+  const CutCounts counts = count(cut);
+  Json removed = Json::array();
+  for (std::size_t k = 0; k < cut.witnesses.size(); ++k)
+    removed.push_back({{"reason", words(cut.witnesses[k])},
+                       {"cause", cause_json(cut.witnesses[k])},
+                       {"nodes", counts.by_witness[k].nodes},
+                       {"edges", counts.by_witness[k].edges}});
+  return {{"layers", {cut.first_layer, cut.first_layer + static_cast<int>(cut.band.size()) - 1}},
+          {"reached", counts.reached},
+          {"removed", std::move(removed)},
+          {"bytes", bytes}};
+}
+
 Json refinement_json(const Refined& refined) {
   return {{"refined", refined.refined},         {"reason", text_or_null(refined.reason)},
           {"cost_before", refined.cost_before}, {"cost", refined.cost},
@@ -247,7 +268,9 @@ std::string to_json(const CampaignSummary& summary) {
 }
 
 std::string error_json(const std::string& message) {
-  return Json{{"status", "error"}, {"message", message}}.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+  return Json{{"schema_version", kResultVersion}, {"status", "error"}, {"message", message}}.dump(2, ' ', false,
+                                                                                                  Json::error_handler_t::replace) +
+         '\n';
 }
 
 std::string to_json(const PlanResult& result) {
@@ -260,9 +283,11 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   const auto if_known = [&](bool known, double value) { return solved && known ? Json(value) : Json(nullptr); };
   const Evidence& evidence = result.evidence;
   Json json;
+  json["schema_version"] = kResultVersion;
   json["status"] = to_string(result.status);
   json["summary"] = summary_json(result);
   json["cost"] = if_known(true, result.cost);
+  json["checked"] = solved ? Json(result.checked) : Json(nullptr);
   json["planner"] = result.planner;
   json["threads"] = result.threads;
   json["lattice"] = lattice_json(result.lattice, solved);
@@ -278,6 +303,7 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   json["motion"] = aftermath.motion ? motion_json(*aftermath.motion, aftermath.timing, result.joint_names) : Json(nullptr);
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["advice"] = aftermath.advice ? advice_json(*aftermath.advice) : Json(nullptr);
+  json["certificate"] = aftermath.cut ? certificate_json(*aftermath.cut, aftermath.cut_bytes) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};

@@ -14,6 +14,8 @@ namespace {
 
 using Pair = std::pair<std::string, std::string>;
 
+constexpr std::size_t kMostPairs = 1'000'000;
+
 std::string attribute(const tinyxml2::XMLElement& element, const char* name, const std::string& file) {
   const char* const value = element.Attribute(name);
   if (value == nullptr || !is_valid_name(value))
@@ -29,8 +31,8 @@ Pair ordered(std::string a, std::string b) {
 
 }  // namespace
 
-void load_srdf(const std::filesystem::path& srdf, RobotModel& robot) {
-  const std::string file = srdf.string();
+void load_srdf(const XmlSource& srdf, RobotModel& robot) {
+  const std::string file = srdf.file.string();
   tinyxml2::XMLDocument document;
   const tinyxml2::XMLElement& root = load_robot_xml(srdf, "SRDF", document);
   const auto for_each = [&](const char* name, const auto& visit) {
@@ -41,13 +43,18 @@ void load_srdf(const std::filesystem::path& srdf, RobotModel& robot) {
   };
   // As MoveIt reads them: defaults first, then pairs enabled again, then pairs disabled.
   std::set<Pair> disabled;
+  const auto disable = [&](const Pair& pair, const tinyxml2::XMLElement& e) {
+    disabled.insert(pair);
+    if (disabled.size() > kMostPairs)
+      bad_input(at_line(file, e.GetLineNum()), "disables too many pairs", "at most " + std::to_string(kMostPairs));
+  };
   for_each("disable_default_collisions", [&](const auto& e) {
     const std::string link = attribute(e, "link", file);
     for (const Link& other : robot.links)
-      if (other.name != link) disabled.insert(ordered(link, other.name));
+      if (other.name != link) disable(ordered(link, other.name), e);
   });
   for_each("enable_collisions", [&](const auto& e) { disabled.erase(pair_of(e)); });
-  for_each("disable_collisions", [&](const auto& e) { disabled.insert(pair_of(e)); });
+  for_each("disable_collisions", [&](const auto& e) { disable(pair_of(e), e); });
   robot.has_srdf = true;
   robot.disabled_pairs.assign(disabled.begin(), disabled.end());
 }

@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bad_input.hpp"
 #include "files.hpp"
+#include "schema.hpp"
 #include "swivel/io/motion.hpp"
 #include "trajectory_columns.hpp"
 
 namespace swivel::io {
 
-namespace {
-
-std::vector<std::string> timed_header(const JointNames& joint_names) {
-  std::vector<std::string> header = trajectory_header(joint_names);
-  header.insert(header.begin(), "t");
-  for (const char* suffix : {"_v", "_a"})
-    for (const std::string& name : joint_names) header.push_back(name + suffix);
-  return header;
+const Schema& motion_schema() {
+  static const Schema schema = [] {
+    std::vector<Schema::Key> keys = trajectory_schema().keys;
+    for (Schema::Key& key : keys) key.group = "trajectory";
+    keys.insert(keys.begin(), {"t", number(), "s", required(), "since the motion began; ascends"});
+    keys.push_back({"JOINT_v", number(), "rad/s", required(), "its speed"});
+    keys.push_back({"JOINT_a", number(), "rad/s²", required(), "its acceleration"});
+    return section("timed", std::move(keys));
+  }();
+  return schema;
 }
-
-}  // namespace
 
 std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names) {
   std::string text;
-  for (const std::string& name : timed_header(joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
+  for (const std::string& name : csv_header(motion_schema(), joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (const TimedRow& row : motion.rows) {
     text += format_double(row.t) + ',' + trajectory_fields(row.row);
@@ -32,7 +33,7 @@ std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names)
 }
 
 TrajectoryFile load_trajectory_file(const std::filesystem::path& csv, const JointNames& joint_names) {
-  const CsvTable table(csv, {trajectory_header(joint_names), timed_header(joint_names)});
+  const CsvTable table(csv, {csv_header(trajectory_schema(), joint_names), csv_header(motion_schema(), joint_names)});
   const bool timed = table.header() == 1;
   TrajectoryFile file;
   for (std::size_t k = 0; k < table.rows(); ++k) {

@@ -2,14 +2,40 @@
 #include "bad_input.hpp"
 #include "csv.hpp"
 #include "files.hpp"
+#include "schema.hpp"
 #include "swivel/io/io.hpp"
 #include "trajectory_columns.hpp"
 
 namespace swivel::io {
 
-std::vector<std::string> trajectory_header(const std::array<std::string, kDof>& joint_names) {
-  std::vector<std::string> header{"s", "phi", "branch"};
-  header.insert(header.end(), joint_names.begin(), joint_names.end());
+const Schema& trajectory_schema() {
+  static const Schema schema =
+      section("trajectory",
+              {
+                  {"s", number(), "m", required(), "along the path; equal in rows of a segment that only turns"},
+                  {"phi", number(), "rad", required(),
+                   "carried arm angle; `check` takes it modulo 2π. Of arms that are not S-R-S a generalised arm angle, for plots, "
+                   "which `check` "
+                   "does not look at; with `path.roll` the roll, which it does"},
+                  {"branch", integer(), "", required(),
+                   "0 to 7, the sum of 1 (shoulder), 2 (wrist), 4 (elbow), each where the sine of that angle, measured from its "
+                   "singular pose, "
+                   "is negative. Of other arms 0 to 3, for plots: the signs of two determinants"},
+                  {"JOINT", number(), "rad", required(), "a column for each joint, with its name; continuous joints without jumps"},
+              });
+  return schema;
+}
+
+std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names) {
+  constexpr std::string_view kJoint = "JOINT";
+  std::vector<std::string> header;
+  for (const std::string& name : row.key_names()) {
+    if (!name.starts_with(kJoint)) {
+      header.push_back(name);
+      continue;
+    }
+    for (const std::string& joint : joint_names) header.push_back(joint + name.substr(kJoint.size()));
+  }
   return header;
 }
 
@@ -34,7 +60,8 @@ TrajectoryRow read_trajectory_row(const CsvTable& table, std::size_t k, std::siz
 
 std::string to_csv(const PlanResult& result) {
   std::string text;
-  for (const std::string& name : trajectory_header(result.joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
+  for (const std::string& name : csv_header(trajectory_schema(), result.joint_names))
+    text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (const TrajectoryRow& row : result.trajectory) text += trajectory_fields(row) + '\n';
   return text;
@@ -45,7 +72,7 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 }
 
 std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {
-  const CsvTable table(csv, trajectory_header(joint_names));
+  const CsvTable table(csv, csv_header(trajectory_schema(), joint_names));
   std::vector<TrajectoryRow> rows;
   rows.reserve(table.rows());
   for (std::size_t k = 0; k < table.rows(); ++k) rows.push_back(read_trajectory_row(table, k, 0));

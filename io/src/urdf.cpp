@@ -26,6 +26,7 @@ namespace swivel::io {
 namespace {
 
 constexpr std::size_t kMostLinks = 10'000;  // the largest real ones have hundreds
+constexpr std::size_t kMostShapes = 10'000;
 
 /// Collects what urdfdom would print to stderr.
 class MessageCollector : public console_bridge::OutputHandler {
@@ -112,12 +113,12 @@ Pose origin(const urdf::Pose& pose, const std::string& at) {
 class ModelBuilder {
  public:
   /// With `missing_meshes` links get no shapes, and the names of meshes are looked up alone.
-  ModelBuilder(const std::filesystem::path& urdf, const Packages& packages, std::vector<std::string>* missing_meshes)
-      : urdf_(urdf), packages_(packages), missing_meshes_(missing_meshes) {}
+  ModelBuilder(const XmlSource& source, const Packages& packages, std::vector<std::string>* missing_meshes)
+      : source_(source), urdf_(source.file), packages_(packages), missing_meshes_(missing_meshes) {}
 
   std::shared_ptr<RobotModel> build() {
     tinyxml2::XMLDocument document;
-    tinyxml2::XMLElement& robot = load_robot_xml(urdf_, "URDF", document);
+    tinyxml2::XMLElement& robot = load_robot_xml(source_, "URDF", document);
     strip(robot);
     check_name(robot);
     check_names(robot, "link", links_);
@@ -196,6 +197,8 @@ class ModelBuilder {
     Link link;
     link.name = element.Attribute("name");
     for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array) {
+      if (++shapes_ > kMostShapes)
+        bad_input(where(element), "too many collision shapes", "at most " + std::to_string(kMostShapes) + " of a robot");
       if (missing_meshes_ != nullptr) {
         look_up_mesh(*collision->geometry, where(element));
         continue;
@@ -332,31 +335,43 @@ class ModelBuilder {
     joint.mimic = Joint::Mimic{leader, mimic->multiplier, mimic->offset};
   }
 
+  const XmlSource& source_;
   const std::filesystem::path& urdf_;
   const Packages& packages_;
   std::vector<std::string>* missing_meshes_;
   urdf::ModelInterfaceSharedPtr parsed_;
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
   MeshCache meshes_;
+  std::size_t shapes_ = 0;
   std::map<std::string, int, std::less<>> links_, joints_;  ///< where each stands in the model
 };
 
 }  // namespace
 
 std::shared_ptr<RobotModel> load_urdf(const std::filesystem::path& urdf, const Packages& packages) {
-  return ModelBuilder(urdf, packages, nullptr).build();
+  const XmlSource source{urdf};
+  return ModelBuilder(source, packages, nullptr).build();
 }
 
 std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
                                                   const std::map<std::string, std::filesystem::path>& packages,
                                                   std::vector<std::string>& missing_meshes) {
-  return ModelBuilder(urdf, packages, &missing_meshes).build();
+  const XmlSource source{urdf};
+  return ModelBuilder(source, packages, &missing_meshes).build();
 }
 
 std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
                                              const std::map<std::string, std::filesystem::path>& packages) {
   const std::shared_ptr<RobotModel> robot = load_urdf(urdf, packages);
-  if (!srdf.empty()) load_srdf(srdf, *robot);
+  if (!srdf.empty()) load_srdf({srdf}, *robot);
+  return robot;
+}
+
+std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf,
+                                              const std::map<std::string, std::filesystem::path>& packages) {
+  const XmlSource source{"URDF text", urdf};
+  const std::shared_ptr<RobotModel> robot = ModelBuilder(source, packages, nullptr).build();
+  if (!srdf.empty()) load_srdf({"SRDF text", srdf}, *robot);
   return robot;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "xml.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "bad_input.hpp"
@@ -10,6 +11,9 @@ namespace swivel::io {
 
 tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text, const char* kind, const char* root_name,
                                 tinyxml2::XMLDocument& document) {
+  constexpr std::ptrdiff_t kMostTags = 2'000'000;  // each takes many times its bytes
+  if (std::count(text.begin(), text.end(), '<') > kMostTags)
+    bad_input(file, "has too many tags", "at most " + std::to_string(kMostTags));
   const std::string allowed = std::string("well-formed ") + kind + " with a <" + root_name + "> element";
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
     bad_input(at_line(file, document.ErrorLineNum()), std::string("not XML (") + document.ErrorName() + ")", allowed);
@@ -19,8 +23,13 @@ tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text
   return *root;
 }
 
-tinyxml2::XMLElement& load_robot_xml(const std::filesystem::path& file, const char* kind, tinyxml2::XMLDocument& document) {
-  return parse_xml(file.string(), read_file(file, std::string(kind) + " file", kMostXmlBytes), kind, "robot", document);
+tinyxml2::XMLElement& load_robot_xml(const XmlSource& source, const char* kind, tinyxml2::XMLDocument& document) {
+  const std::string name = source.file.string();
+  if (!source.text)
+    return parse_xml(name, read_file(source.file, std::string(kind) + " file", kMostXmlBytes), kind, "robot", document);
+  if (source.text->size() > kMostXmlBytes)
+    bad_input(name, "has " + std::to_string(source.text->size()) + " bytes", "at most " + std::to_string(kMostXmlBytes));
+  return parse_xml(name, *source.text, kind, "robot", document);
 }
 
 }  // namespace swivel::io

@@ -3,6 +3,7 @@
 #include <tinyxml2.h>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace swivel::io {
@@ -11,8 +12,12 @@ namespace swivel::io {
 tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text, const char* kind, const char* root_name,
                                 tinyxml2::XMLDocument& document);
 
-/// The same for a file whose root is <robot>. `kind` is "URDF" or "SRDF".
-[[nodiscard]] tinyxml2::XMLElement& load_robot_xml(const std::filesystem::path& file, const char* kind,
-                                                   tinyxml2::XMLDocument& document);
+/// A file to read; where the text is given, that text, by this name in messages.
+struct XmlSource {
+  std::filesystem::path file;
+  std::optional<std::string> text = {};
+};
+/// The same for a source whose root is <robot>. `kind` is "URDF" or "SRDF".
+[[nodiscard]] tinyxml2::XMLElement& load_robot_xml(const XmlSource& source, const char* kind, tinyxml2::XMLDocument& document);
 
 }  // namespace swivel::io

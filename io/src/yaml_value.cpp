@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "bad_input.hpp"
 #include "files.hpp"
@@ -13,42 +14,6 @@
 namespace swivel::io {
 
 namespace {
-
-const char* allowed_text(Range range) {
-  switch (range) {
-    case Range::kNonNegative:
-      return "a finite number >= 0";
-    case Range::kPositive:
-      return "a finite number > 0";
-    case Range::kCoordinate:
-      return "a number from -1000 to 1000";
-    case Range::kExtent:
-      return "a number >= 0, at most 1000";
-    case Range::kLength:
-      return kLengthAllowed;
-    case Range::kFinite:
-      break;
-  }
-  return "a finite number";
-}
-
-bool in_range(double value, Range range) {
-  switch (range) {
-    case Range::kNonNegative:
-      return value >= 0 && std::isfinite(value);
-    case Range::kPositive:
-      return value > 0 && std::isfinite(value);
-    case Range::kCoordinate:
-      return std::abs(value) <= kMostMetres;
-    case Range::kExtent:
-      return value >= 0 && value <= kMostMetres;
-    case Range::kLength:
-      return value > 0 && value <= kMostMetres;
-    case Range::kFinite:
-      break;
-  }
-  return std::isfinite(value);
-}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;
@@ -64,8 +29,8 @@ std::string shown(const YAML::Node& node) {
 
 }  // namespace
 
-YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, std::string key, int line)
-    : file_(std::move(file)), node_(std::move(node)), key_(std::move(key)), line_(line) {}
+YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key, int line)
+    : file_(std::move(file)), node_(std::move(node)), schema_(&schema), key_(std::move(key)), line_(line) {}
 
 std::string YamlValue::where() const {
   return at_line(file_->name, line_) + (key_.empty() ? "" : ": " + key_);
@@ -75,25 +40,27 @@ void YamlValue::fail(const std::string& what, const std::string& allowed) const 
   bad_input(where(), what, allowed);
 }
 
-double YamlValue::number(Range range) const {
+double YamlValue::number() const {
+  const Range& range = schema_->as(Schema::Type::kNumber).range;
   double value = 0;
-  if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value))
-    fail(shown(node_) + " is not a number", allowed_text(range));
-  if (!in_range(value, range)) fail("is " + node_.Scalar(), allowed_text(range));
+  if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value)) fail(shown(node_) + " is not a number", range.allowed);
+  if (!range.has(value)) fail("is " + node_.Scalar(), range.allowed);
   return value;
 }
 
-std::vector<double> YamlValue::numbers(std::size_t count, Range range) const {
+std::vector<double> YamlValue::numbers() const {
+  const std::size_t count = schema_->as(Schema::Type::kList).count;
   const std::string allowed = "a list of " + std::to_string(count) + " numbers";
   if (!node_.IsSequence()) fail(shown(node_) + " is not a list", allowed);
   if (node_.size() != count) fail("has " + std::to_string(node_.size()) + " entries", allowed);
   std::vector<double> values;
-  for (const YamlValue& item : items()) values.push_back(item.number(range));
+  for (const YamlValue& item : items()) values.push_back(item.number());
   return values;
 }
 
-Vector3d YamlValue::vector3(Range range) const {
-  return Vector3d::Map(numbers(3, range).data());
+Vector3d YamlValue::vector3() const {
+  const std::vector<double> values = numbers();
+  return {values.at(0), values.at(1), values.at(2)};
 }
 
 std::string YamlValue::text() const {
@@ -107,6 +74,13 @@ std::string YamlValue::name() const {
   return name;
 }
 
+std::size_t YamlValue::word() const {
+  const std::vector<std::string>& words = schema_->as(Schema::Type::kWord).words;
+  const auto found = std::find(words.begin(), words.end(), text());
+  if (found == words.end()) fail("is '" + text() + "'", "one of " + joined(words));
+  return static_cast<std::size_t>(found - words.begin());
+}
+
 void YamlValue::count(std::size_t more) const {
   constexpr std::size_t kMostValues = 2'000'000;
   if ((file_->values += more) > kMostValues)
@@ -115,46 +89,56 @@ void YamlValue::count(std::size_t more) const {
 
 std::vector<YamlValue> YamlValue::items() const {
   if (!node_.IsSequence()) fail(shown(node_) + " is not a list", "a list");
+  const Schema& schema = schema_->as(Schema::Type::kList).item.front();
   count(node_.size());
   std::vector<YamlValue> values;
   for (const YAML::Node& item : node_) {
     const int line = item.Mark().line;
-    values.emplace_back(file_, item, key_ + "[" + std::to_string(values.size()) + "]", line < 0 ? line_ : line + 1);
+    values.emplace_back(file_, item, schema, key_ + "[" + std::to_string(values.size()) + "]", line < 0 ? line_ : line + 1);
   }
   return values;
 }
 
-std::vector<std::pair<std::string, YamlValue>> YamlValue::entries() const {
+template <class SchemaOf>
+std::vector<std::pair<std::string, YamlValue>> YamlValue::map(const SchemaOf& schema_of) const {
   if (!node_.IsMap()) fail(shown(node_) + " is not a map", "a map of key: value");
   count(node_.size());
   std::vector<std::pair<std::string, YamlValue>> values;
   std::set<std::string> names;
   for (const auto& entry : node_) {
     const int line = entry.first.Mark().line < 0 ? line_ : entry.first.Mark().line + 1;
-    const YamlValue key_value(file_, entry.first, key_, line);
+    const YamlValue key_value(file_, entry.first, *schema_, key_, line);
     if (!entry.first.IsScalar()) key_value.fail("a key is " + shown(entry.first), "a word as key");
     const std::string name = entry.first.Scalar();
-    YamlValue value(file_, entry.second, key_.empty() ? name : key_ + "." + name, line);
+    YamlValue value(file_, entry.second, *schema_, key_.empty() ? name : key_ + "." + name, line);
     if (!is_valid_name(name)) key_value.fail("key '" + name + "'", kValidName);
     if (!names.insert(name).second) value.fail("is given twice", "each key once");
     values.emplace_back(name, std::move(value));
   }
+  for (auto& [name, value] : values) value.schema_ = &schema_of(name, value);
   return values;
 }
 
-YamlSection YamlValue::section(const std::vector<std::string>& known) const {
-  auto found = entries();
-  for (const auto& [name, value] : found) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'", "one of " + joined(known));
-  }
-  return {*this, std::move(found)};
+std::vector<std::pair<std::string, YamlValue>> YamlValue::entries() const {
+  const Schema& item = schema_->as(Schema::Type::kMap).item.front();
+  return map([&](const std::string&, const YamlValue&) -> const Schema& { return item; });
 }
 
-YamlSection::YamlSection(YamlValue self, std::vector<std::pair<std::string, YamlValue>> entries)
-    : self_(std::move(self)), entries_(std::move(entries)) {}
+YamlSection YamlValue::section() const {
+  const Schema& schema = schema_->as(Schema::Type::kSection);
+  auto found = map([&](const std::string& name, const YamlValue& value) -> const Schema& {
+    if (const Schema::Key* const key = schema.find(name)) return key->value;
+    const std::vector<std::string> known = schema.key_names();
+    value.fail("unknown key, nearest known key is '" + nearest_name(name, known) + "'", "one of " + joined(known));
+  });
+  return {*this, schema, std::move(found)};
+}
+
+YamlSection::YamlSection(YamlValue self, const Schema& schema, std::vector<std::pair<std::string, YamlValue>> entries)
+    : self_(std::move(self)), schema_(&schema), entries_(std::move(entries)) {}
 
 std::optional<YamlValue> YamlSection::find(const std::string& key) const {
+  if (schema_->find(key) == nullptr) throw std::logic_error("the schema has no key '" + key + "'");
   for (const auto& [name, value] : entries_)
     if (name == key) return value;
   return std::nullopt;
@@ -166,12 +150,27 @@ std::optional<YamlValue> YamlSection::find_filled(const std::string& key) const 
   return value;
 }
 
-YamlValue YamlSection::require(const std::string& key, const std::string& allowed) const {
+YamlValue YamlSection::require(const std::string& key) const {
   if (auto value = find_filled(key)) return *value;
-  bad_input(self_.where() + (self_.key().empty() ? ": " : ".") + key, "is missing", allowed);
+  bad_input(self_.where() + (self_.key().empty() ? ": " : ".") + key, "is missing", allowed_text(*schema_->find(key)));
 }
 
-YamlValue load_yaml(const std::filesystem::path& file) {
+std::optional<std::pair<std::string, YamlValue>> YamlSection::chosen(const std::string& key) const {
+  std::optional<std::pair<std::string, YamlValue>> found;
+  for (const Schema::Choice& choice : schema_->choices) {
+    if (std::find(choice.keys.begin(), choice.keys.end(), key) == choice.keys.end()) continue;
+    for (const std::string& name : choice.keys) {
+      const auto value = find_filled(name);
+      if (!value) continue;
+      if (found) value->fail(found->first + " and " + name + " are both given", choice.allowed());
+      found.emplace(name, *value);
+    }
+    if (!found && choice.required) self_.fail("has none of these", choice.allowed());
+  }
+  return found;
+}
+
+YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
   const std::string name = file.string();
   const std::string text = read_file(file, "YAML file", kMostYamlBytes);
   std::vector<YAML::Node> documents;
@@ -181,7 +180,7 @@ YamlValue load_yaml(const std::filesystem::path& file) {
     bad_input(at_line(name, error.mark.line + 1), "not YAML (" + error.msg + ")", "well-formed YAML");
   }
   if (documents.size() != 1) bad_input(name, "holds " + std::to_string(documents.size()) + " YAML documents", "one document");
-  return {std::make_shared<YamlFile>(YamlFile{name}), documents.front(), "", 1};
+  return {std::make_shared<YamlFile>(YamlFile{name}), documents.front(), schema, "", 1};
 }
 
 }  // namespace swivel::io

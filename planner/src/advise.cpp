@@ -15,8 +15,6 @@ namespace {
 using Change = Advice::Change;
 using Outcome = Advice::Outcome;
 
-constexpr double kMostMove = 0.02;  // m
-
 /// A limit of a problem by name, as a number that may be unset.
 struct LimitPlace {
   std::function<std::optional<double>(const Limits&)> get;
@@ -82,7 +80,7 @@ class Adviser {
     by_cause(result_.diagnosis.cause);
     for (const Cause& cause : result_.diagnosis.together) by_cause(cause);
     if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
-    try_once({.change = Change::kFiner});
+    finer();
     for (const SceneObject& object : problem_.scene)
       if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
@@ -109,6 +107,7 @@ class Adviser {
         break;
       case Cause::Kind::kLimit:
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        finer();
         relax(Change::kJointMargin);
         move(problem_.path_frame);
         break;
@@ -123,7 +122,7 @@ class Adviser {
         relax(Change::kArmSlope);
         break;
       case Cause::Kind::kJointStep:
-        try_once({.change = Change::kFiner});
+        finer();
         relax(Change::kJointStep);
         break;
       case Cause::Kind::kSpeed:
@@ -131,21 +130,25 @@ class Adviser {
         relax(Change::kToolTurnSpeed);
         break;
       case Cause::Kind::kPathError:
-        try_once({.change = Change::kFiner});
+        finer();
         relax(Change::kPathError);
         break;
       case Cause::Kind::kAngleError:
-        try_once({.change = Change::kFiner});
+        finer();
         relax(Change::kAngleError);
         break;
       case Cause::Kind::kStepError:
-        try_once({.change = Change::kFiner});
+        finer();
         relax(Change::kStepError);
         break;
       case Cause::Kind::kNone:
       case Cause::Kind::kCheck:
         break;
     }
+  }
+
+  void finer() {
+    if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution) try_once({.change = Change::kFiner});
   }
 
   [[nodiscard]] bool is_object(const std::string& name) const {
@@ -171,6 +174,7 @@ class Adviser {
         changed.resolution.dphi /= 2;
         changed.resolution.dalpha /= 2;
         changed.resolution.arc /= 2;
+        changed.resolution.arcs = true;
         break;
       case Change::kMoveObject:
         for (SceneObject& object : changed.scene)
@@ -178,7 +182,7 @@ class Adviser {
         break;
       case Change::kWithoutObject:
         std::erase_if(changed.scene, [&](const SceneObject& object) { return object.name == advice.object; });
-        std::erase_if(changed.vary, [&](const Vary& vary) { return vary.object == advice.object; });
+        std::erase_if(changed.vary, [&](const Variation& vary) { return vary.object == advice.object; });
         break;
       default:
         place_of(advice.change).set(changed.limits, *advice.to);
@@ -241,7 +245,7 @@ class Adviser {
   void move(const std::string& name) {
     Advice best{.change = Change::kMoveObject, .object = name};
     if (!is_object(name) || known(best) || (problem_.start && name == problem_.path_frame)) return;
-    for (double way = kMostMove / 4; way <= kMostMove && best.outcome != Outcome::kSolved; way *= 2)
+    for (double way = Advice::kMostMove / 4; way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
       for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
           Advice moved{.change = Change::kMoveObject, .object = name};

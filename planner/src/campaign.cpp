@@ -62,6 +62,10 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   std::vector<Planner> planners;  // by worker
   for (int worker = 0; worker < executor.threads(); ++worker) planners.emplace_back(prepared, problem);
   InOrder in_order(options.skip, row_done);
+  const auto add = [&](std::uint64_t k, EpisodeRow row) {
+    row.offsets = episode_offsets(problem.vary, options.seed, row.episode);
+    in_order.add(k, std::move(row));
+  };
   // Taken from a counter and not from the executor's index, which starts threads far apart: rows would wait for long, and be lost
   // when killed.
   std::atomic<std::uint64_t> next{options.skip};
@@ -81,7 +85,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
       } catch (const std::bad_alloc&) {
         throw;
       } catch (const std::exception& error) {  // must not take the other episodes with it
-        in_order.add(k, EpisodeRow(episode, error.what()));
+        add(k, EpisodeRow(episode, error.what()));
         return;
       }
       const bool answered = result.status == PlanStatus::kSolved
@@ -92,7 +96,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
         return;
       }
       if (options.planned) options.planned(episode, result);
-      in_order.add(k, EpisodeRow(episode, result));
+      add(k, EpisodeRow(episode, result, problem));
     } catch (const InputError& error) {
       stopped = true;
       throw InputError(std::string(error.what()) + " (episode " + std::to_string(episode) + ")");

@@ -6,13 +6,17 @@
 #include <cstdarg>
 #include <cstdio>
 #include <optional>
+#include <stdexcept>
 
+#include "answer_check.hpp"
 #include "between_samples.hpp"
 #include "collision_validity.hpp"
+#include "first_too_near.hpp"
 #include "path_following.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/timeline.hpp"
 #include "swivel/core/tool_path.hpp"
 #include "swivel/core/validate.hpp"
 
@@ -63,10 +67,16 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
 /// Every question about collisions.
 class Contacts {
  public:
-  Contacts(const PreparedRobot& robot, const Problem& problem)
-      : world_(robot.world(), problem, {}, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())) {}
+  /// `like`: a world of the same robot.
+  Contacts(const PreparedRobot& robot, const Problem& problem, const World& like, const Budget& budget)
+      : world_(like, problem, budget, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())), budget_(&budget) {}
   std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
-  std::optional<BodyPair> on_the_way(const Config& from, const Config& to) { return edge_blocked(query_, rule_, from, to); }
+  std::optional<BodyPair> on_the_way(const Config& from, const Config& to) {
+    return edge_blocked(query_, rule_, from, to, *budget_);
+  }
+  [[nodiscard]] std::optional<TooNear> first_along(const Limits& limits, const std::vector<Config>& rows) const {
+    return first_too_near(world_, rule_, limits, rows, *budget_);
+  }
   [[nodiscard]] std::string names(const BodyPair& pair) const {
     const auto& name = world_.body_names();
     return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" + name[static_cast<std::size_t>(pair.b)] + "'";
@@ -78,23 +88,25 @@ class Contacts {
   World world_;
   World::Query query_;
   EdgeRule rule_;
+  const Budget* budget_;
 };
 
 class Check {
  public:
-  /// `timed`: the same rows in time, or null.
-  Check(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-        const std::vector<TimedRow>* timed = nullptr)
+  /// `like`: a world of the robot. `timed`: the same rows in time, or null.
+  Check(const PreparedRobot& robot, const Problem& problem, const World& like, const std::vector<TrajectoryRow>& rows,
+        const CheckOptions& options, const std::vector<TimedRow>* timed = nullptr)
       : problem_(problem),
+        options_(options),
         limits_(problem.limits),
         chain_(robot.arm().chain),
         arm_(robot.arm_class().srs ? &*robot.arm_class().srs : nullptr),
         rows_(rows),
         timed_(timed),
-        path_(problem_path(problem, chain_)),
+        path_(problem_path(problem, chain_, options.budget)),
         allowed_(allowed_moves(problem, chain_, path_)),
-        planes_(arm_ ? carried_planes(*arm_, path_) : std::vector<ArmPlane>{}),
-        contacts_(robot, problem),
+        planes_(arm_ ? carried_planes(*arm_, path_, options.budget) : std::vector<ArmPlane>{}),
+        contacts_(robot, problem, like, options.budget),
         along_{limits_.tool_path_error.value_or(kNone), limits_.tool_angle_error.value_or(kNone)},
         at_waypoints_{limits_.tool_path_error.value_or(kAtWaypoints.position),
                       limits_.tool_angle_error.value_or(kAtWaypoints.angle)} {
@@ -105,16 +117,23 @@ class Check {
     if (rows_.size() < 2) fail("%zu row(s): at least two are needed", rows_.size());
     if (problem_.start && !rows_.empty() && !((rows_[0].q - *problem_.start).lpNorm<Eigen::Infinity>() <= kPose))
       fail("row 0: joints are not the given start");
-    for (std::size_t k = 0; k < rows_.size(); ++k) candidates_.push_back(sound(k) ? places_of(k) : std::vector<Candidate>{});
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      options_.budget.poll();
+      const bool is_sound = sound(k);
+      tools_.push_back(rows_[k].q.allFinite() ? chain_.tool(rows_[k].q) : Pose::Identity());
+      candidates_.push_back(is_sound ? places_of(k) : std::vector<Candidate>{});
+    }
     choose_places();
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (k > 0 && rows_[k].q.allFinite() && rows_[k - 1].q.allFinite()) result_.cost += cost_of(rows_[k].q - rows_[k - 1].q);
       if (!examined(k)) continue;
+      options_.budget.poll();
       examine_row(k);
       if (k > 0 && examined(k - 1)) examine_move(k);
     }
     examine_travel();
     if (timed_) examine_rates(*timed_);
+    if (!options_.margins && result_.failure_count == 0) examine_clearance();
     result_.fcl_calls = contacts_.fcl_calls();
     result_.passed = result_.failure_count == 0;
     return std::move(result_);
@@ -174,7 +193,7 @@ class Check {
       fail("row %zu: s = %.9g lies outside the path: allowed are %.9g to %.9g", k, s, begin, end);
       return {};
     }
-    const Pose tool = chain_.tool(rows_[k].q);
+    const Pose& tool = tools_[k];
     std::vector<Candidate> found;
     double position = kNone, angle = kNone;  // of the nearest
     const auto try_place = [&](double place) {
@@ -277,7 +296,7 @@ class Check {
       const auto later = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), begin) - ends.begin());
       std::vector<bool> reached(ends.size() - later, !neighbours);
       if (neighbours && !reached.empty() && excess(move, begin, ends.back()).by <= 0) {
-        if (!motion) motion = tool_motion(chain_, rows_[before].q, rows_[k].q, at_waypoints_);
+        if (!motion) motion = motion_to(k);
         reached = follows(*motion, path_, begin, std::span(ends).subspan(later), along_, at_waypoints_);
         for (std::size_t c = later; c < ends.size(); ++c) {
           if (is_step(begin, ends[c])) reached[c - later] = within(step_deviation(k, begin), along_);
@@ -297,6 +316,10 @@ class Check {
     to.swap(kept);
   }
 
+  /// From row k - 1 to row k.
+  [[nodiscard]] ToolMotion motion_to(std::size_t k) const {
+    return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]}, at_waypoints_, options_.margins ? 4 : 1);
+  }
   /// From a layer to the next.
   static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
   static bool within(const PoseDistance& deviation, const PoseDistance& tolerance) {
@@ -306,8 +329,8 @@ class Check {
   [[nodiscard]] PoseDistance step_deviation(std::size_t k, double layer) const {
     const auto most = [](const std::array<double, 3>& deviation) { return *std::max_element(deviation.begin(), deviation.end()); };
     const Config &from = rows_[k - 1].q, move = rows_[k].q - from;
-    return {most(path_deviation(chain_, path_, static_cast<int>(layer), from, move)),
-            most(angle_deviation(chain_, path_, static_cast<int>(layer), from, move))};
+    return {along_.position < kNone ? most(path_deviation(chain_, path_, static_cast<int>(layer), from, move)) : 0,
+            along_.angle < kNone ? most(angle_deviation(chain_, path_, static_cast<int>(layer), from, move)) : 0};
   }
 
   struct Excess {
@@ -340,6 +363,7 @@ class Check {
       const double w = chain_.manipulability(row.q);
       if (!(w >= limits_.manipulability - 1e-9)) fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
     }
+    if (!options_.margins) return;  // all rows at once, later
     const auto clearance = contacts_.clearance(row.q);
     if (!clearance) return;
     result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
@@ -352,10 +376,26 @@ class Check {
            contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.keeps(clearance->pair).node);
   }
 
+  /// Of all rows, whose joints and moves are known to be sound.
+  void examine_clearance() {
+    std::vector<Config> joints;
+    for (const TrajectoryRow& row : rows_) joints.push_back(row.q);
+    const auto found = contacts_.first_along(limits_, joints);
+    if (!found) return;
+    const std::string pair = contacts_.names(found->pair);
+    if (found->between)
+      fail("rows %zu-%zu: %s come closer than %.3f mm", found->row - 1, found->row, pair.c_str(),
+           1e3 * contacts_.keeps(found->pair).motion);
+    else
+      fail("row %zu: clearance between %s is below %.3f mm", found->row, pair.c_str(), 1e3 * contacts_.keeps(found->pair).node);
+  }
+
   /// Arm angle and branch of a row are those of its joints.
   void examine_labels(std::size_t k) {
-    if (!arm_) return;
     const TrajectoryRow& row = rows_[k];
+    if (chain_.roll && !(std::abs(wrap_angle(row.phi - row.q[kDof - 1])) <= kArmAngle))
+      fail("row %zu: phi is %.6g, the roll %.6g", k, row.phi, row.q[kDof - 1]);
+    if (!arm_) return;
     const int layer = static_cast<int>(std::floor(place(k)));
     ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
     if (layer < place(k)) plane = carry_plane(*arm_, plane, pose_at(path_, place(k)));
@@ -379,14 +419,14 @@ class Check {
     if (end < begin)
       return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k, rows_[k - 1].s, rows_[k].s);
     if (timed_ && begin == end && may_rest(end)) return;
-    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(chain_.tool(from), chain_.tool(to)) <= 1e-9) {
+    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(tools_[k - 1], tools_[k]) <= 1e-9) {
       if (timed_ && may_rest(end)) return;
       return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
     }
     if (!may_move(k)) return;
     examine_path(k);
     examine_step_error(k);
-    if (limits_.edges != EdgeMode::kContinuous) return;
+    if (!options_.margins || limits_.edges != EdgeMode::kContinuous) return;
     if (const auto pair = contacts_.on_the_way(from, to))
       fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(),
            1e3 * contacts_.keeps(*pair).motion);
@@ -442,7 +482,7 @@ class Check {
     }
     for (std::ptrdiff_t k = 1; k < n; ++k) {
       const double dt = time(k) - time(k - 1);
-      const Pose from = chain_.tool(at(k - 1).row.q), to = chain_.tool(at(k).row.q);
+      const Pose &from = tools_[static_cast<std::size_t>(k - 1)], &to = tools_[static_cast<std::size_t>(k)];
       motion.tool_speed = std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
       motion.turn_speed = std::max(motion.turn_speed, angle_between(from, to) / dt);
     }
@@ -473,18 +513,19 @@ class Check {
   }
 
   void examine_path(std::size_t k) {
-    const Config &from = rows_[k - 1].q, &to = rows_[k].q;
     const double begin = place(k - 1), end = place(k);
-    const ToolMotion motion = tool_motion(chain_, from, to, at_waypoints_);
-    const PoseDistance worst = largest_deviation(motion, path_, begin, end);
-    result_.worst_path_error = std::max(result_.worst_path_error, worst.position);
-    result_.worst_path_angle = std::max(result_.worst_path_angle, worst.angle);
-
     if (is_step(begin, end)) {
       const PoseDistance off = step_deviation(k, begin);
       if (!within(off, along_)) stray(k, off);
-      return;
+      if (!options_.margins) return;
     }
+    const ToolMotion motion = motion_to(k);
+    if (options_.margins) {
+      const PoseDistance worst = largest_deviation(motion, path_, begin, end);
+      result_.worst_path_error = std::max(result_.worst_path_error, worst.position);
+      result_.worst_path_angle = std::max(result_.worst_path_angle, worst.angle);
+    }
+    if (is_step(begin, end)) return;
     const std::array<double, 1> ends{end};
     const auto passes = [&](const PoseDistance& along, const PoseDistance& waypoints) -> bool {
       return follows(motion, path_, begin, ends, along, waypoints)[0];
@@ -561,6 +602,7 @@ class Check {
   }
 
   const Problem& problem_;
+  const CheckOptions& options_;
   const Limits& limits_;
   const Chain& chain_;
   const SrsArm* arm_;  // null: the arm has no arm angle, and phi and branch of rows are for reports alone
@@ -572,6 +614,7 @@ class Check {
   std::optional<SrsLattice> lattice_;  // for the estimate of the step error alone
   Contacts contacts_;
   PoseDistance along_, at_waypoints_;
+  std::vector<Pose> tools_;                         // of rows whose joints are finite
   std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined
   std::vector<std::size_t> chosen_;
   std::vector<bool> jumps_;  // the move to the row is too large for its joints
@@ -580,23 +623,49 @@ class Check {
 
 }  // namespace
 
-CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows) {
+CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                             const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
-  return Check(robot, problem, rows).run();
+  return Check(robot, problem, robot.world(), rows, options).run();
 }
 
-CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows) {
+CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
+                         const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
+  return check_motion_in(robot.world(), robot, problem, rows, options);
+}
+
+CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows, const CheckOptions& options) {
+  return check_trajectory(PreparedRobot(problem, options.budget), problem, rows, options);
+}
+
+CheckResult check_motion_in(const World& world, const PreparedRobot& robot, const Problem& problem,
+                            const std::vector<TimedRow>& rows, const CheckOptions& options) {
   const Problem of_samples = problem_of_samples(problem);
   std::vector<TrajectoryRow> places;
   for (const TimedRow& row : rows) places.push_back(row.row);
-  return Check(robot, of_samples, places, &rows).run();
+  return Check(robot, of_samples, world, places, options, &rows).run();
 }
 
-CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
-  return check_trajectory(PreparedRobot(problem), problem, rows);
+void require_passed(const CheckResult& result) {
+  if (result.passed) return;
+  const std::int64_t more = result.failure_count - 1;
+  throw std::logic_error("the answer does not pass its own check: " + result.failures.at(0) +
+                         (more > 0 ? ", and " + std::to_string(more) + " more" : ""));
+}
+
+void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                  const Budget& budget) {
+  const TraceSpan span("check");
+  require_passed(Check(robot, problem, world, rows, {.margins = false, .budget = budget}).run());
+}
+
+void check_answer(const World& world, const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
+                  const Budget& budget) {
+  const TraceSpan span("check");
+  require_passed(check_motion_in(world, robot, problem, rows, {.margins = false, .budget = budget}));
 }
 
 }  // namespace swivel

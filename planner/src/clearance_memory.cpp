@@ -2,10 +2,12 @@
 #include "clearance_memory.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace swivel {
 
-void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, int robot_bodies) {
+void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world,
+                            const std::vector<SceneObject>& scene) {
   // Far more than a search asks about; a planner that runs for days in a changing scene must not grow for days.
   constexpr std::size_t kMost = 1'000'000;
   if (nodes_.size() + edges_.size() > kMost) {
@@ -17,18 +19,39 @@ void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, 
   learn();
   plan_ = plan;
   met_ = std::move(met);
-  robot_bodies_ = robot_bodies;
+  world_ = &world;
+  robot_bodies_ = static_cast<int>(world.bodies().size());
   unchanged_since_ = 0;
-  changed_.clear();
+  const auto changed_before = std::exchange(changed_, {});
   for (std::size_t k = 0; k < met_.size(); ++k)
     if (met_[k] == plan)
       changed_.push_back(static_cast<int>(k));
     else
       unchanged_since_ = std::max(unchanged_since_, met_[k]);
+  constexpr std::size_t kLongestRun = 10'000;
+  if (changed_ != changed_before || stood_.size() == kLongestRun) {
+    run_ = plan;
+    stood_.clear();
+  }
+  auto& poses = stood_.emplace_back();
+  for (const int k : changed_) poses.push_back(scene[static_cast<std::size_t>(k)].pose);
+  moved_since_.assign(stood_.size(), -1);
+}
+
+double ClearanceMemory::moved_since(std::uint64_t plan) {
+  const auto then = static_cast<std::size_t>(plan - run_);
+  double& most = moved_since_[then];
+  if (most >= 0) return most;
+  most = 0;
+  for (std::size_t k = 0; k < changed_.size(); ++k)
+    most = std::max(most, world_->displacement(changed_[k], stood_[then][k], stood_.back()[k]));
+  return most;
 }
 
 void ClearanceMemory::object_removed(int object) {
   learn();
+  changed_.clear();  // their numbers are others now
+  stood_.clear();
   const int body = robot_bodies_ + object;
   const auto renumber = [&](auto& findings) {
     for (auto& [key, finding] : findings) {
@@ -44,13 +67,15 @@ void ClearanceMemory::object_removed(int object) {
   renumber(edges_);
 }
 
-ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) const {
+ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) {
   if (!finding.valid) {
     const int object = finding.pair.b - robot_bodies_;
     return object < 0 || met_[static_cast<std::size_t>(object)] <= finding.plan ? Holds::kAll : Holds::kNothing;
   }
   if (finding.plan == 0 || finding.plan < unchanged_since_) return Holds::kNothing;
-  return changed_.empty() || finding.plan == plan_ ? Holds::kAll : Holds::kUnlessChanged;
+  if (changed_.empty() || finding.plan == plan_) return Holds::kAll;
+  const bool kept = finding.spare > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.spare;
+  return kept ? Holds::kAll : Holds::kUnlessChanged;
 }
 
 const ClearanceMemory::NodeFinding* ClearanceMemory::node(int layer, int slot) const {
@@ -63,12 +88,13 @@ const ClearanceMemory::Finding* ClearanceMemory::edge(int layer, int a, int b) c
   return found == edges_.end() ? nullptr : &found->second;
 }
 
-void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair) {
-  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair}, question.q, answer}});
+void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double spare) {
+  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair, false, spare}, question.q, answer}});
 }
 
-void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair) {
-  noted_edges_.push_back({{key(question.layer, question.a), question.b}, {{plan_, valid, pair}, question.qa, question.qb}});
+void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double spare) {
+  noted_edges_.push_back(
+      {{key(question.layer, question.a), question.b}, {{plan_, valid, pair, false, spare}, question.qa, question.qb}});
 }
 
 void ClearanceMemory::learn() {
@@ -85,8 +111,8 @@ void ClearanceMemory::learn() {
   take(noted_edges_, edges_, failed_edges_);
 }
 
-Suspects ClearanceMemory::failures() const {
-  Suspects failures;
+AskedFirst ClearanceMemory::failures() const {
+  AskedFirst failures;
   for (const std::uint64_t node : failed_nodes_)
     if (const NodeFinding& finding = nodes_.at(node); !finding.valid)
       failures.nodes.push_back({static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), finding.q});

@@ -20,6 +20,8 @@ class ClearanceMemory {
     bool valid = false;
     BodyPair pair = kNoPair;  ///< of a failure
     bool listed = false;      ///< among the failures, maybe valid by now
+    /// Of a valid one: it stays so while none of the objects that had changed when it was found moves by as much, m.
+    double spare = -1;
   };
   struct NodeFinding : Finding {
     Config q;
@@ -32,9 +34,9 @@ class ClearanceMemory {
     kAll,
   };
 
-  /// A plan begins. met[k]: the first plan that met scene object k as it is now. `robot_bodies`: bodies from this number on are
-  /// objects.
-  void begin(std::uint64_t plan, std::vector<std::uint64_t> met, int robot_bodies);
+  /// A plan begins, of `scene` in `world`. met[k]: the first plan that met scene object k as it is now. The world serves until the
+  /// next plan begins.
+  void begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world, const std::vector<SceneObject>& scene);
   /// Objects that the last plan did not meet as they are now.
   [[nodiscard]] const std::vector<int>& changed() const { return changed_; }
 
@@ -43,12 +45,12 @@ class ClearanceMemory {
 
   [[nodiscard]] const NodeFinding* node(int layer, int slot) const;
   [[nodiscard]] const Finding* edge(int layer, int a, int b) const;
-  [[nodiscard]] Holds holds(const Finding& finding) const;
-  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair);
-  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair);
+  [[nodiscard]] Holds holds(const Finding& finding);
+  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double spare);
+  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double spare);
 
   /// All failures, in the order in which they were found.
-  [[nodiscard]] Suspects failures() const;
+  [[nodiscard]] AskedFirst failures() const;
 
  private:
   struct EdgeKey {
@@ -72,6 +74,8 @@ class ClearanceMemory {
     return static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint32_t>(slot);
   }
 
+  /// How far the changed objects have moved since a plan of the same run, m.
+  [[nodiscard]] double moved_since(std::uint64_t plan);
   /// Enters what the last plan noted. A plan only notes, so that one that is never followed by another pays little.
   void learn();
 
@@ -79,6 +83,11 @@ class ClearanceMemory {
   std::uint64_t unchanged_since_ = 0;  // of all objects but the changed ones: the last plan that met one of them for the first time
   std::vector<std::uint64_t> met_;
   std::vector<int> changed_;
+  // A run of plans between which the same objects changed: the first of them, and where these stood in each.
+  std::uint64_t run_ = 0;
+  std::vector<std::vector<Pose>> stood_;
+  std::vector<double> moved_since_;  // moved_since() by plan of the run; less than 0 where it is not known yet
+  const World* world_ = nullptr;
   int robot_bodies_ = 0;
   std::unordered_map<std::uint64_t, NodeFinding, NodeHash> nodes_;
   std::unordered_map<EdgeKey, EdgeFinding, EdgeHash> edges_;

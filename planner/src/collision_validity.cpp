@@ -2,6 +2,7 @@
 #include "collision_validity.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "swivel/core/timeline.hpp"
 
@@ -10,21 +11,22 @@ namespace swivel {
 namespace {
 
 constexpr std::size_t kRows = 8192, kSlotsApart = 67;
-constexpr Fault kFaultBodies = Fault{1} << 31;
-Fault fault_of(const BodyPair& pair) {
-  return pair.a * kFaultBodies + pair.b;
+constexpr FailureId kBodies = FailureId{1} << 31;
+FailureId fault_of(const BodyPair& pair) {
+  return pair.a * kBodies + pair.b;
 }
-BodyPair pair_of(Fault fault) {
-  return {static_cast<int>(fault / kFaultBodies), static_cast<int>(fault % kFaultBodies)};
+BodyPair pair_of(FailureId failure) {
+  return {static_cast<int>(failure / kBodies), static_cast<int>(failure % kBodies)};
 }
 
 }  // namespace
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
-                                     Certificates certificates, Executor& executor, int lanes, const Budget& budget,
+                                     Certificates certificates, Executor& executor, int partitions, const Budget& budget,
                                      ClearanceMemory* memory, const World* changed)
     : lattice_(&lattice),
       world_(&world),
+      row_margin_(lattice, world),
       rule_(rule),
       changed_rule_{rule.radii, rule.h, {}},
       edge_mode_(edge_mode),
@@ -33,8 +35,8 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
       budget_(budget),
       memory_(memory),
       changed_(changed) {
-  lanes_.reserve(static_cast<std::size_t>(lanes));
-  for (int lane = 0; lane < lanes; ++lane) lanes_.push_back(make_queries());
+  partitions_.reserve(static_cast<std::size_t>(partitions));
+  for (int partition = 0; partition < partitions; ++partition) partitions_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
   if (lattice.has_own_rows()) rows_.assign(static_cast<std::size_t>(executor.threads()), std::vector<Row>(kRows));
@@ -56,13 +58,26 @@ CollisionValidity::Queries CollisionValidity::make_queries() const {
   return queries;
 }
 
+template <class Ask>
+void CollisionValidity::ask_open(const Ask& ask) {
+  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(partitions_.size()));
+  const auto at = [&](int index, int worker, Queries& queries) { ask(open_[static_cast<std::size_t>(index)], worker, queries); };
+  if (partitions_.empty())
+    return executor_->for_each(count,
+                               [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
+  executor_->for_each(runs, [&](int partition, int worker) {
+    for (int index = count * partition / runs; index < count * (partition + 1) / runs; ++index)
+      at(index, worker, partitions_[static_cast<std::size_t>(partition)]);
+  });
+}
+
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
-  Span batch("nodes asked");
+  TraceSpan batch("nodes asked");
   open_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k) {
     const NodeQuestion& x = questions[k];
     Open open{k};
-    if (x.suspect != kNoFault) open.pair = pair_of(x.suspect);
+    if (x.likely != kNoFailure) open.pair = pair_of(x.likely);
     if (const auto* known = memory_ ? memory_->node(x.layer, x.slot) : nullptr) {
       const auto holds = memory_->holds(*known);
       if (holds == ClearanceMemory::Holds::kAll) {
@@ -76,52 +91,61 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   }
   batch.count("nodes", static_cast<std::int64_t>(open_.size()));
   nodes_checked_ += static_cast<std::int64_t>(open_.size());
-  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(lanes_.size()));
-  const auto ask = [&](int index, int worker, Queries& queries) {
-    Open& open = open_[static_cast<std::size_t>(index)];
-    answers[open.index] = node(questions[open.index], open, worker, queries);
-  };
-  if (lanes_.empty())
-    executor_->for_each(count, [&](int index, int worker) { ask(index, worker, workers_[static_cast<std::size_t>(worker)]); });
-  else
-    executor_->for_each(runs, [&](int lane, int worker) {
-      for (int index = count * lane / runs; index < count * (lane + 1) / runs; ++index)
-        ask(index, worker, lanes_[static_cast<std::size_t>(lane)]);
-    });
+  ask_open(
+      [&](Open& open, int worker, Queries& queries) { answers[open.index] = node(questions[open.index], open, worker, queries); });
   if (memory_)
-    for (const Open& open : open_) memory_->note_node(questions[open.index], answers[open.index], open.pair);
+    for (const Open& open : open_) memory_->note_node(questions[open.index], answers[open.index], open.pair, open.spare);
 }
 
 NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
-  const Span span("node");
+  const TraceSpan span("node");
   budget_.poll();
-  const auto suspect = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
+  const auto likely = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
   open.pair = ClearanceMemory::kNoPair;
+  const auto failure = [&](const BodyPair& pair, bool shared) {
+    open.pair = pair;
+    return NodeAnswer{false, shared, groups_of(*world_, pair), fault_of(pair)};
+  };
+  if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
+    return failure(*likely, lattice_->stand_alike(groups_of(*world_, *likely)));
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q || (!open.only_changed && !lattice_->manipulable(*q))) return {};
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
-  const auto pair = query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : suspect);
-  if (!pair) return {.valid = true};
-  open.pair = *pair;
-  const Sharing sharing = sharing_of(*lattice_, *world_, query, *q, *pair);
-  return {false, sharing.shared, sharing.groups, fault_of(*pair)};
+  const auto pair = query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
+  if (!pair) {
+    if (open.only_changed) open.spare = query.spare(Keep::kNode);
+    return {.valid = true};
+  }
+  return failure(*pair, is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, *pair));
 }
 
-/// Other nodes' bodies stand where these do only up to rounding, so the verdict is shared only where the pair is too near by more
-/// than FCL can err: then every planner, asking FCL about each of those nodes, hears the same.
-Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& query, const Config& q, const BodyPair& pair) {
-  Sharing sharing;
+/// A row takes seven equations. Where the bodies are too near by more than it can move them, the node fails whether it has one or
+/// not, and so do those that are alike.
+bool CollisionValidity::fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
+  const double margin = row_margin_.from_node(question.layer, question.q, pair);
+  return std::isfinite(margin) && query.surely_below(question.q, pair, Level(Keep::kNode, -margin));
+}
+
+unsigned groups_of(const World& world, const BodyPair& pair) {
+  unsigned groups = 0;
   for (const int body : {pair.a, pair.b})
-    if (body < static_cast<int>(world.bodies().size()))
-      sharing.groups |= 1u << world.bodies()[static_cast<std::size_t>(body)].group;
-  sharing.groups &= ~1u;  // group 0 stands still
-  sharing.shared =
-      lattice.stand_alike(sharing.groups) && (query.surely_below() || query.pair_below(q, pair, Level(Keep::kNode, -kVerdictBand)));
-  return sharing;
+    if (body < static_cast<int>(world.bodies().size())) groups |= 1u << world.bodies()[static_cast<std::size_t>(body)].group;
+  return groups & ~1u;  // group 0 stands still
+}
+
+/// Other nodes' bodies stand where these do only up to rounding, or to how far their rows move them, so the verdict is shared only
+/// where the pair is too near by more than that and than FCL can err: then every planner, asking FCL about each of those nodes,
+/// hears the same.
+bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query, int layer,
+               const Config& node, const Config& row, const BodyPair& pair) {
+  if (!lattice.stand_alike(groups_of(world, pair))) return false;
+  const double apart = row_margin.between_rows(layer, node, pair);
+  if (apart > 0) return std::isfinite(apart) && query.surely_below(row, pair, Level(Keep::kNode, -apart));
+  return query.certified() || query.pair_below(row, pair, Level(Keep::kNode, -kVerdictBand));
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
-  Span batch("edges asked");
+  TraceSpan batch("edges asked");
   open_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k) {
     const EdgeQuestion& x = questions[k];
@@ -138,16 +162,14 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   }
   batch.count("edges", static_cast<std::int64_t>(open_.size()));
   edges_checked_ += static_cast<std::int64_t>(open_.size());
-  executor_->for_each(static_cast<int>(open_.size()), [&](int index, int worker) {
-    Open& open = open_[static_cast<std::size_t>(index)];
-    answers[open.index] = edge(questions[open.index], open, worker, workers_[static_cast<std::size_t>(worker)]);
-  });
+  ask_open(
+      [&](Open& open, int worker, Queries& queries) { answers[open.index] = edge(questions[open.index], open, worker, queries); });
   if (memory_)
-    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair);
+    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.spare);
 }
 
 bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
-  const Span span("edge");
+  const TraceSpan span("edge");
   budget_.poll();
   const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
   if (!qa || !qb) return false;
@@ -156,7 +178,7 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
                              !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
     return false;
   if (edge_mode_ == EdgeMode::kNodes) return true;
-  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_)
+  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_, &open.spare)
                                          : edge_blocked(queries.whole, rule_, *qa, *qa + move, budget_);
   if (blocked) open.pair = *blocked;
   return !blocked;
@@ -169,7 +191,7 @@ bool CollisionValidity::asks_edges() const {
 
 CollisionCounters CollisionValidity::counters() const {
   CollisionCounters sum;
-  for (const auto* all : {&workers_, &lanes_})
+  for (const auto* all : {&workers_, &partitions_})
     for (const Queries& queries : *all) {
       sum += queries.whole.counters();
       if (queries.changed) sum += queries.changed->counters();

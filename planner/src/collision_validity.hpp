@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clearance_memory.hpp"
+#include "row_margin.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/budget.hpp"
 #include "swivel/core/lattice.hpp"
@@ -13,14 +14,15 @@
 namespace swivel {
 
 /// The costly predicates of docs/model.md, asked of the collision world on the executor's threads.
-/// Nodes are asked in lanes: a batch is cut into that many runs of consecutive questions, and what a lane keeps from one posture to
-/// the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of threads.
+/// A batch is asked in partitions, so many runs of consecutive questions, and what a partition keeps from one
+/// posture to the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of
+/// threads.
 class CollisionValidity final : public Validity {
  public:
-  /// `lanes` 0: each node is shared out for itself. `memory`: what is known of the same lattice, robot and limits, and of
+  /// `partitions` 0: each question is shared out for itself. `memory`: what is known of the same lattice, robot and limits, and of
   /// `changed`, the pairs with objects that moved since (null: none did); null for none.
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode, Certificates certificates,
-                    Executor& executor, int lanes, const Budget& budget, ClearanceMemory* memory = nullptr,
+                    Executor& executor, int partitions, const Budget& budget, ClearanceMemory* memory = nullptr,
                     const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
@@ -42,16 +44,23 @@ class CollisionValidity final : public Validity {
   struct Open {
     std::size_t index = 0;
     bool only_changed = false;
-    BodyPair pair = ClearanceMemory::kNoPair;  ///< of the failure; before: the suspect
+    BodyPair pair = ClearanceMemory::kNoPair;  ///< of the failure; before: the likely
+    double spare = -1;                         ///< of ClearanceMemory::Finding
   };
   [[nodiscard]] Queries make_queries() const;
+  /// ask(open, worker, queries) for what is open, on the executor's threads.
+  template <class Ask>
+  void ask_open(const Ask& ask);
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
+  /// Whether the pair is too near in the node's row, wherever that is.
+  [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;
   [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
   /// Lattice::row, remembered by each worker for a while: a path's nodes are asked about, and then its edges.
   [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q, int worker);
 
   const Lattice* lattice_;
   const World* world_;
+  RowMargin row_margin_;
   EdgeRule rule_;
   EdgeRule changed_rule_;  // of the changed objects' pairs, of which none is the robot's own
   EdgeMode edge_mode_;
@@ -61,7 +70,7 @@ class CollisionValidity final : public Validity {
   ClearanceMemory* memory_;
   const World* changed_;
   std::vector<Queries> workers_;  // one each
-  std::vector<Queries> lanes_;    // for nodes
+  std::vector<Queries> partitions_;
   std::vector<Open> open_;
   struct Row {
     int layer = -1, slot = -1;
@@ -71,12 +80,11 @@ class CollisionValidity final : public Validity {
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 
-/// Whether the failure of a pair, which the query has just named at q, is one of every node at which its bodies stand alike.
-struct Sharing {
-  bool shared = false;
-  unsigned groups = 0;  ///< of NodeAnswer
-};
-[[nodiscard]] Sharing sharing_of(const Lattice& lattice, const World& world, World::Query& query, const Config& q,
-                                 const BodyPair& pair);
+/// The groups of a pair's bodies, as NodeAnswer has them.
+[[nodiscard]] unsigned groups_of(const World& world, const BodyPair& pair);
+/// Whether the failure of a pair, which the query has just named at the row of a node of the layer, is one of every node at which
+/// its bodies stand alike.
+[[nodiscard]] bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query,
+                             int layer, const Config& node, const Config& row, const BodyPair& pair);
 
 }  // namespace swivel

@@ -40,7 +40,8 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
       check_(check, budget),
       query_(world, Certificates::kOn),
       question_us_(world.has_meshes() ? 300 : 3),
-      node_us_(lattice.has_own_rows() ? 5 : 1) {
+      node_us_(lattice.has_own_rows() ? 5 : 1),
+      number_of_(world.bodies().size() * world.body_names().size(), kUnmet) {
   object_of_.fill(-1);
 }
 
@@ -51,7 +52,7 @@ double Constraints::spent_us() const {
          node_us_ * static_cast<double>(nodes_) + 0.1 * static_cast<double>(moves_) + 10 * static_cast<double>(checked_);
 }
 
-int Constraints::pair(const BodyPair& pair) {
+int Constraints::met(const BodyPair& pair) {
   const auto names = world_.names(pair);
   const auto found = number_.find(names);
   if (found != number_.end()) return found->second;

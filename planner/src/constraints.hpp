@@ -16,6 +16,13 @@
 
 namespace swivel {
 
+/// A cause that its kind says all of.
+[[nodiscard]] inline Cause of_kind(Cause::Kind kind) {
+  Cause cause;
+  cause.kind = kind;
+  return cause;
+}
+
 /// A set of constraints, a bit each.
 using ConstraintSet = std::uint64_t;
 
@@ -39,7 +46,10 @@ class Constraints {
   /// Those that come between a node and its continuation on the same sheet, rather than between sheets.
   static constexpr bool bars_nodes(int constraint) { return constraint <= kManipulability || constraint >= kCheck; }
   /// -1 once too many have been met to be told apart.
-  [[nodiscard]] int pair(const BodyPair& pair);
+  [[nodiscard]] int pair(const BodyPair& pair) {
+    int& number = number_of_[static_cast<std::size_t>(pair.a) * world_.body_names().size() + static_cast<std::size_t>(pair.b)];
+    return number != kUnmet ? number : number = met(pair);
+  }
   /// Of pairs with a scene object: the number that stands for all pairs with it; else -1.
   [[nodiscard]] int object_of(int constraint) const { return object_of_[static_cast<std::size_t>(constraint)]; }
   [[nodiscard]] bool is_object(int constraint) const { return !object_name_[static_cast<std::size_t>(constraint)].empty(); }
@@ -77,6 +87,8 @@ class Constraints {
 
  private:
   struct Violations;
+  static constexpr int kUnmet = -2;
+  [[nodiscard]] int met(const BodyPair& pair);
   [[nodiscard]] std::pair<double, double> limits_of(int k) const;
   void add_other_pairs(const Config& q, const Level& level, Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
@@ -89,7 +101,8 @@ class Constraints {
   World::Query query_;
   double question_us_, node_us_;
   std::int64_t nodes_ = 0, moves_ = 0, pairs_ = 0, checked_ = 0;
-  std::map<std::array<std::string, 2>, int> number_;  // of pairs, by names: links have several bodies
+  std::vector<int> number_of_;                        // of pairs, by a body of the robot and the other
+  std::map<std::array<std::string, 2>, int> number_;  // by names: links have several bodies
   std::map<std::string, int> object_number_;
   std::array<std::array<std::string, 2>, kCount> names_;  // of pairs
   std::array<std::string, kCount> object_name_;           // of those that stand for an object

@@ -18,12 +18,6 @@ namespace swivel {
 
 namespace {
 
-Cause of_kind(Cause::Kind kind) {
-  Cause cause;
-  cause.kind = kind;
-  return cause;
-}
-
 /// Causes by their words, so that those of one name are counted together and listed in a fixed order.
 class Counts {
  public:
@@ -57,7 +51,7 @@ constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of th
 class LayerBlockers {
  public:
   LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
-      : lattice_(lattice), world_(world), query_(query) {}
+      : lattice_(lattice), world_(world), row_margin_(lattice, world), query_(query) {}
 
   void start(int layer) {
     known_.assign(static_cast<std::size_t>(lattice_.slots(layer)), kUnknown);
@@ -91,12 +85,12 @@ class LayerBlockers {
     if (!pair) return known_[k] = kFree;
     const auto& pairs = world_.pairs();
     known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());
-    const Sharing sharing = sharing_of(lattice_, world_, query_, q, *pair);
-    if (!sharing.shared) {
+    const Config node = lattice_.has_own_rows() ? *lattice_.node(layer, slot) : q;
+    if (!is_shared(lattice_, world_, row_margin_, query_, layer, node, q, *pair)) {
       all_ = false;
       return known_[k];
     }
-    lattice_.alike(layer, slot, sharing.groups, alike_);
+    lattice_.alike(layer, slot, groups_of(world_, *pair), alike_);
     all_ = static_cast<int>(alike_.size()) == lattice_.slots(layer);
     for (const int other : alike_) {
       int& known = known_[static_cast<std::size_t>(other)];
@@ -107,6 +101,7 @@ class LayerBlockers {
 
   const Lattice& lattice_;
   const World& world_;
+  RowMargin row_margin_;
   World::Query& query_;
   std::vector<int> known_;   // [slot] kUnknown, or what is known to block it
   std::vector<char> asked_;  // [slot] known_ is the first that does
@@ -377,7 +372,7 @@ void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vecto
 
 void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, const SlotPath& path, bool layers,
               const Budget& budget, Diagnosis& diagnosis, const std::shared_ptr<StateCheck>& check) {
-  const Span span("diagnosis");
+  const TraceSpan span("diagnosis");
   const int deepest = static_cast<int>(path.size()) - 1, next = deepest + 1;
   diagnosis.complete = false;
   if (deepest >= 0) {
@@ -388,6 +383,12 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   diagnosis.at_s = tool_path.layer(next).s;
   for (int layer = 0; layer < lattice.layers() && diagnosis.waypoints[1] < 0; ++layer)
     if (const int waypoint = tool_path.layer(layer).waypoint; waypoint >= 0) diagnosis.waypoints[layer < next ? 0 : 1] = waypoint;
+  for (int layer = 0; layer < lattice.layers() && diagnosis.holds() != Diagnosis::Holds::kEveryResolution; ++layer) {
+    if (layer % 64 == 0) budget.poll();
+    const PathLayer& at = tool_path.layer(layer);
+    if ((!diagnosis.unreachable || at.waypoint >= 0) && lattice.proved_unreachable(layer))
+      diagnosis.unreachable = {layer, at.s, at.waypoint};
+  }
   diagnosis.layers_known = next;  // those before have a node: a path leads through them
   Inspector inspector(lattice, world, rule, budget, check);
 
@@ -441,14 +442,14 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
 
 SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule& rule, int layer, const Budget& budget,
                       const Hooks& hooks) {
-  const Span span("furthest path");
+  const TraceSpan span("furthest path");
   Executor executor(1);
   CollisionValidity validity(lattice, world, rule, lattice.limits().edges, Certificates::kOn, executor, 1, budget);
   HookedValidity hooked(lattice, validity, hooks, budget);
-  const auto togo = make_cost_to_go(lattice, Extent::kWhole, budget);
-  togo->sweep(layer);
+  const auto cost_to_go = make_cost_to_go(lattice, Extent::kWhole, budget);
+  cost_to_go->sweep(layer);
   SearchCounters counters;
-  return path_first(*togo, hooked, {}, counters).path;
+  return path_first(*cost_to_go, hooked, {}, counters).path;
 }
 
 }  // namespace swivel

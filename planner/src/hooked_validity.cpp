@@ -10,7 +10,7 @@ namespace swivel {
 void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
   first_->nodes(questions, answers);
   if (!check_) return;
-  const Span span("check of states");
+  const TraceSpan span("check of states");
   states_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k)
     if (answers[k].valid) states_.push_back(state(questions[k].layer, questions[k].slot, questions[k].q));
@@ -25,7 +25,7 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
   else
     std::fill(answers.begin(), answers.end(), std::uint8_t{1});
   if (!check_.checks_motions()) return;
-  const Span span("check of motions");
+  const TraceSpan span("check of motions");
   motions_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k)
     if (const EdgeQuestion& x = questions[k]; answers[k]) {
@@ -38,7 +38,7 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
 }
 
 void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<double> costs) {
-  const Span span("cost of states");
+  const TraceSpan span("cost of states");
   states_.clear();
   for (const NodeQuestion& question : questions) states_.push_back(state(question.layer, question.slot, question.q));
   cost_.costs(states_, costs);

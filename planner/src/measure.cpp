@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "measure_rows.hpp"
+#include "nearest_approach.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/lattice.hpp"
@@ -44,59 +46,59 @@ void measure_tool_path_error(const Chain& chain, const ToolPath& path, const std
 
 void measure_postures(const PreparedRobot& robot, const ToolPath& path, const World& world,
                       const std::vector<TrajectoryRow>& trajectory, const Budget& budget, Measures& result) {
-  World::Query query(world, Certificates::kOn);
-  std::optional<double> least;
-  std::optional<LeastMargin> margin;
   double manipulability = std::numeric_limits<double>::infinity();
   std::vector<double> arm_angle;
   const int rows = static_cast<int>(trajectory.size());
   for (int i = 0; i < rows; ++i) {
-    budget.poll(Stage::kMeasuring, i, rows);
+    if (i % 64 == 0) budget.poll(Stage::kMeasuring, i, rows);
     const Config& q = trajectory[static_cast<std::size_t>(i)].q;
     manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
     if (const auto& srs = robot.arm_class().srs) arm_angle.push_back(conventional_arm_angle(*srs, path.layer(i).tool, q));
-    const auto clearance = query.clearance(q);
-    if (!clearance) continue;
-    least = std::min(least.value_or(clearance->least), clearance->least);
-    if (!margin || clearance->margin() < margin->margin)
-      margin = {clearance->margin(), clearance->distance, clearance->required, world.names(clearance->pair), i};
   }
-  result.min_clearance = least;
-  result.min_margin = std::move(margin);
+  if (const auto nearest = nearest_approach(world, trajectory, Seek::kMarginAndLeast, budget)) {
+    const World::Query::Clearance& c = nearest->clearance;
+    result.min_clearance = nearest->least;
+    result.min_margin = {c.margin(), c.distance, c.required, world.names(c.pair), nearest->row};
+  }
   result.min_manipulability = manipulability;
   result.arm_angle = std::move(arm_angle);
   result.evidence.postures = true;
 }
 
 std::optional<NearestLimit> nearest_limit(const Chain& chain, const std::vector<TrajectoryRow>& rows) {
-  std::optional<NearestLimit> nearest;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t k = 0; k < kDof; ++k) {
-      if (chain.limit[k].continuous || chain.limit[k].wide()) continue;
-      const double q = rows[i].q[static_cast<Eigen::Index>(k)];
-      const double to_lower = q - chain.limit[k].lower, to_upper = chain.limit[k].upper - q, margin = std::min(to_lower, to_upper);
-      if (nearest && margin >= nearest->margin) continue;
-      nearest = {margin, chain.joint_names[k], to_lower <= to_upper ? Cause::Side::kLower : Cause::Side::kUpper,
-                 static_cast<int>(i)};
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t row = 0, joint = 0;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const JointLimit& limit = chain.limit[k];
+    if (limit.continuous || limit.wide()) continue;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double q = rows[i].q[static_cast<Eigen::Index>(k)], margin = std::min(q - limit.lower, limit.upper - q);
+      if (std::tie(margin, i, k) < std::tie(least, row, joint)) least = margin, row = i, joint = k;
     }
-  return nearest;
+  }
+  if (std::isinf(least)) return std::nullopt;
+  const double q = rows[row].q[static_cast<Eigen::Index>(joint)];
+  const bool is_lower = q - chain.limit[joint].lower <= chain.limit[joint].upper - q;
+  return NearestLimit{least, chain.joint_names[joint], is_lower ? Cause::Side::kLower : Cause::Side::kUpper, static_cast<int>(row)};
 }
 
 std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
-  std::optional<TopToolSpeed> top;
+  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed of its own
+  double speed = std::numeric_limits<double>::infinity();
+  std::size_t row = 0, joint = 0;
   for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
     const double length = path.layer(static_cast<int>(i)).step_length;
-    if (length <= 0) continue;                                          // a turn in place asks for no speed
-    for (std::size_t k = 0; k < (chain.roll ? kDof - 1 : kDof); ++k) {  // the roll has no speed of its own
+    if (length <= 0) continue;  // a turn in place asks for no speed
+    for (std::size_t k = 0; k < joints; ++k) {
       const double velocity = chain.limit[k].velocity;
       if (velocity <= 0) return std::nullopt;
       const auto j = static_cast<Eigen::Index>(k);
       const double moved = std::abs(rows[i + 1].q[j] - rows[i].q[j]);
-      if (top ? length * velocity < top->speed * moved : moved > 0)
-        top = {length * velocity / moved, chain.joint_names[k], static_cast<int>(i)};
+      if (moved > 0 && length * velocity < speed * moved) speed = length * velocity / moved, row = i, joint = k;
     }
   }
-  return top;
+  if (std::isinf(speed)) return std::nullopt;
+  return TopToolSpeed{speed, chain.joint_names[joint], static_cast<int>(row)};
 }
 
 }  // namespace

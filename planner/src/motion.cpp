@@ -9,7 +9,9 @@
 #include <span>
 #include <utility>
 
+#include "answer_check.hpp"
 #include "between_samples.hpp"
+#include "first_too_near.hpp"
 #include "measure_rows.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
@@ -24,84 +26,37 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Looks for what is wrong with a motion first, in the order of time.
-class Proof {
- public:
-  Proof(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows, const Budget& budget)
-      : limits_(&problem.limits),
-        chain_(&robot.arm().chain),
-        rows_(&rows),
-        world_(robot.world(), problem, budget, kVerdictBand),
-        rule_(world_.edge_rule(robot.radii())),
-        at_(world_, Certificates::kOn),
-        between_(world_, Certificates::kOn),
-        budget_(&budget),
-        grouped_(limits_->edges == EdgeMode::kContinuous && limits_->d_edge() <= limits_->clearance &&
-                 limits_->d_self_edge() <= limits_->d_self()) {
-    for (const TimedRow& row : rows)
-      moved_.push_back(moved_.empty() ? 0 : moved_.back() + rule_.motion(last_, row.row.q)), last_ = row.row.q;
+/// A joint's limits and the manipulability at a sample.
+std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits, const TrajectoryRow& row) {
+  constexpr double kLimit = 1e-9;  // rad
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    const double q = row.q[static_cast<Eigen::Index>(j)];
+    if (!limit.continuous && !(q >= limit.lower + limits.joint_margin - kLimit && q <= limit.upper - limits.joint_margin + kLimit))
+      return NoMotion{row.s, "joint '" + chain.joint_names[j] + "' leaves its limits between layers"};
   }
+  if (limits.manipulability > 0 && chain.manipulability(row.q) < limits.manipulability - 1e-9)
+    return NoMotion{row.s, "manipulability is too low between layers"};
+  return std::nullopt;
+}
 
-  std::optional<NoMotion> first_fault() {
-    for (const TimedRow& row : *rows_)
-      if (auto fault = joints_at(row.row)) return fault;
-    auto fault = collision(0, rows_->size() - 1);
-    if (fault) fault->too_near = true;
-    return fault;
+/// What is wrong with a motion first.
+std::optional<NoMotion> first_fault(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
+                                    const Budget& budget) {
+  std::vector<Config> samples;
+  for (const TimedRow& row : rows) {
+    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row)) return fault;
+    samples.push_back(row.row.q);
   }
-
- private:
-  [[nodiscard]] std::optional<NoMotion> joints_at(const TrajectoryRow& row) const {
-    constexpr double kLimit = 1e-9;  // rad
-    for (std::size_t j = 0; j < kDof; ++j) {
-      const JointLimit& limit = chain_->limit[j];
-      const double q = row.q[static_cast<Eigen::Index>(j)];
-      if (!limit.continuous &&
-          !(q >= limit.lower + limits_->joint_margin - kLimit && q <= limit.upper - limits_->joint_margin + kLimit))
-        return NoMotion{row.s, "joint '" + chain_->joint_names[j] + "' leaves its limits between layers"};
-    }
-    if (limits_->manipulability > 0 && chain_->manipulability(row.q) < limits_->manipulability - 1e-9)
-      return NoMotion{row.s, "manipulability is too low between layers"};
-    return std::nullopt;
-  }
-
-  /// From sample `first` to sample `last`. All of it is free where the middle is clear by as much as anything moves from there.
-  std::optional<NoMotion> collision(std::size_t first, std::size_t last) {
-    budget_->poll();
-    const auto row = [&](std::size_t k) -> const TrajectoryRow& { return (*rows_)[k].row; };
-    const std::size_t middle = (first + last) / 2;
-    if (grouped_ && last > first) {
-      const double most = std::max(moved_[middle] - moved_[first], moved_[last] - moved_[middle]);
-      if (!at_.next_below(row(middle).q, Level(Keep::kNode, most))) return std::nullopt;
-    }
-    if (last > first + 1) {
-      auto fault = collision(first, middle);
-      return fault ? fault : collision(middle, last);
-    }
-    for (std::size_t k = first; k <= last; ++k)
-      if (const auto pair = at_.next_below(row(k).q, Keep::kNode)) return NoMotion{row(k).s, too_near(*pair)};
-    if (last > first && limits_->edges == EdgeMode::kContinuous)
-      if (const auto pair = edge_blocked(between_, rule_, row(first).q, row(last).q, *budget_))
-        return NoMotion{row(last).s, too_near(*pair) + " between samples"};
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::string too_near(const BodyPair& pair) const {
-    const auto names = world_.names(pair);
-    return "'" + names[0] + "' and '" + names[1] + "' come too near";
-  }
-
-  const Limits* limits_;
-  const Chain* chain_;
-  const std::vector<TimedRow>* rows_;
-  World world_;
-  EdgeRule rule_;
-  World::Query at_, between_;
-  const Budget* budget_;
-  bool grouped_;               // what is clear enough at samples is so between them
-  std::vector<double> moved_;  // up to each sample: a bound on the way of any point, m
-  Config last_ = Config::Zero();
-};
+  const World world(robot.world(), problem, budget, kVerdictBand);
+  const auto found = first_too_near(world, world.edge_rule(robot.radii()), problem.limits, samples, budget);
+  if (!found) return std::nullopt;
+  const auto names = world.names(found->pair);
+  NoMotion fault{rows[found->row].row.s,
+                 "'" + names[0] + "' and '" + names[1] + "' come too near" + (found->between ? " between samples" : "")};
+  fault.too_near = true;
+  return fault;
+}
 
 }  // namespace
 
@@ -132,18 +87,30 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   const JointRates rates = joint_rates(chain, problem.limits, problem.source);
   const Problem of_samples = problem_of_samples(problem);
   MotionResult result;
-  // Through every row only where the smoother motion will not do.
-  for (const double apart : {0.005, 0.0}) {  // m
+  struct Tried {
+    std::optional<NoMotion> failure;
+    bool all_rows = false, jumps = false;
+  };
+  const auto try_it = [&](double apart, double off_limits) {
     auto start = std::chrono::steady_clock::now();
-    const PathMotion motion(chain, robot.srs("timing a trajectory"), path, rows, apart);
-    TimingResult timed = time_path(motion, rates, options, budget);
+    const auto motion = make_path_motion(chain, robot.arm_class(), path, rows, apart, problem.limits.joint_margin + off_limits);
+    TimingResult timed = time_path(*motion, rates, options, budget);
     result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-    result.failure = timed.failure;
-    if (timed.motion) result.failure = Proof(robot, of_samples, timed.motion->rows, budget).first_fault();
+    Tried tried{std::move(timed.failure), motion->knots().size() == rows.size(), !motion->jumps().empty()};
+    if (timed.motion) tried.failure = first_fault(robot, of_samples, timed.motion->rows, budget);
     result.check_ms += ms_since(start);
-    if (!result.failure) result.motion = std::move(timed.motion);
-    if (!result.failure || !motion.jumps().empty() || motion.knots().size() == rows.size()) break;
+    if (!tried.failure) result.motion = std::move(timed.motion);
+    return tried;
+  };
+  constexpr double kApart = 0.005, kOffLimits = 1e-3, kFarOff = 0.03;  // m, rad
+  Tried tried = try_it(kApart, kOffLimits);
+  // Through every row only where the smoother motion will not do.
+  if (tried.failure && !tried.all_rows && !tried.jumps) tried = try_it(0, kOffLimits);
+  // Rows as far off limits as splines through a jagged path overshoot.
+  if (tried.failure && !tried.failure->too_near && !tried.jumps && !robot.arm_class().srs) {
+    if (const Tried last = try_it(kApart, kFarOff); !last.failure) tried = last;
   }
+  result.failure = std::move(tried.failure);
   return result;
 }
 
@@ -175,8 +142,10 @@ bool changes_branch(const std::vector<TrajectoryRow>& rows) {
 PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool one_branch) {
   PlanResult found = planner.plan(options);
   if (!one_branch || found.status != PlanStatus::kSolved || !changes_branch(found.trajectory) || options.hooks.check) return found;
+  const ArmClass& arm = planner.view().robot.arm_class();
+  if (!arm.srs) return found;  // signs of other arms change along a motion
   PlanOptions keeping = options;
-  keeping.hooks.check = std::make_shared<KeepsBranch>(planner.view().robot.srs("timing"));
+  keeping.hooks.check = std::make_shared<KeepsBranch>(*arm.srs);
   PlanResult other = planner.plan(keeping);
   if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
   char text[160];
@@ -186,6 +155,27 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
                 found.cost);
   other.warnings.emplace_back(text);
   return other;
+}
+
+/// The lattice's path stays, and nothing is made of it.
+void stop(MotionPlan& plan, bool refined, bool timed) {
+  plan.stopped = true;
+  const double cost = plan.result.cost;
+  if (refined) plan.refinement = Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = cost, .cost = cost};
+  if (timed) plan.motion.emplace().failure = NoMotion{0, "stopped"};
+}
+
+/// Proves what was made of the lattice's path, which was proved itself. What is not proved in time is not made.
+void check(const PlanView& view, const Budget& budget, MotionPlan& plan) {
+  const bool refined = plan.refinement && plan.refinement->refined, timed = plan.motion && plan.motion->motion;
+  const auto start = std::chrono::steady_clock::now();
+  try {
+    if (refined) check_answer(view.world, view.robot, view.problem, plan.refinement->rows, budget);
+    if (timed) check_answer(view.world, view.robot, view.problem, plan.motion->motion->rows, budget);
+  } catch (const Stopped&) {
+    stop(plan, refined, plan.motion.has_value());
+  }
+  plan.result.time_ms["check"] += ms_since(start);
 }
 
 /// Puts refined rows in the place of the lattice's.
@@ -232,11 +222,9 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
       if (!refined || !plan.motion->failure || !plan.motion->failure->too_near || margins.extra_clearance > kMostExtra) break;
     }
   } catch (const Stopped&) {
-    plan.stopped = true;
-    if (refined && !plan.refinement)
-      plan.refinement = Refined{.rows = plan.lattice_path, .reason = "stopped", .cost_before = result.cost, .cost = result.cost};
-    if (timing && (!plan.motion || !plan.motion->motion)) plan.motion.emplace().failure = NoMotion{0, "stopped"};
+    stop(plan, refined && !plan.refinement, timing && (!plan.motion || !plan.motion->motion));
   }
+  if (options.check) check(view, budget, plan);
   if (!refined) return plan;
   take(*plan.refinement, view, result);
   try {
@@ -251,15 +239,15 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
   validate(problem);
   robot.require_prepared_for(problem);
   const ToolPath path = problem_path(problem, robot.arm().chain);
-  const PathMotion motion(robot.arm().chain, robot.srs("timing a trajectory"), path, rows);
+  const auto motion = make_path_motion(robot.arm().chain, robot.arm_class(), path, rows);
   std::vector<TrajectoryRow> laid;
   for (int i = 0; i < path.size(); ++i) {
     const double travel = path.layer(i).travel;
-    const auto q = motion.joints(travel);
+    const auto q = motion->joints(travel);
     if (!q)
       throw InputError(problem.source + ": path.smooth: the arm has no solution at s = " + std::to_string(path.layer(i).s) +
                        ": allowed are smaller tolerances");
-    laid.push_back(motion.row(travel, *q));
+    laid.push_back(motion->row(travel, *q));
     laid.back().s = path.layer(i).s;
   }
   return laid;

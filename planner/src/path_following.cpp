@@ -102,8 +102,9 @@ Pose pose_at(const ToolPath& path, double place) {
   return layer == place ? path.layer(layer).tool : path.at(layer, place - layer);
 }
 
-ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseDistance& tolerance) {
-  constexpr double kFewest = 4, kMost = 2048;
+ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
+                       const PoseDistance& tolerance, int fewest) {
+  constexpr double kMost = 2048;
   const Config move = (to - from).cwiseAbs();
   // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half
   // of (sum |dq_i|)^2; a chord is off by an eighth of it.
@@ -115,10 +116,12 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   const PoseDistance chord{move.sum() * swept / 8, move.sum() * move.sum() / 16};
   const double parts2 = std::max(chord.position / std::max(0.01 * tolerance.position, kForgiven),
                                  chord.angle / std::max(0.01 * tolerance.angle, kForgiven));
-  const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(parts2)), kFewest, kMost));
+  const auto parts = static_cast<int>(std::clamp(std::ceil(std::sqrt(parts2)), static_cast<double>(fewest), kMost));
   ToolMotion motion;
   motion.error = {chord.position / parts / parts, chord.angle / parts / parts};
-  for (int m = 0; m <= parts; ++m) motion.poses.push_back(chain.tool(from + static_cast<double>(m) / parts * (to - from)));
+  motion.poses.push_back(ends[0]);
+  for (int m = 1; m < parts; ++m) motion.poses.push_back(chain.tool(from + static_cast<double>(m) / parts * (to - from)));
+  motion.poses.push_back(ends[1]);
   return motion;
 }
 

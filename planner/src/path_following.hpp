@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -21,7 +22,9 @@ struct ToolMotion {
   PoseDistance error;
 };
 /// Cuts the move so that the error stays below 1 % of the tolerance (but 1e-6 m and rad, and 2,048 parts, are fine enough).
-[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const PoseDistance& tolerance);
+/// `ends`: the tool's poses at both. `fewest` parts, for those who measure.
+[[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
+                                     const PoseDistance& tolerance, int fewest = 4);
 
 /// A place on a tool path is a layer's number plus the fraction of the step from it: 3.5 is half way from layer 3 to layer 4.
 [[nodiscard]] Pose pose_at(const ToolPath& path, double place);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "answer_check.hpp"
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "hooked_validity.hpp"
@@ -37,8 +38,7 @@ bool is_eager(const PlanOptions& options) {
 
 /// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
 Certificates certificates_of(const PlanOptions& options) {
-  if (is_eager(options)) return Certificates::kOff;
-  return options.compare_with_fcl ? Certificates::kCompared : Certificates::kOn;
+  return is_eager(options) ? Certificates::kOff : Certificates::kOn;
 }
 
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
@@ -178,7 +178,8 @@ struct Planner::Impl {
   std::optional<Executor> executor;
   std::pair<int, Executor::Backend> executor_is{0, Executor::Backend::kTbb};
 
-  SlotPath path;  // of the last plan
+  bool once = false;  // no plan follows: nothing is remembered
+  SlotPath path;      // of the last plan
   bool viewable = false, was_eager = false;
 
   explicit Impl(Problem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
@@ -249,7 +250,7 @@ struct Planner::Impl {
   // --- plans
   const PreparedRobot& prepare(const Budget& budget) {
     if (!robot) {
-      const Span span("prepare");
+      const TraceSpan span("prepare");
       budget.tell(Stage::kPreparing);
       robot = last_robot ? std::make_shared<const PreparedRobot>(*last_robot, problem, budget)
               : arm      ? std::make_shared<const PreparedRobot>(problem, *arm, budget)
@@ -282,7 +283,7 @@ struct Planner::Impl {
   /// Paths that do not stay within the limits of joints taken as circles are none: those joints' values are told apart then.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
     was_eager = is_eager(options);
-    Found found = search(layout->first, true, rule, options, budget, result);
+    Found found = search(layout->first, !once, rule, options, budget, result);
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
       if (!found.decided || found.outcome.path.empty() || !path_joints(lattice, found.outcome.path).empty()) return found;
@@ -306,8 +307,6 @@ struct Planner::Impl {
       counters.certified_free = collision.certified_free;
       counters.certified_colliding = collision.certified_colliding;
       add_counters(counters, result.counters);
-      if (collision.contradictions > 0)
-        throw std::logic_error(std::to_string(collision.contradictions) + " certificates contradict FCL");
     };
     if (was_eager) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
@@ -318,20 +317,22 @@ struct Planner::Impl {
       return found;
     }
     constexpr int kFewLayers = 64;  // where chords are too long to bound much
-    std::unique_ptr<CostToGo>& togo = searched.cost_to_go;
-    if (!togo)
-      togo =
+    std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
+    if (!cost_to_go)
+      cost_to_go =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
-    const bool swept = togo->restart(budget);
+    if (once) cost_to_go->never_restarts();
+    const bool swept = cost_to_go->restart(budget);
     std::optional<World> changed;
     if (remembered) {
-      memory.begin(++plans, met, static_cast<int>(world->bodies().size()));
+      memory.begin(++plans, met, *world, problem.scene);
       if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     }
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
                                budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
-    found = search_lazily(*togo, swept, hooked, remembered ? memory.failures() : Suspects{}, options, counters, result.time_ms);
+    found =
+        search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : AskedFirst{}, options, counters, result.time_ms);
     count(validity);
     return found;
   }
@@ -358,12 +359,26 @@ struct Planner::Impl {
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();
+    if (options.check && result.status == PlanStatus::kSolved) {
+      check(budget, result);
+      result.time_ms["check"] = watch.lap();
+    }
     explain(rule, found, options, budget, result);
     result.time_ms["report"] = watch.lap();
   }
+  /// A path that is not proved in time is no answer.
+  void check(const Budget& budget, PlanResult& result) {
+    try {
+      check_answer(*world, *robot, problem, result.trajectory, budget);
+      result.checked = true;
+    } catch (const Stopped&) {
+      result.partial.swap(result.trajectory);
+      throw;
+    }
+  }
   /// What the options ask for, as far as the budget goes.
   void explain(const EdgeRule& rule, const Found& found, const PlanOptions& options, const Budget& budget, PlanResult& result) {
-    const Span span("report");
+    const TraceSpan span("report");
     const Lattice& lattice = *layout->last().lattice;
     try {
       if (result.status == PlanStatus::kSolved) {
@@ -383,7 +398,7 @@ struct Planner::Impl {
     }
   }
   PlanResult plan(const PlanOptions& options) {
-    const Span span("plan");
+    const TraceSpan span("plan");
     const Budget budget = options.budget();
     Stopwatch watch;
     PlanResult result;
@@ -397,7 +412,9 @@ struct Planner::Impl {
       find(options, budget, result);
     } catch (const Stopped&) {
       result.status = stopped_status(budget);
-      result.time_ms[result.time_ms.contains("prepare") ? "plan" : "prepare"] = watch.lap();
+      result.time_ms[!result.time_ms.contains("prepare") ? "prepare"
+                     : result.time_ms.contains("plan")   ? "check"
+                                                         : "plan"] = watch.lap();
     }
     return result;
   }
@@ -477,7 +494,7 @@ void Planner::remove(const std::string& object) {
   const std::size_t k = impl_->object(object);
   Problem next = impl_->problem;
   next.scene.erase(next.scene.begin() + static_cast<std::ptrdiff_t>(k));
-  std::erase_if(next.vary, [&](const Vary& vary) { return vary.object == object; });
+  std::erase_if(next.vary, [&](const Variation& vary) { return vary.object == object; });
   impl_->replace(std::move(next));
   impl_->met.erase(impl_->met.begin() + static_cast<std::ptrdiff_t>(k));
   impl_->memory.object_removed(static_cast<int>(k));
@@ -512,12 +529,16 @@ PlanView Planner::view() const {
 }
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
-  return Planner(problem).plan(options);
+  Planner planner(problem);
+  planner.impl_->once = true;
+  return planner.plan(options);
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
   // Not owned: it outlives this call.
-  return Planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem).plan(options);
+  Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
+  planner.impl_->once = true;
+  return planner.plan(options);
 }
 
 }  // namespace swivel

@@ -3,10 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "asked_hooks.hpp"
+#include "swivel/core/alignment.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/arc_lengths.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/smooth_path.hpp"
@@ -87,27 +93,90 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   for (int k = 0; k + 1 < few.layers(); ++k) {
     const double from = start[static_cast<std::size_t>(k)], to = start[static_cast<std::size_t>(k) + 1];
     for (int i = few.layer(k); i <= few.layer(k + 1); ++i) {
-      const double t = (solver.travel(i) - few.travel(k)) / (few.travel(k + 1) - few.travel(k));
       const CoordinateBox& box = boxes[static_cast<std::size_t>(i)];
-      x[static_cast<std::size_t>(i)] = std::clamp(from + t * (to - from), box.low, box.high);
+      const double between = i == few.layer(k) ? from : solver.between(i, few.layer(k), from, few.layer(k + 1), to);
+      x[static_cast<std::size_t>(i)] = std::clamp(between, box.low, box.high);
     }
   }
   return x;
 }
 
-/// Sine of the angle nearest to singular.
-double singular_sine(const SrsArm& arm, const Config& q) {
-  return std::min(
-      {std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))), std::abs(std::sin(arm.wrist_angle(q)))});
-}
+/// What refinement asks of an arm of some class.
+class Redundancy {
+ public:
+  /// The arguments must outlive it.
+  Redundancy(const PreparedRobot& robot, const Problem& problem, const ToolPath& path, const Budget& budget)
+      : arm_(&robot.arm_class()) {
+    const Chain& chain = robot.arm().chain;
+    if (arm_->srs) {
+      auto grid = std::make_unique<SrsLattice>(chain, *arm_->srs, path, problem, budget);
+      grid_ = grid.get();
+      lattice_ = std::move(grid);
+    } else {
+      // Without nodes, which refinement has no use for.
+      lattice_ = std::make_unique<ExplicitLattice>(
+          chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size())));
+      alignments_ = alignments_of(chain);
+    }
+  }
+  [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
+  /// Of S-R-S arms, else null.
+  [[nodiscard]] const SrsLattice* grid() const { return grid_; }
+
+  /// The phi of rows becomes the coordinate that moves, about the joints that they have: the arm angle without jumps, or the length
+  /// along the self-motion from there.
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const {
+    if (grid_) {
+      for (std::size_t i = 1; i < rows.size(); ++i) rows[i].phi = rows[i - 1].phi + wrap_angle(rows[i].phi - rows[i - 1].phi);
+      return std::make_unique<ArmAngles>(*grid_, rows);
+    }
+    std::vector<Config> origins;
+    for (TrajectoryRow& row : rows) {
+      row.phi = 0;
+      origins.push_back(row.q);
+    }
+    return std::make_unique<ArcLengths>(lattice_->chain(), lattice_->path(), std::move(origins));
+  }
+  /// And phi and branch again what they are in trajectories.
+  void label(std::vector<TrajectoryRow>& rows) const {
+    for (TrajectoryRow& row : rows) {
+      if (grid_) {
+        row.phi = wrap_angle(row.phi);
+      } else {
+        row.phi = arc_angle(lattice_->chain(), row.q);
+        row.branch = arc_branch(lattice_->chain(), arm_->lock, row.q);
+      }
+    }
+  }
+  /// rad, of the coordinate from a layer to the next: what the lattice's window allows.
+  [[nodiscard]] double most_change() const { return grid_ ? grid_->most_turn() : std::numeric_limits<double>::infinity(); }
+  /// Sine of the angle nearest to singular.
+  [[nodiscard]] double singular_sine(const Config& q) const {
+    double least = 1;
+    if (grid_) {
+      const SrsArm& arm = grid_->arm();
+      return std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
+                       std::abs(std::sin(arm.wrist_angle(q)))});
+    }
+    for (const Alignment& a : alignments_) least = std::min(least, std::abs(std::sin(a.away(q))));
+    return least;
+  }
+
+ private:
+  const ArmClass* arm_;
+  std::unique_ptr<Lattice> lattice_;
+  const SrsLattice* grid_ = nullptr;
+  std::vector<Alignment> alignments_;  // of arms without a grid
+};
 
 /// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
 class Judge {
  public:
-  Judge(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice, const RefineOptions& options,
+  Judge(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, const RefineOptions& options,
         const Budget& budget)
       : problem_(&problem),
-        lattice_(&lattice),
+        redundancy_(&redundancy),
+        lattice_(&redundancy.lattice()),
         extra_(options.extra_clearance),
         check_(options.check, budget),
         world_(robot.world(), problem, budget),
@@ -134,7 +203,7 @@ class Judge {
     ++edges_asked;
     const Limits& limits = lattice_->limits();
     const Config move = b.q - a.q;
-    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > most_change()) return false;
+    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > redundancy_->most_change()) return false;
     const auto within = [](const std::array<double, 3>& deviation, double limit) {
       return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
     };
@@ -145,7 +214,7 @@ class Judge {
       return false;
     if (limits.step_error)
       for (const int end : {0, 1})
-        if (!(step_error(*lattice_, layer, end, (end == 0 ? a : b).branch, (end == 0 ? a : b).phi, b.phi - a.phi) <=
+        if (!(step_error(*redundancy_->grid(), layer, end, (end == 0 ? a : b).branch, (end == 0 ? a : b).phi, b.phi - a.phi) <=
               *limits.step_error))
           return false;
     if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_)) return false;
@@ -153,9 +222,6 @@ class Judge {
     const StateCheck::Motion motion{a.q, b.q};
     return check_.motions({&motion, 1})[0];
   }
-
-  /// rad, what the lattice's window allows.
-  [[nodiscard]] double most_change() const { return lattice_->window() * kTwoPi / lattice_->angles() + 1e-9; }
 
   std::int64_t nodes_asked = 0, edges_asked = 0;
 
@@ -166,8 +232,8 @@ class Judge {
     ++nodes_asked;
     constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
-    const SrsArm& arm = lattice_->arm();
-    if (singular_sine(arm, q) < std::min(std::sin(problem_->refinement.singular_margin), singular_sine(arm, given) - 1e-9))
+    if (redundancy_->singular_sine(q) <
+        std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
       return false;
     return lattice_->manipulable(q);
   }
@@ -186,7 +252,8 @@ class Judge {
   }
 
   const Problem* problem_;
-  const SrsLattice* lattice_;
+  const Redundancy* redundancy_;
+  const Lattice* lattice_;
   double extra_;
   AskedCheck check_;
   World world_;
@@ -215,11 +282,9 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
 /// One path given, refined at one weight of smoothness.
 class Refinery {
  public:
-  Refinery(const SrsLattice& lattice, Judge& judge, const std::vector<TrajectoryRow>& given, bool fixed_start, const Budget& budget)
-      : lattice_(&lattice), judge_(&judge), given_(given), solver_(lattice, given_), fixed_start_(fixed_start), budget_(budget) {
-    for (std::size_t i = 1; i < given_.size(); ++i)
-      given_[i].phi = given_[i - 1].phi + wrap_angle(given_[i].phi - given_[i - 1].phi);
-  }
+  Refinery(const Redundancy& redundancy, Judge& judge, const std::vector<TrajectoryRow>& given, bool fixed_start,
+           const Budget& budget)
+      : judge_(&judge), given_(given), solver_(redundancy.solver(given_)), fixed_start_(fixed_start), budget_(budget) {}
 
   /// Valid rows, or none within the rounds.
   std::optional<std::vector<TrajectoryRow>> run(const SmoothObjective& objective, int& rounds) {
@@ -236,8 +301,8 @@ class Refinery {
     std::vector<std::array<double, 2>> edge_known(n, {std::nan(""), std::nan("")});
     for (int round = 0; round < kRounds; ++round) {
       ++rounds;
-      x = coarse_minimum(solver_, objective, boxes, std::move(x), budget_);
-      x = smooth_minimum(solver_, objective, boxes, std::move(x), budget_);
+      x = coarse_minimum(*solver_, objective, boxes, std::move(x), budget_);
+      x = smooth_minimum(*solver_, objective, boxes, std::move(x), budget_);
       std::vector<TrajectoryRow> rows = rows_at(x);
       if (rows.empty()) return std::nullopt;
       bool fails = false;
@@ -270,7 +335,7 @@ class Refinery {
     std::vector<TrajectoryRow> rows = given_;
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (x[i] == given_[i].phi) continue;  // verbatim
-      const auto q = solver_.joints(static_cast<int>(i), x[i]);
+      const auto q = solver_->joints(static_cast<int>(i), x[i]);
       if (!q) return {};
       rows[i].phi = x[i];
       rows[i].q = *q;
@@ -284,7 +349,7 @@ class Refinery {
     double good = given_[i].phi, bad = x;
     for (int k = 0; k < kQueries; ++k) {
       const double middle = (good + bad) / 2;
-      const auto q = solver_.joints(static_cast<int>(i), middle);
+      const auto q = solver_->joints(static_cast<int>(i), middle);
       (q && judge_->node(*q, given_[i].q) ? good : bad) = middle;
     }
     (x > given_[i].phi ? box.high : box.low) = good;
@@ -303,7 +368,7 @@ class Refinery {
       const double middle = (good + bad) / 2;
       bool valid = true;
       for (const std::size_t k : {i, i + 1}) {
-        const auto q = solver_.joints(static_cast<int>(k), rows[k - i].phi = at(k, middle));
+        const auto q = solver_->joints(static_cast<int>(k), rows[k - i].phi = at(k, middle));
         valid = valid && q;
         if (q) rows[k - i].q = *q;
       }
@@ -315,20 +380,19 @@ class Refinery {
     }
   }
 
-  const SrsLattice* lattice_;
   Judge* judge_;
-  std::vector<TrajectoryRow> given_;  // arm angles unwrapped
-  ArmAngles solver_;
+  std::vector<TrajectoryRow> given_;  // phi: the coordinate
+  std::unique_ptr<LayerSolver> solver_;
   bool fixed_start_;
   Budget budget_;
 };
 
-/// A path of a lattice that is up to four times as coarse along the path and finer in the arm angle, laid over the layers. None
+/// A path of a lattice that is up to four times as coarse along the path and finer in its coordinate, laid over the layers. None
 /// where there is none, where even its optimum without obstacles is not cheaper than `to_beat`, and where it is not valid on the
 /// layers.
-std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem, const SrsLattice& lattice,
-                                                      Judge& judge, const SmoothObjective& objective, double to_beat,
-                                                      const Budget& budget) {
+std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem,
+                                                      const Redundancy& redundancy, Judge& judge, const SmoothObjective& objective,
+                                                      double to_beat, const Budget& budget) {
   Problem coarse = problem;
   // Longer steps than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
@@ -343,6 +407,9 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   coarse.limits.tool_angle_error.reset();
   coarse.limits.step_error.reset();
   coarse.limits.joint_step *= times;
+  const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
+  // Each waypoint is a layer: where these are dense the nodes are those of the first path, as far as they are not of a finer grid.
+  if (!redundancy.grid() && 4 * path.size() > 3 * redundancy.lattice().layers()) return std::nullopt;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
@@ -352,23 +419,23 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   const PlanResult found = plan(robot, coarse, options);
   budget.poll();
   if (found.status != PlanStatus::kSolved) return std::nullopt;
-  const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
-  const PathMotion motion(robot.arm().chain, robot.srs(), path, found.trajectory);
-  if (!motion.jumps().empty()) return std::nullopt;
+  const auto motion = make_path_motion(robot.arm().chain, robot.arm_class(), path, found.trajectory);
+  if (!motion->jumps().empty()) return std::nullopt;
+  const Lattice& lattice = redundancy.lattice();
+  const SrsLattice* grid = redundancy.grid();
   std::vector<TrajectoryRow> rows;
   for (int i = 0; i < lattice.layers(); ++i) {
     TrajectoryRow row;
     row.s = lattice.path().layer(i).s;
-    const auto q = i == 0 ? found.trajectory[0].q : motion.joints(lattice.path().layer(i).travel);
+    const auto q = i == 0 ? found.trajectory[0].q : motion->joints(lattice.path().layer(i).travel);
     if (!q) return std::nullopt;
     row.q = *q;
-    row.phi = lattice.plane(i).angle_of(lattice.arm().elbow_axis(*q));
-    if (i > 0) row.phi = rows.back().phi + wrap_angle(row.phi - rows.back().phi);
+    if (grid) row.phi = grid->plane(i).angle_of(grid->arm().elbow_axis(*q));
     row.branch = found.trajectory[0].branch;
     rows.push_back(row);
   }
 
-  const ArmAngles solver(lattice, rows);
+  const auto solver = redundancy.solver(rows);
   std::vector<double> x;
   std::vector<CoordinateBox> boxes;
   for (const TrajectoryRow& row : rows) {
@@ -376,9 +443,9 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
     boxes.push_back({row.phi - kFarthest, row.phi + kFarthest});
   }
   if (problem.start) boxes[0] = {x[0], x[0]};
-  x = smooth_minimum(solver, objective, boxes, std::move(x), budget);
+  x = smooth_minimum(*solver, objective, boxes, std::move(x), budget);
   std::vector<TrajectoryRow> best = rows;
-  for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver.joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
+  for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
   if (cost_of(lattice, best) >= to_beat) return std::nullopt;
   for (std::size_t i = 0; i < rows.size(); ++i)
     if (!judge.bare_node(rows[i].q) || (i > 0 && !judge.edge(static_cast<int>(i) - 1, rows[i - 1], rows[i]))) return std::nullopt;
@@ -395,18 +462,19 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
-  const SrsLattice lattice(robot.arm().chain, robot.srs("refining"), path, problem, budget);
-  Judge judge(robot, problem, lattice, options, budget);
+  const Redundancy redundancy(robot, problem, path, budget);
+  const Lattice& lattice = redundancy.lattice();
+  Judge judge(robot, problem, redundancy, options, budget);
   Refined result;
   result.rows = rows;
   result.cost_before = result.cost = cost_of(lattice, rows);
   result.bend_before = result.bend = largest_bend(path, rows);
   SmoothObjective objective;
   objective.weights = lattice.cost_scale();
-  objective.most_change = 0.98 * judge.most_change();
+  objective.most_change = 0.98 * redundancy.most_change();
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
-    Refinery refinery(lattice, judge, from, problem.start.has_value(), budget);
+    Refinery refinery(redundancy, judge, from, problem.start.has_value(), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
     for (int attempt = 0; attempt < 3; ++attempt, objective.bending /= 10) {
@@ -427,11 +495,10 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
     constexpr double kWorthIt = 1 - 1e-4;
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
-    if (const auto second = second_path(robot, problem, lattice, judge, objective, kWorthIt * result.cost, budget))
+    if (const auto second = second_path(robot, problem, redundancy, judge, objective, kWorthIt * result.cost, budget))
       improve(*second, true);
   }
-  for (TrajectoryRow& row : result.rows) row.phi = wrap_angle(row.phi);
-  if (!result.refined) result.rows = rows;
+  if (result.refined) redundancy.label(result.rows);
   result.bend = largest_bend(path, result.rows);
   result.nodes_asked = judge.nodes_asked;
   result.edges_asked = judge.edges_asked;

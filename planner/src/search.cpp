@@ -11,7 +11,7 @@ Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptio
   EagerOutcome eager;
   try {
     if (options.planner == PlannerKind::kEager)
-      eager_search(lattice, validity, options.eager_search, budget, eager);
+      eager_search(lattice, validity, budget, eager);
     else
       eager_dp(lattice, validity, budget, eager);
     found = {true, eager, eager.deepest, eager.path};
@@ -39,32 +39,34 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
-Found search_lazily(CostToGo& togo, bool swept, Validity& validity, const Suspects& suspects, const PlanOptions& options,
+Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first, const PlanOptions& options,
                     Counters& counters, std::map<std::string, double>& time_ms) {
   Stopwatch watch;
   Found found;
   SearchCounters searched;
-  // A fixed batch, so that what is asked (and counted) does not depend on the number of threads.
-  const PathFirstOptions path_first_options{.batch = options.planner == PlannerKind::kParallel ? 32 : 1};
+  // A fixed batch, so that what is asked (and counted) does not depend on the number of threads. A check of the caller's is asked
+  // about as many at once, since calling it may cost more than its answers.
+  const bool in_batches = options.planner == PlannerKind::kParallel || options.hooks.check;
+  const PathFirstOptions path_first_options{.batch = in_batches ? 32 : 1};
   try {
-    if (!swept) togo.sweep(togo.lattice().layers() - 1);
+    if (!swept) cost_to_go.sweep(cost_to_go.lattice().layers() - 1);
     time_ms["sweep"] = watch.lap();
-    found.outcome = path_first(togo, validity, path_first_options, searched, suspects);
+    found.outcome = path_first(cost_to_go, validity, path_first_options, searched, first);
     found.decided = true;
     found.valid_path = found.outcome.path;
     time_ms["search"] = watch.lap();
     if (found.outcome.path.empty()) {
-      togo.budget().tell(Stage::kReach);
-      found.deepest = deepest_valid_layer(togo, validity, path_first_options, searched);
+      cost_to_go.budget().tell(Stage::kReach);
+      found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
       std::int64_t expansions = 0;  // no part of the search
-      if (*found.deepest >= 0) found.valid_path = best_path(togo, expansions);
+      if (*found.deepest >= 0) found.valid_path = best_path(cost_to_go, expansions);
       time_ms["reach"] = watch.lap();
     }
   } catch (const Stopped&) {
-    found.valid_path = proved_part(searched.candidate, togo.verdicts(), validity);
+    found.valid_path = proved_part(searched.candidate, cost_to_go.verdicts(), validity);
   }
-  counters.ik_nodes = togo.ik_nodes();
-  counters.edges = togo.edges();
+  counters.ik_nodes = cost_to_go.ik_nodes();
+  counters.edges = cost_to_go.edges();
   counters.expansions = searched.expansions;
   counters.iterations = searched.iterations;
   return found;

@@ -25,7 +25,7 @@ struct Found {
 [[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
                                    Counters& counters);
 /// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals.
-[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const Suspects& suspects,
+[[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first,
                                   const PlanOptions& options, Counters& counters, std::map<std::string, double>& time_ms);
 
 }  // namespace swivel

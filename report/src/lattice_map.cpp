@@ -23,13 +23,13 @@ std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
 
 }  // namespace
 
-std::vector<int> LatticeMap::inhabited_labels() const {
+std::vector<int> LatticeMap::inhabited_sheets() const {
   std::vector<int> inhabited;
-  for (int label = 0; label < labels(); ++label) {
-    bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == label; });
+  for (int sheet = 0; sheet < sheets(); ++sheet) {
+    bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == sheet; });
     for (int layer = 0; layer < layers && !any; ++layer)
-      for (int j = 0; j < angles && !any; ++j) any = at(layer, label, j).state >= NodeState::kNotLookedAt;
-    if (any) inhabited.push_back(label);
+      for (int j = 0; j < angles && !any; ++j) any = at(layer, sheet, j).state >= NodeState::kNotLookedAt;
+    if (any) inhabited.push_back(sheet);
   }
   return inhabited;
 }
@@ -39,12 +39,12 @@ std::string LatticeMap::blocker_name(const Node& node) const {
   return a + " - " + b;
 }
 
-std::string LatticeMap::label_name(int label) const {
-  const int branch = label / windings;
+std::string LatticeMap::sheet_name(int sheet) const {
+  const int branch = sheet / windings;
   if (!grid) return "solutions " + std::to_string(branch);
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
   std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
-  if (windings > 1) name += ", winding " + std::to_string(label % windings);
+  if (windings > 1) name += ", winding " + std::to_string(sheet % windings);
   return name;
 }
 
@@ -70,7 +70,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
   map.joint_names = lattice.chain().joint_names;
   for (const int slot : view.path) map.path.push_back(map_cell(lattice, static_cast<int>(map.path.size()), slot));
   map.complete = full || view.verdicts == nullptr;
-  const std::size_t cells = static_cast<std::size_t>(map.labels()) * static_cast<std::size_t>(map.angles);
+  const std::size_t cells = static_cast<std::size_t>(map.sheets()) * static_cast<std::size_t>(map.angles);
   map.nodes.resize(static_cast<std::size_t>(map.layers) * cells);
   std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // cell, by what
   std::vector<Lattice::Node> listed;

@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <cstdio>
 
+#include "drawing.hpp"
 #include "map_cells.hpp"
-#include "swivel/core/bounds.hpp"
 
 namespace swivel {
 
 using namespace detail;
 
 namespace {
-
-// Okabe & Ito's palette, told apart by all kinds of colour vision; shades for joints and for bodies.
-constexpr std::array<const char*, kDof> kJointColour{"#cfe8f7", "#b3daf2", "#97cced", "#7bbee8", "#5fb0e2", "#4a9bd0", "#3a83b5"};
-constexpr std::array<const char*, 6> kBlockerColour{"#d55e00", "#a34700", "#e69f00", "#8c2d04", "#f0902f", "#5e2400"};
 
 std::string colour_of(const LatticeMap::Node& node) {
   switch (node.state) {
@@ -33,94 +28,30 @@ std::string colour_of(const LatticeMap::Node& node) {
   return "#ffffff";
 }
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : printable(text)) {
-    if (c == '&')
-      result += "&amp;";
-    else if (c == '<')
-      result += "&lt;";
-    else if (c == '>')
-      result += "&gt;";
-    else
-      result += c;
-  }
-  return result;
-}
-
-/// An SVG document written from top to bottom.
-class Drawing {
- public:
-  void rectangle(double x, double y, double width, double height, const std::string& fill) {
-    print("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"", x, y, width, height);
-    body_ += fill + "\"/>\n";
-  }
-  void frame(double x, double y, double width, double height) {
-    print("<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"none\" stroke=\"#444\"/>\n", x, y, width, height);
-  }
-  void text(double x, double y, const char* anchor, const std::string& what) {
-    print("<text x=\"%.2f\" y=\"%.2f\" text-anchor=\"", x, y);
-    body_ += std::string(anchor) + "\">" + escaped(what) + "</text>\n";
-  }
-  void line(const std::vector<std::pair<double, double>>& points, const char* stroke, double width) {
-    body_ += "<polyline fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke=\"" + std::string(stroke) + "\"";
-    print(" stroke-width=\"%.1f\" points=\"", width);
-    for (const auto& [x, y] : points) print("%.2f,%.2f ", x, y);
-    body_ += "\"/>\n";
-  }
-  void circle(double x, double y, double radius, const char* fill) {
-    print("<circle cx=\"%.2f\" cy=\"%.2f\" r=\"%.2f\" stroke=\"#fff\" fill=\"", x, y, radius);
-    body_ += std::string(fill) + "\"/>\n";
-  }
-  [[nodiscard]] std::string document(double width, double height) const {
-    char head[200];
-    std::snprintf(head, sizeof head,
-                  "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" "
-                  "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect { shape-rendering: crispEdges }</style>\n",
-                  width, height, width, height);
-    return head + body_ + "</svg>\n";
-  }
-
- private:
-  template <class... Values>
-  void print(const char* format, Values... values) {
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    body_ += text;
-  }
-  std::string body_;
-};
-
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 }  // namespace
 
 std::string to_svg(const LatticeMap& map) {
   constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52, kRight = 24;
   const MapCells cells(map, 620, 252);
   Drawing drawing;
-  const std::vector<int> labels = map.inhabited_labels();
+  const std::vector<int> sheets = map.inhabited_sheets();
   const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map.blockers.size());
   const double width = kLeft + kPanelWidth + kRight;
-  drawing.rectangle(0, 0, width, kTop + static_cast<double>(labels.size()) * (kPanelHeight + kGap) + height_of_legend, "#ffffff");
+  drawing.rectangle(0, 0, width, kTop + static_cast<double>(sheets.size()) * (kPanelHeight + kGap) + height_of_legend, "#ffffff");
   // A node stands for the stretch halfway to its neighbours, so the first and last layer are half as wide.
   const auto x_of = [&](double layer) { return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1); };
   MapLegend seen(map);
   double top = kTop;
-  for (const int label : labels) {
+  for (const int sheet : sheets) {
     const auto y_of = [&](double angle) { return top + kPanelHeight * (1 - angle / map.angles); };
     for (int row = 0; row < cells.rows; ++row) {
       const double low = row * cells.angles_each, high = std::min(map.angles, (row + 1) * cells.angles_each);
       for (int column = 0; column < cells.columns;) {
-        const LatticeMap::Node node = cells.node(label, column, row);
+        const LatticeMap::Node node = cells.node(sheet, column, row);
         seen.see(node);
         int end = column + 1;  // cells alike are one rectangle
         for (; end < cells.columns; ++end) {
-          const LatticeMap::Node other = cells.node(label, end, row);
+          const LatticeMap::Node other = cells.node(sheet, end, row);
           if (other != node) break;
         }
         const double from = x_of(column * cells.layers_each - 0.5), to = x_of(end * cells.layers_each - 0.5);
@@ -138,7 +69,7 @@ std::string to_svg(const LatticeMap& map) {
     };
     for (std::size_t i = 0; i < map.path.size(); ++i) {
       const int slot = map.path[i], angle = slot % map.angles;
-      const bool here = slot / map.angles == label;
+      const bool here = slot / map.angles == sheet;
       const bool changes = i > 0 && map.path[i - 1] / map.angles != slot / map.angles;
       if (here && i > 0 && !changes && std::abs(map.path[i - 1] % map.angles - angle) > map.angles / 2) flush();  // through pi
       if (!here) {
@@ -146,12 +77,12 @@ std::string to_svg(const LatticeMap& map) {
         continue;
       }
       line.emplace_back(x_of(static_cast<double>(i)), y_of(angle + 0.5));
-      if (changes || (i + 1 < map.path.size() && map.path[i + 1] / map.angles != label))
+      if (changes || (i + 1 < map.path.size() && map.path[i + 1] / map.angles != sheet))
         drawing.circle(line.back().first, line.back().second, 4, "#000000");
     }
     flush();
     drawing.frame(kLeft, top, kPanelWidth, kPanelHeight);
-    drawing.text(kLeft, top - 7, "start", map.label_name(label));
+    drawing.text(kLeft, top - 7, "start", map.sheet_name(sheet));
     for (const auto& [angle, name] : {std::pair{0.0, "-π"}, {0.25, "-π/2"}, {0.5, "0"}, {0.75, "π/2"}, {1.0, "π"}})
       drawing.text(kLeft - 6, y_of(angle * map.angles) + 4, "end", name);
     drawing.text(14, top + kPanelHeight / 2, "middle", "φ");

@@ -51,17 +51,17 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   std::string text;
   char number[32];
   MapLegend seen(map);
-  for (const int label : map.inhabited_labels()) {
-    text += map.label_name(label) + "\n";
+  for (const int sheet : map.inhabited_sheets()) {
+    text += map.sheet_name(sheet) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double phi = -kPi + kTwoPi * row * cells.angles_each / map.angles;
       std::snprintf(number, sizeof number, "%6.2f  ", phi);
       text += row % 4 == 0 ? number : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
-        const LatticeMap::Node node = cells.node(label, column, row);
+        const LatticeMap::Node node = cells.node(sheet, column, row);
         seen.see(node);
         Look look = look_of(node);
-        if (cells.on_path(label, column, row)) look = {'*', 231};
+        if (cells.on_path(sheet, column, row)) look = {'*', 231};
         put(text, look, coloured);
       }
       text += '\n';

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "page_template.hpp"
+#include "swivel/report/ended_by.hpp"
 
 namespace swivel {
 
@@ -31,7 +32,10 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                         {"fcl_calls", row.fcl_calls},
                         {"error_mm", or_null(row.tool_path_error_mm_max)},
                         {"failed_s", or_null(row.failed_s)},
-                        {"reason", row.reason}});
+                        {"cause", row.cause},
+                        {"by", ended_by(row.status, row.cause, row.by, row.reason)},
+                        {"reason", row.reason},
+                        {"offsets", row.offsets}});
   const Json data = {{"problem", facts.problem},
                      {"episodes", facts.episodes},
                      {"seed", facts.seed},
@@ -39,6 +43,7 @@ std::string to_overview(const std::vector<EpisodeRow>& rows, const CampaignFacts
                      {"asked", facts.shard.size(facts.episodes)},
                      {"planner", facts.planner},
                      {"plan_command", facts.plan_command},
+                     {"coordinates", facts.coordinates},
                      {"rows", std::move(episodes)}};
   return fill(overview_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

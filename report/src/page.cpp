@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <limits>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "map_cells.hpp"
 #include "page_template.hpp"
+#include "scene_json.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
@@ -23,86 +21,11 @@ using namespace detail;
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// RFC 4648, of the bytes of an array in the machine's order; the page reads little-endian.
-template <class T>
-std::string base64(const std::vector<T>& values) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<unsigned char> bytes(values.size() * sizeof(T));
-  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
-  std::string text;
-  text.reserve(4 * (bytes.size() / 3 + 1));
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const std::size_t rest = std::min<std::size_t>(3, bytes.size() - k);
-    unsigned word = 0;
-    for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < rest ? bytes[k + j] : 0u);
-    for (std::size_t j = 0; j < 4; ++j) text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
-  }
-  return text;
-}
-
-Json vector_json(const Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-/// The upper three rows, row by row.
-Json pose_json(const Pose& pose) {
-  Json json = Json::array();
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c) json.push_back(pose.matrix()(r, c));
-  return json;
-}
-
-/// Meshes are written once, however many bodies share one.
-class Bodies {
- public:
-  void add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose) {
-    Json body = {{"name", name}, {"kind", kind}, {"group", group}, {"pose", pose_json(pose)}};
-    if (const auto* sphere = std::get_if<Sphere>(&shape)) body["sphere"] = sphere->radius;
-    if (const auto* box = std::get_if<Box>(&shape)) body["box"] = vector_json(box->size);
-    if (const auto* cylinder = std::get_if<Cylinder>(&shape)) body["cylinder"] = {cylinder->radius, cylinder->length};
-    if (const auto* capsule = std::get_if<Capsule>(&shape)) body["capsule"] = {capsule->radius, capsule->length};
-    if (const auto* mesh = std::get_if<MeshPtr>(&shape)) body["mesh"] = index_of(**mesh);
-    bodies.push_back(std::move(body));
-  }
-  Json bodies = Json::array(), meshes = Json::array();
-
- private:
-  std::size_t index_of(const TriangleMesh& mesh) {
-    const auto [at, fresh] = index_.emplace(&mesh, index_.size());
-    if (fresh) {
-      std::vector<float> points;
-      for (const Vector3d& v : mesh.vertices)
-        for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(v[k]));
-      std::vector<std::uint32_t> corners;
-      for (const auto& triangle : mesh.triangles)
-        for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
-      meshes.push_back({{"vertices", base64(points)}, {"triangles", base64(corners)}});
-    }
-    return at->second;
-  }
-  std::map<const TriangleMesh*, std::size_t> index_;
-};
-
-/// The chain as the page's forward kinematics needs it (core/arm.hpp).
-Json chain_json(const Chain& chain) {
-  Json joints = Json::array();
-  for (std::size_t j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[j];
-    joints.push_back({{"name", chain.joint_names[j]},
-                      {"axis", vector_json(chain.axis[j])},
-                      {"point", vector_json(chain.point[j])},
-                      {"lower", limit.continuous ? Json(nullptr) : Json(limit.lower)},
-                      {"upper", limit.continuous ? Json(nullptr) : Json(limit.upper)}});
-  }
-  return {{"joints", std::move(joints)}, {"home", pose_json(chain.home)}};
-}
-
 /// A row of the page: of the lattice, or off its grid.
 struct Row {
   Config q;
   double phi = 0, angle = 0;  ///< angle: in cells
-  int label = 0;
+  int sheet = 0;
 };
 
 /// The answer layer by layer, or the way to the furthest layer.
@@ -119,23 +42,25 @@ std::vector<Row> lattice_rows(const Lattice& lattice, const LatticeMap& map, con
   return rows;
 }
 
-/// Of a refined path. Its labels are mostly those of the path that it comes from, else of the nodes that are nearest.
-std::vector<Row> refined_rows(const SrsLattice& lattice, const std::vector<TrajectoryRow>& refined, const std::vector<int>& slots) {
+/// Of a refined path. Its sheets are mostly those of the path that it comes from, else of the nodes that are nearest.
+std::vector<Row> refined_rows(const Lattice& lattice, const LatticeMap& map, const std::vector<TrajectoryRow>& refined,
+                              const std::vector<int>& slots) {
+  const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
   std::vector<Row> rows;
   LayerNodes nodes;
   for (int layer = 0; layer < static_cast<int>(refined.size()); ++layer) {
     const TrajectoryRow& from = refined[static_cast<std::size_t>(layer)];
-    const double angle = (wrap_angle(from.phi) + kPi) / kTwoPi * lattice.angles();
-    Row row{from.q, from.phi, angle, lattice.label_of(slots[static_cast<std::size_t>(layer)])};
-    if (row.label / lattice.windings() != from.branch) {
-      lattice.solve(layer, nodes);
-      const int cell = static_cast<int>(std::lround(angle)) % lattice.angles();
+    const double angle = (wrap_angle(from.phi) + kPi) / kTwoPi * map.angles;
+    Row row{from.q, from.phi, angle, grid ? grid->sheet_of(slots[static_cast<std::size_t>(layer)]) : from.branch};
+    if (grid && row.sheet / grid->windings() != from.branch) {
+      grid->solve(layer, nodes);
+      const int cell = static_cast<int>(std::lround(angle)) % grid->angles();
       double least = std::numeric_limits<double>::infinity();
-      row.label = from.branch * lattice.windings();
-      for (int label = row.label, end = label + lattice.windings(); label < end; ++label) {
-        if (!nodes.valid(label, cell)) continue;
-        const double away = (nodes.config(label, cell) - from.q).norm();
-        if (away < least) least = away, row.label = label;
+      row.sheet = from.branch * grid->windings();
+      for (int sheet = row.sheet, end = sheet + grid->windings(); sheet < end; ++sheet) {
+        if (!nodes.valid(sheet, cell)) continue;
+        const double away = (nodes.config(sheet, cell) - from.q).norm();
+        if (away < least) least = away, row.sheet = sheet;
       }
     }
     rows.push_back(row);
@@ -158,7 +83,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
     Json row = {{"layer", layer},
                 {"s", lattice.path().layer(layer).s},
                 {"phi", at.phi},
-                {"label", at.label},
+                {"sheet", at.sheet},
                 {"angle", at.angle},
                 {"q", std::vector<double>(at.q.begin(), at.q.end())},
                 {"error_mm", std::move(error)}};
@@ -181,7 +106,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
 Json beside_json(const std::vector<Row>& rows) {
   Json json = Json::array();
   for (std::size_t layer = 0; layer < rows.size(); ++layer)
-    json.push_back({{"layer", layer}, {"label", rows[layer].label}, {"angle", rows[layer].angle}});
+    json.push_back({{"layer", layer}, {"sheet", rows[layer].sheet}, {"angle", rows[layer].angle}});
   return json;
 }
 
@@ -245,13 +170,13 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::vector<i
   int least = 0;
   for (const bool by_bodies : {true, false}) {
     for (const Lattice::Node& candidate : listed) {
-      const int cell = map_cell(lattice, layer, candidate.slot), label = cell / map.angles, angle = cell % map.angles;
-      const LatticeMap::Node& node = map.at(layer, label, angle);
+      const int cell = map_cell(lattice, layer, candidate.slot), sheet = cell / map.angles, angle = cell % map.angles;
+      const LatticeMap::Node& node = map.at(layer, sheet, angle);
       const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
                            bodies[0] == map.blockers[node.cause].first && bodies[1] == map.blockers[node.cause].second;
       if (blocked != by_bodies) continue;
       const int away = std::abs(angle - from % map.angles);
-      const int far = std::min(away, map.angles - away) + (label == from / map.angles ? 0 : map.angles);
+      const int far = std::min(away, map.angles - away) + (sheet == from / map.angles ? 0 : map.angles);
       if (!best || far < least) best = &candidate, least = far;
     }
     if (best) break;
@@ -310,43 +235,43 @@ class Clearances {
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
 Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
-  const std::vector<int> labels = map.inhabited_labels();
-  const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, labels.size()) * 252));
+  const std::vector<int> sheets = map.inhabited_sheets();
+  const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, sheets.size()) * 252));
   const MapCells cells(map, std::max(100, most_columns), 252);
   const double reach = 4 * kTwoPi;  // rad, for 16 bits; no arm's joint turns further
   std::vector<std::uint8_t> states, causes;
   std::vector<std::int16_t> joints;
   const auto looked_at = [](const LatticeMap::Node& node) { return node.state >= NodeState::kFree; };
   std::size_t asked = 0;
-  for (const int label : labels)
+  for (const int sheet : sheets)
     for (int column = 0; column < cells.columns; ++column)
-      for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(label, column, row));
+      for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(sheet, column, row));
   Clearances clearances(world, asked);
   std::vector<Lattice::Node> listed;
-  std::vector<int> panel_of(map.labels(), -1);
+  std::vector<int> panel_of(map.sheets(), -1);
   Json panels = Json::array();
-  for (const int label : labels) {
-    panel_of[label] = static_cast<int>(panels.size());
-    panels.push_back({{"label", label}, {"name", map.label_name(label)}});
+  for (const int sheet : sheets) {
+    panel_of[sheet] = static_cast<int>(panels.size());
+    panels.push_back({{"sheet", sheet}, {"name", map.sheet_name(sheet)}});
   }
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
-    std::vector<Config> shown(labels.size() * cells.rows, Config::Constant(2 * reach));
+    std::vector<Config> shown(sheets.size() * cells.rows, Config::Constant(2 * reach));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.layer_nodes(layer, listed);
       for (const Lattice::Node& node : listed) {
-        const int cell = map_cell(lattice, layer, node.slot), label = cell / map.angles, angle = cell % map.angles;
-        const int row = angle / cells.angles_each, k = panel_of[label] * cells.rows + row;
-        if (panel_of[label] < 0 || shown[k][0] < 2 * reach || map.at(layer, label, angle) != cells.node(label, column, row))
+        const int cell = map_cell(lattice, layer, node.slot), sheet = cell / map.angles, angle = cell % map.angles;
+        const int row = angle / cells.angles_each, k = panel_of[sheet] * cells.rows + row;
+        if (panel_of[sheet] < 0 || shown[k][0] < 2 * reach || map.at(layer, sheet, angle) != cells.node(sheet, column, row))
           continue;
         shown[k] = lattice.row(layer, node.slot, node.q).value_or(node.q);
       }
     }
     std::size_t k = 0;
-    for (const int label : labels)
+    for (const int sheet : sheets)
       for (int row = 0; row < cells.rows; ++row, ++k) {
-        const LatticeMap::Node cell = cells.node(label, column, row);
+        const LatticeMap::Node cell = cells.node(sheet, column, row);
         const bool posed = shown[k][0] < 2 * reach;
         states.push_back(
             static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
@@ -354,7 +279,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
         if (!posed) continue;
         budget.poll();
         if (looked_at(cell))
-          clearances.add(shown[k], cells.on_path(label, column, row));
+          clearances.add(shown[k], cells.on_path(sheet, column, row));
         else
           clearances.skip();
         for (int j = 0; j < kDof; ++j)
@@ -392,13 +317,9 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   const ToolPath& path = lattice.path();
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
-  Bodies bodies;
-  for (const RobotBody& body : world.bodies())
-    bodies.add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
-  for (const SceneObject& object : problem.scene) bodies.add(object.name, "scene", 0, object.shape, object.pose);
+  Bodies bodies(world, problem.scene);
   const std::vector<Row> found = lattice_rows(lattice, map, view.path);
-  const std::vector<Row> rows =
-      motion.refined ? refined_rows(dynamic_cast<const SrsLattice&>(lattice), *motion.refined, view.path) : found;
+  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, *motion.refined, view.path) : found;
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 

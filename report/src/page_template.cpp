@@ -17,7 +17,9 @@
       ".previous\n")
 SWIVEL_EMBED("report");
 SWIVEL_EMBED("overview");
-extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[], swivel_overview_end[];
+SWIVEL_EMBED("placements");
+extern "C" const char swivel_report_begin[], swivel_report_end[], swivel_overview_begin[], swivel_overview_end[],
+    swivel_placements_begin[], swivel_placements_end[];
 #endif
 
 namespace swivel::detail {
@@ -33,6 +35,14 @@ std::string_view page_template() {
 std::string_view overview_template() {
 #ifdef SWIVEL_PAGES
   return {swivel_overview_begin, static_cast<std::size_t>(swivel_overview_end - swivel_overview_begin)};
+#else
+  return {};
+#endif
+}
+
+std::string_view placement_template() {
+#ifdef SWIVEL_PAGES
+  return {swivel_placements_begin, static_cast<std::size_t>(swivel_placements_end - swivel_placements_begin)};
 #else
   return {};
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bundles each page into one file, report.html and overview.html; "@@DATA@@" in them stands for the data. Argument: the folder that holds
+// Bundles each page into one file, report.html, overview.html and placements.html; "@@DATA@@" in them stands for the data. Argument: the folder that holds
 // node_modules and gets the pages, THIRD-PARTY.txt (the notices of all that was bundled, which the pages carry too) and pages.d (what was read).
 import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { createHash } from 'node:crypto';
 import { createRequire } from 'node:module';
 import { dirname, join, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -27,8 +28,9 @@ for (const [place, { version, dev }] of Object.entries(JSON.parse(readFileSync(j
   note(`${place.replace(/^.*node_modules\//, '')} ${version}`, readFileSync(join(folder, place, licence), 'utf8').trim());
 }
 
-const read = new Set([source('../../LICENSE'), source('page.css')]), pages = [];
-for (const [frame, entry, result] of [['page.html', 'main.js', 'report.html'], ['campaign.html', 'campaign.js', 'overview.html']]) {
+const read = new Set([source('../../LICENSE'), source('page.css'), source('head.html')]), pages = [];
+for (const [frame, entry, result, title] of [['page.html', 'main.js', 'report.html', 'Swivel report'], ['campaign.html', 'campaign.js', 'overview.html', 'Swivel campaign'],
+  ['placement.html', 'placement.js', 'placements.html', 'Swivel placements']]) {
   const bundle = await build({ entryPoints: [source(entry)], absWorkingDir: folder, bundle: true, minify: true, format: 'iife', target: 'es2020',
     legalComments: 'eof', metafile: true, write: false, plugins: [packages] });
   for (const input of Object.keys(bundle.metafile.inputs).map((path) => resolve(folder, path))) {
@@ -36,8 +38,10 @@ for (const [frame, entry, result] of [['page.html', 'main.js', 'report.html'], [
   }
   const script = bundle.outputFiles[0].text.replaceAll('</script', '<\\/script');
   read.add(source(frame));
-  pages.push([result, readFileSync(source(frame), 'utf8')
+  pages.push([result, (readFileSync(source('head.html'), 'utf8') + readFileSync(source(frame), 'utf8'))
+    .replace('@@TITLE@@', () => title)
     .replace('/* page.css */', () => readFileSync(source('page.css'), 'utf8'))
+    .replace('@@SCRIPT-HASH@@', () => `'sha256-${createHash('sha256').update(script).digest('base64')}'`)  // nothing else runs in the page
     .replace('/* script */', () => script)]);
 }
 

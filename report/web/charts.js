@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The drawings of a campaign's overview. Each returns an SVG element; row: an episode. A click on one of its marks picks the episode.
 import * as Plot from '@observablehq/plot';
-
-export const SOLVED = '#00795a', FAILED = '#d55e00';
+import { FAILED, SOLVED } from './ended.js';
 
 function frame(width, height, colours, more) {
   return { width, height, marginLeft: 46, marginRight: 14, marginTop: 24, marginBottom: 34, style: { color: colours.ink, background: 'none', fontSize: '11px' }, ...more };
@@ -33,14 +32,15 @@ export function histogram(rows, key, label, width, colours) {
     marks: [Plot.rectY(rows, Plot.binX({ y: 'count' }, { x: key, thresholds: 24, fill: SOLVED, inset: 0.5 })), Plot.ruleY([0])],
   }));
 }
-export function reasons(rows, width, colours) {
+/** ended: as of enders(), which gives the colours. */
+export function reasons(rows, ended, width, colours) {
   const count = new Map();
-  for (const { reason } of rows) count.set(reason, (count.get(reason) ?? 0) + 1);
-  const bars = [...count].map(([reason, n]) => ({ reason, n })).sort((a, b) => b.n - a.n).slice(0, 12);
+  for (const { reason, by } of rows) count.set(reason, { reason, by, n: (count.get(reason)?.n ?? 0) + 1 });
+  const bars = [...count.values()].sort((a, b) => b.n - a.n).slice(0, 12);
   return Plot.plot(frame(width, 40 + 38 * bars.length, colours, {
     marginLeft: 14, marginRight: 40, marginTop: 6, x: { label: 'episodes', ticks: 4 }, y: { domain: bars.map(({ reason }) => reason), axis: null },
     marks: [
-      Plot.barX(bars, { x: 'n', y: 'reason', fill: FAILED, insetTop: 18, insetBottom: 4 }),
+      Plot.barX(bars, { x: 'n', y: 'reason', fill: ({ by }) => ended.get(by).colour, insetTop: 18, insetBottom: 4 }),
       Plot.text(bars, { x: 0, y: 'reason', text: 'reason', textAnchor: 'start', dy: -9 }),
       Plot.text(bars, { x: 'n', y: 'reason', text: 'n', textAnchor: 'start', dx: 5, dy: 7 }),
       Plot.ruleX([0]),
@@ -48,9 +48,18 @@ export function reasons(rows, width, colours) {
   }));
 }
 /** One dot an episode, where every path had ended. */
-export function places(rows, width, colours) {
+export function places(rows, ended, width, colours) {
   return Plot.plot(frame(width, 210, colours, {
     x: { label: 's, m', domain: [0, Math.max(...rows.map((row) => row.failed_s)) || 1], nice: true, grid: true }, y: { axis: null },
-    marks: [Plot.dot(rows, Plot.dodgeY({ x: 'failed_s', r: 4, fill: FAILED, className: 'pick', title: (row) => `episode ${row.episode}: ${row.reason}` }))],
+    marks: [Plot.dot(rows, Plot.dodgeY({ x: 'failed_s', r: 4, fill: ({ by }) => ended.get(by).colour, className: 'pick', title: (row) => `episode ${row.episode}: ${row.reason}` }))],
+  }));
+}
+/** One dot an episode, where its objects stood. across, up: numbers of coordinates; those without a path are drawn last. */
+export function offsets(rows, coordinates, across, up, ended, width, colours) {
+  const label = (k) => `${coordinates[k]}, ${/\.[xyz]$/.test(coordinates[k]) ? 'm' : 'rad'}`, flat = up === across;
+  return Plot.plot(frame(width, flat ? 120 : Math.min(420, width), colours, {
+    x: { label: label(across), grid: true }, y: flat ? { axis: null } : { label: label(up), grid: true },
+    marks: [Plot.dot([...rows].sort((a, b) => (a.by !== '') - (b.by !== '')), { x: (row) => row.offsets[across], y: (row) => (flat ? 0 : row.offsets[up]), r: Math.max(2, Math.min(4.5, 120 / Math.sqrt(rows.length))),
+      fill: ({ by }) => ended.get(by)?.colour ?? SOLVED, className: 'pick', title: (row) => `episode ${row.episode}: ${row.reason || row.status}` })],
   }));
 }

@@ -3,18 +3,18 @@
 import { savers } from './figure.js';
 import { manipulability } from './kinematics.js';
 import { BLOCKED, Cells, FREE, UNSEEN } from './map.js';
-import { $, data, isDark, number, themes, whenResized } from './page.js';
+import { $, data, isDark, number, tell, themes, whenResized } from './page.js';
 import { Panels } from './panels.js';
 import { Plots } from './plots.js';
 import { View } from './scene.js';
 import { summary, verdict } from './summary.js';
 
-const { rows, chain, cut, motion } = data;
+const { rows, chain, cut, motion } = data, kDegrees = 180 / Math.PI;
 const solved = data.result.status === 'solved', last = rows.length - 1;
 
 document.title = `${data.problem} – Swivel`;
 $('title').textContent = data.problem;
-$('verdict').textContent = verdict(data);
+verdict($('verdict'), data, (s) => { pause(); go(rowAt(s)); });
 summary(data);
 
 let view = null, shown = null, cursor = 0, time = 0, playing = false, picked = false, before = 0, told = 0;
@@ -22,16 +22,30 @@ let view = null, shown = null, cursor = 0, time = 0, playing = false, picked = f
 window.swivel = { joints: null, frames: 0, line: null };
 
 const plots = new Plots($('plots'), rows.map((row) => row.s), [
-  ...chain.joints.map((joint, k) => ({ title: joint.name, unit: 'rad', values: rows.map((row) => row.q[k]), low: joint.lower, high: joint.upper })),
-  { title: 'largest joint step', unit: 'rad', values: rows.map((row, i) => (i ? Math.max(...row.q.map((v, k) => Math.abs(v - rows[i - 1].q[k]))) : null)), low: null, high: data.settings.joint_step },
-  { title: 'manipulability', unit: 'm³', values: rows.map((row) => manipulability(chain, row.q)), low: null, high: null },
-  { title: 'clearance', unit: 'mm', values: rows.map((row) => row.clearance_mm ?? null), low: data.settings.clearance_mm, high: null },
-  { title: 'tool-path error', unit: 'mm', values: rows.map((row) => row.error_mm), low: null, high: null },
-].filter((series) => series.values.some((v) => v !== null)), (k) => { pause(); go(k); });
+  ...ranges(),
+  ...chain.joints.map((joint, k) => ({ title: joint.name, unit: 'deg', values: rows.map((row) => row.q[k] * kDegrees), low: degrees(joint.lower), high: degrees(joint.upper) })),
+  { title: 'largest joint step', unit: 'deg', values: rows.map((row, i) => (i ? kDegrees * Math.max(...row.q.map((v, k) => Math.abs(v - rows[i - 1].q[k]))) : null)), low: null, high: degrees(data.settings.joint_step), from0: true },
+  { title: 'manipulability', unit: 'm³', values: rows.map((row) => manipulability(chain, row.q)), low: null, high: null, from0: true },
+  { title: 'clearance', unit: 'mm', values: rows.map((row) => row.clearance_mm ?? null), low: data.settings.clearance_mm, high: null, from0: true },
+  { title: 'tool-path error', unit: 'mm', values: rows.map((row) => row.error_mm), low: null, high: data.result.summary?.tool_path_error?.allowed_mm ?? null, from0: true },
+].filter((series) => series.lines || series.values.some((v) => v !== null)), (k) => { pause(); go(k); });
+
+function degrees(angle) { return angle === null || angle === undefined ? null : angle * kDegrees; }
+/** All joints that have limits in one plot: 0 and 100 are the limits. The one that comes nearest to them is bold. */
+function ranges() {
+  const lines = chain.joints.map((joint, k) => ({ joint, k })).filter(({ joint }) => joint.lower !== null && joint.upper !== null)
+    .map(({ joint, k }) => ({ name: joint.name, values: rows.map(({ q }) => (100 * (q[k] - joint.lower)) / (joint.upper - joint.lower)) }));
+  const room = ({ values }) => Math.min(...values.map((v) => Math.min(v, 100 - v)));
+  if (!lines.length || !rows.length) return [];
+  const bold = lines.reduce((best, line, k) => (room(line) < room(lines[best]) ? k : best), 0);
+  return [{ title: `joints; bold: ${lines[bold].name}`, unit: '% of range', lines, bold, low: 0, high: 100 }];
+}
+/** The row nearest to s. */
+function rowAt(s) { return rows.reduce((best, row, k) => (Math.abs(row.s - s) < Math.abs(rows[best].s - s) ? k : best), 0); }
 
 // In time: the motion's own, where there is one; a cursor along the path stands for a moment, and the other way round.
-const share = (title) => ({ title: `largest joint ${title}`, unit: '% of limit', values: motion[title], low: null, high: 100 });
-const timed = motion && new Plots($('motion'), motion.t, [{ title: 'tool speed', unit: 'mm/s', values: motion.tool_mm_s, low: null, high: 1e3 * data.result.motion.speed },
+const share = (title) => ({ title: `largest joint ${title}`, unit: '% of limit', values: motion[title], low: null, high: 100, from0: true });
+const timed = motion && new Plots($('motion'), motion.t, [{ title: 'tool speed', unit: 'mm/s', values: motion.tool_mm_s, low: null, high: 1e3 * data.result.motion.speed, from0: true },
   share('speed'), share('acceleration'), share('jerk')], (k) => { pause(); time = momentOf(k); go(layerAt(time)); }, 't, s');
 /** Between the marks of an ascending list: the index, not always whole, at which it has a value. */
 function indexAt(list, value) {
@@ -44,27 +58,24 @@ function valueAt(list, index) {
 }
 const momentOf = (index) => valueAt(motion.t, index), layerAt = (t) => valueAt(motion.layers, indexAt(motion.t, t));
 
-const cells = new Cells(data.map, chain.joints);
+const cells = new Cells(data.map, chain.joints, [...new Set(data.bodies.filter(({ kind }) => kind === 'scene').map(({ name }) => name))]);
 const panels = new Panels($('map'), cells, rows, data.beside, !solved && rows.length ? { layer: rows[last].layer } : null, hover, pick);
 
 function hover(cell, event) {
-  const tip = $('tip');
-  tip.hidden = !cell;
   if (!cell) {
+    tell(null);
     if (!picked) go(cursor);
     return;
   }
-  const lines = [`s ${number(cell.s)} m, φ ${cell.phi.toFixed(2)} rad`, cell.branch, cell.what];
+  const lines = [`s ${number(cell.s)} m, φ ${(cell.phi * kDegrees).toFixed(1)}°`, cell.branch, cell.what];
   if (cell.q) {
-    lines.push(...chain.joints.map((joint, k) => `${joint.name}  ${cell.q[k].toFixed(3)}`), `manipulability ${number(manipulability(chain, cell.q), 3)} m³`);
+    lines.push(...chain.joints.map((joint, k) => `${joint.name}  ${(cell.q[k] * kDegrees).toFixed(1)}°`), `manipulability ${number(manipulability(chain, cell.q), 3)} m³`);
     if (cell.clearance_mm !== undefined) lines.push(`clearance ${number(cell.clearance_mm, 3)} mm`);
     pause();
-    show(cell.q, cell.pair);
+    show(cell.q, cell.pair, null, cell.pair !== null);
     picked = false;
   }
-  tip.textContent = lines.join('\n');
-  tip.style.left = `${Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 8)}px`;
-  tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 8))}px`;
+  tell(lines.join('\n'), event);
 }
 function pick(cell) {
   pause();
@@ -73,17 +84,17 @@ function pick(cell) {
 }
 /** Shows a pose away from the path until the cursor moves. */
 function keep({ s, phi, q, pair, what, line = null }) {
-  show(q, pair, line);
+  show(q, pair, line, pair !== null);
   readout(s, phi, q, what);
   picked = true;
 }
-function show(q, pair, line = null) {
-  shown = [q, pair, line];
+function show(q, pair, line = null, hit = false) {
+  shown = [q, pair, line, hit];
   view?.pose(...shown);
   Object.assign(window.swivel, { joints: q, line });
 }
 function readout(s, phi, q, note) {
-  $('readout').textContent = `s ${s.toFixed(4)} m   φ ${phi.toFixed(3)} rad\n${chain.joints.map((j, k) => `${j.name}  ${q[k].toFixed(4)}`).join('\n')}\n${note}`;
+  $('readout').textContent = `s ${s.toFixed(4)} m   φ ${(phi * kDegrees).toFixed(1)}°\n${chain.joints.map((j, k) => `${j.name}  ${(q[k] * kDegrees).toFixed(2)}°`).join('\n')}\n${note}`;
 }
 const lineOf = ({ nearest, clearance_mm }) => (nearest ? { points: nearest, text: `${number(clearance_mm, 3)} mm` } : null);
 
@@ -107,12 +118,17 @@ function go(k) {
   panels.draw(cursor);
   plots.draw(cursor);
 }
-function pause() { playing = false; $('play').textContent = '▶'; }
+function pause() {
+  playing = false;
+  $('play').textContent = '▶';
+  $('play').setAttribute('aria-label', 'Play');
+}
 function play() {
   if (!rows.length) return;
   if (cursor >= last) go(time = 0);
   playing = true;
   $('play').textContent = '❚❚';
+  $('play').setAttribute('aria-label', 'Pause');
   before = performance.now();
 }
 function frame(now) {
@@ -137,11 +153,21 @@ $('slider').max = Math.max(0, last);
 $('slider').addEventListener('input', (event) => { pause(); go(Number(event.target.value)); });
 $('play').addEventListener('click', () => (playing ? pause() : play()));
 $('colour').addEventListener('change', colourPath);
-$('ghosts').addEventListener('change', (event) => { view.ghosts.visible = event.target.checked; view.dirty = true; });
+$('ghosts').addEventListener('change', (event) => {
+  if (!view) return;
+  view.ghosts.visible = event.target.checked;
+  view.dirty = true;
+});
+$('views').addEventListener('change', (event) => {
+  view?.look(event.target.value);
+  event.target.value = '';
+});
+$('names').addEventListener('change', (event) => $('view').classList.toggle('nameless', !event.target.checked));
 addEventListener('keydown', (event) => {
   if (event.target.matches(event.key === ' ' ? 'select, button, [type=checkbox]' : 'select') || event.ctrlKey || event.altKey || event.metaKey) return;
   const step = event.shiftKey ? 10 : 1, to = (k) => () => { pause(); go(k); };
-  const action = { ' ': () => (playing ? pause() : play()), ArrowLeft: to(Math.round(cursor) - step), ArrowRight: to(Math.round(cursor) + step), Home: to(0), End: to(last), t: turnTheme }[event.key];
+  const action = { ' ': () => (playing ? pause() : play()), ArrowLeft: to(Math.round(cursor) - step), ArrowRight: to(Math.round(cursor) + step), Home: to(0), End: to(last), t: turnTheme,
+    f: () => view?.look('fit'), 0: () => view?.look('best'), 1: () => view?.look('front'), 2: () => view?.look('side'), 3: () => view?.look('top') }[event.key];
   if (!action) return;
   event.preventDefault();
   action();
@@ -152,10 +178,10 @@ function colourPath() {
   const byPhi = $('colour').value === 'phi';
   const known = rows.map((row) => (byPhi ? (row.phi + Math.PI) / (2 * Math.PI) : row.clearance_mm === undefined ? NaN : row.clearance_mm / kFarMm));
   const [low, , high] = $('ramp').children;
-  [low.textContent, high.textContent] = byPhi ? ['−π', 'π'] : ['0', `${kFarMm} mm`];
+  [low.textContent, high.textContent] = byPhi ? ['−180°', '180°'] : ['0', `${kFarMm} mm`];
   const values = data.tool_path.map(() => NaN);
   rows.forEach((row, k) => (values[row.layer] = known[k]));
-  view.colourPath(values);
+  view?.colourPath(values);
 }
 function paint() {
   view?.background(isDark() ? '#1a2027' : '#ffffff');
@@ -164,10 +190,10 @@ function paint() {
   timed?.paint();
 }
 
-const unseen = cells.count((state) => state === UNSEEN), asked = cells.count((state) => state === FREE || state === BLOCKED);
+const unseen = cells.count((state) => state === UNSEEN), known = cells.count((state) => state === FREE || state === BLOCKED);
 $('map-note').textContent = `s to the right, φ upwards. ${cells.layers_each * cells.angles_each > 1
   ? `A cell stands for up to ${cells.layers_each} × ${cells.angles_each} of the ${number(data.result.lattice.nodes)} nodes and shows a blocked one before a free one, and that before the others. ` : 'A cell is a node. '}`
-  + (unseen + asked ? `Of the cells that exist in closed form, ${number((100 * unseen) / (unseen + asked), 3)} % were never looked at.` : '')
+  + (unseen + known ? `Of the cells that exist in closed form, ${number((100 * unseen) / (unseen + known), 3)} % were never looked at.` : '')
   + (data.beside.length ? ' The thin dashed line is the path that was found on the lattice, before it was refined.' : '')
   + (!solved && rows.length ? ' The dashed line is where every path has ended.' : '');
 const stem = data.problem.replace(/\.[^.]*$/, '');
@@ -184,12 +210,28 @@ function showCut() {
 }
 $('blocked').hidden = !cut;
 $('blocked').addEventListener('click', showCut);
-if (cut) showCut();
-else go(solved ? 0 : last);
+// Where the address says so (#s=0.34), else at the pose that is nearest to something.
+const asked = new URLSearchParams(location.hash.slice(1)).get('s'), told_at = data.result.summary?.clearance?.s ?? data.result.summary?.joint_limit?.s ?? 0;
+if (asked !== null && Number.isFinite(Number(asked)) && rows.length) go(rowAt(Number(asked)));
+else if (cut) showCut();
+else go(solved ? rowAt(told_at) : last);
+addEventListener('hashchange', () => {
+  const s = Number(new URLSearchParams(location.hash.slice(1)).get('s') ?? NaN);
+  if (!Number.isFinite(s) || !rows.length) return;
+  pause();
+  go(rowAt(s));
+});
 
 // The page can be read before WebGL has started, which takes longest.
 requestAnimationFrame(() => setTimeout(() => {
-  view = new View($('scene'), $('gap'), data);
+  try {
+    view = new View($('scene'), $('gap'), data);
+  } catch (error) {
+    $('scene').hidden = $('view-options').hidden = true;
+    $('no-view').hidden = false;
+    window.swivel.frames = -1;
+    return;
+  }
   view.background(isDark() ? '#1a2027' : '#ffffff');
   colourPath();
   if (shown) view.pose(...shown);

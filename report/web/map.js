@@ -5,13 +5,13 @@ import { bytes } from './bytes.js';
 // States in the order of report/lattice_map.hpp.
 export const [NO_IK, SINGULAR, LIMIT, UNSEEN, FREE, BLOCKED] = [0, 1, 2, 3, 4, 5];
 const kState = 7, kCertified = 64, kPosed = 128, kUnknown = 65535;
-// Okabe & Ito's palette, told apart by all kinds of colour vision.
-const JOINTS = ['#cfe8f7', '#b3daf2', '#97cced', '#7bbee8', '#5fb0e2', '#4a9bd0', '#3a83b5'];
-const BLOCKERS = ['#d55e00', '#a34700', '#e69f00', '#8c2d04', '#f0902f', '#5e2400'];
+// After Okabe & Ito's palette, told apart by all kinds of colour vision: one hue for limits, one for each object in the way.
+const LIMITS = '#a6d3ef', SELF = '#6a4c93', OBJECTS = ['#d55e00', '#e6b800', '#8c2d04', '#f39a6b', '#7a6000', '#c23b22'];
 
 export class Cells {
-  constructor(map, joints) {
-    Object.assign(this, map);
+  /** objects: names of the scene's objects, in its order. */
+  constructor(map, joints, objects) {
+    Object.assign(this, map, { objects });
     this.jointNames = joints.map(({ name }) => name);
     this.states = new Uint8Array(bytes(map.states));
     this.causes = new Uint8Array(bytes(map.causes));
@@ -45,18 +45,27 @@ export class Cells {
   }
   colour(k, { nothing, unseen }) {
     const state = this.state(k);
-    if (state === LIMIT) return JOINTS[this.causes[k]];
-    if (state === BLOCKED) return BLOCKERS[this.causes[k] % BLOCKERS.length];
+    if (state === LIMIT) return LIMITS;
+    if (state === BLOCKED) return this.object(k) === null ? SELF : OBJECTS[this.objects.indexOf(this.object(k)) % OBJECTS.length];
     if (state === FREE) return this.states[k] & kCertified ? '#7ed0b4' : '#00795a';
     return { [NO_IK]: nothing, [SINGULAR]: '#cc79a7', [UNSEEN]: unseen }[state];
   }
-  /** Cells of equal state and cause look and mean the same. */
+  /** The object that blocks a cell; null where the robot is in its own way. */
+  object(k) { return this.blockers[this.causes[k]].find((name) => this.objects.includes(name)) ?? null; }
+  /** What cells of one colour have in common. */
+  group(k) {
+    const state = this.state(k);
+    if (state === LIMIT) return 'joint limit';
+    if (state === BLOCKED) return `blocked by ${this.object(k) ?? 'the robot itself'}`;
+    return this.meaning(k);
+  }
+  /** Cells of equal state and cause mean the same. */
   kind(k) { return (this.states[k] & ~kPosed) << 8 | this.causes[k]; }
   /** [meaning, colour] of what is there, the most telling first. */
   legend(colours) {
     const kinds = new Map();
     for (let k = 0; k < this.states.length; ++k) if (!kinds.has(this.kind(k))) kinds.set(this.kind(k), k);
-    const entries = [...kinds.values()].sort((a, b) => this.state(b) - this.state(a)).map((k) => [this.meaning(k), this.colour(k, colours)]);
+    const entries = [...kinds.values()].sort((a, b) => this.state(b) - this.state(a)).map((k) => [this.group(k), this.colour(k, colours)]);
     return [...new Map(entries)];
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What both pages share: their data, numbers, light and dark, tables.
+// What the pages share: their data, numbers, light and dark, tables.
 export const data = JSON.parse(document.getElementById('data').textContent);
 export const $ = (id) => document.getElementById(id);
 export const number = (v, digits = 4) => (v === null || v === undefined ? '–' : Number(v.toPrecision(digits)).toString());
@@ -16,6 +16,16 @@ export function themes(changed) {
   $('theme').addEventListener('click', turn);
   set(matchMedia('(prefers-color-scheme: dark)').matches);
   return turn;
+}
+
+/** A note beside the pointer, or none for a text of null. */
+export function tell(text, event) {
+  const tip = $('tip');
+  tip.hidden = text === null;
+  if (tip.hidden) return;
+  tip.textContent = text;
+  tip.style.left = `${Math.min(event.clientX + 14, innerWidth - tip.offsetWidth - 8)}px`;
+  tip.style.top = `${Math.max(4, Math.min(event.clientY + 14, innerHeight - tip.offsetHeight - 8))}px`;
 }
 
 /** Calls back when the window's width has changed and come to rest. */

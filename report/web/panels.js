@@ -5,7 +5,7 @@ import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
 import { style } from './page.js';
 
-const kAngles = [[-Math.PI, '−π'], [-Math.PI / 2, '−π/2'], [0, '0'], [Math.PI / 2, 'π/2'], [Math.PI, 'π']];
+const kAngles = [[-Math.PI, '−180'], [-Math.PI / 2, '−90'], [0, '0'], [Math.PI / 2, '90'], [Math.PI, '180']], kLimit = 2, kBlocked = 5;
 
 export class Panels {
   /** cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
@@ -24,8 +24,9 @@ export class Panels {
       return drawn;
     });
     // The panels that hold the path come first.
-    const used = new Set(rows.map((row) => row.label));
-    this.panels.sort((a, b) => used.has(b.label) - used.has(a.label) || a.index - b.index);
+    const used = new Set(rows.map((row) => row.sheet));
+    this.panels.sort((a, b) => used.has(b.sheet) - used.has(a.sheet) || a.index - b.index);
+    this.panels.forEach((panel) => panel.box.classList.toggle('other', used.size > 0 && !used.has(panel.sheet)));
     host.append(...this.panels.map(({ box }) => box));
   }
   cellAt({ index, chart, x, y }, event) {
@@ -38,21 +39,22 @@ export class Panels {
   drawing(panel, width, height, colours, vector = false) {
     const { cells, rows, beside, cut } = this, angle = (phi) => ((phi + Math.PI) / (2 * Math.PI)) * cells.angles;
     const lineOf = (path) => path.flatMap((row, k) => {
-      const last = path[k - 1], jump = last && last.label === row.label && Math.abs(last.angle - row.angle) > cells.angles / 2;
-      const point = { x: row.layer, y: row.label === panel.label ? row.angle : NaN };
+      const last = path[k - 1], jump = last && last.sheet === row.sheet && Math.abs(last.angle - row.angle) > cells.angles / 2;
+      const point = { x: row.layer, y: row.sheet === panel.sheet ? row.angle : NaN };
       return jump ? [{ x: row.layer, y: NaN }, point] : [point];
     });
     const path = lineOf(rows), before = lineOf(beside);
-    const changes = rows.filter((row, k) => row.label === panel.label && [rows[k - 1], rows[k + 1]].some((other) => other && other.label !== row.label));
-    const frame = { marginLeft: 34, marginRight: 12, marginTop: vector ? 26 : 6, marginBottom: vector ? 34 : 20 };
+    const changes = rows.filter((row, k) => row.sheet === panel.sheet && [rows[k - 1], rows[k + 1]].some((other) => other && other.sheet !== row.sheet));
+    const large = !panel.box.classList.contains('other'), frame = { marginLeft: 38, marginRight: 12, marginTop: vector ? 26 : large ? 20 : 6, marginBottom: vector || large ? 34 : 20 };
     return Plot.plot({
       width, height, ...frame, style: { color: colours.soft, background: 'none', fontSize: '10px' },
-      x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector ? 's, m' : null },
-      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `φ, rad: ${panel.name}` : null, labelArrow: 'none', ticks: kAngles.map(([phi]) => angle(phi) - (phi === Math.PI ? 0.5 : 0)),
+      x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector || large ? 's, m' : null, labelArrow: 'none' },
+      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `φ, deg: ${panel.name}` : large ? 'φ, deg' : null, labelArrow: 'none', labelAnchor: 'top', ticks: kAngles.map(([phi]) => angle(phi) - (phi === Math.PI ? 0.5 : 0)),
         tickFormat: (_, k) => kAngles[k][1] },
       marks: [
         vector ? Plot.rect(this.runs(panel.index, colours), { x1: 'x1', x2: 'x2', y1: 'y1', y2: 'y2', fill: 'fill', shapeRendering: 'crispEdges' })
           : this.picture(panel.index, colours, width - frame.marginLeft - frame.marginRight, height - frame.marginTop - frame.marginBottom),
+        (_, { x, y }) => this.walls(panel.index, x, y),
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.5 }),
         cut === null ? null : Plot.ruleX([cut.layer + 0.5], { stroke: '#c2185b', strokeWidth: 2, strokeDasharray: '5 3' }),
         Plot.line(before, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 3 }),
@@ -60,7 +62,7 @@ export class Panels {
         Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
         Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),
-        rows.length === 1 && rows[0].label === panel.label ? Plot.dot(rows, { x: 'layer', y: 'angle', r: 4, fill: '#000', stroke: '#fff' }) : null,
+        rows.length === 1 && rows[0].sheet === panel.sheet ? Plot.dot(rows, { x: 'layer', y: 'angle', r: 4, fill: '#000', stroke: '#fff' }) : null,
       ],
     });
   }
@@ -101,12 +103,26 @@ export class Panels {
       }
     return runs;
   }
+  /** Lines between cells that have the same colour but another cause: limits of two joints, two bodies before one object. */
+  walls(panel, x, y) {
+    const { cells } = this, edge = (cell, each, most) => Math.min(cell * each, most) - 0.5;
+    const parts = (k, other) => cells.state(k) === cells.state(other) && (cells.state(k) === kLimit || cells.state(k) === kBlocked) && cells.causes[k] !== cells.causes[other];
+    let d = '';
+    for (let column = 0; column < cells.columns; ++column)
+      for (let row = 0; row < cells.rows; ++row) {
+        const k = cells.index(panel, column, row), left = x(edge(column, cells.layers_each, cells.layers)).toFixed(1), low = y(edge(row, cells.angles_each, cells.angles)).toFixed(1);
+        if (column && parts(k, cells.index(panel, column - 1, row))) d += `M${left},${low}V${y(edge(row + 1, cells.angles_each, cells.angles)).toFixed(1)}`;
+        if (row && parts(k, cells.index(panel, column, row - 1))) d += `M${left},${low}H${x(edge(column + 1, cells.layers_each, cells.layers)).toFixed(1)}`;
+      }
+    const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+    for (const [name, value] of Object.entries({ d, fill: 'none', stroke: '#3b4652', 'stroke-opacity': 0.45, 'stroke-width': 0.7 })) path.setAttribute(name, value);
+    return path;
+  }
   /** Everything anew: at the start, and when the theme or the width changes. */
   paint() {
     const colours = { soft: style('--soft'), unseen: style('--unseen'), nothing: style('--void') };
-    const width = this.panels.length ? this.panels[0].chart.clientWidth : 0;
     for (const panel of this.panels) {
-      const drawing = this.drawing(panel, width, 172, colours);
+      const drawing = this.drawing(panel, panel.chart.clientWidth, panel.box.classList.contains('other') ? 92 : 236, colours);
       Object.assign(panel, { x: drawing.scale('x'), y: drawing.scale('y') });
       panel.chart.replaceChildren(drawing);
     }
@@ -123,9 +139,9 @@ export class Panels {
   draw(cursor) {
     this.cursor = cursor;
     const here = this.rows[Math.round(cursor)];
-    for (const { line, dot, label, x, y } of this.panels) {
+    for (const { line, dot, sheet, x, y } of this.panels) {
       line.hidden = !here;
-      dot.hidden = here?.label !== label;
+      dot.hidden = here?.sheet !== sheet;
       if (!here) continue;
       const left = x.apply(here.layer).toFixed(1);
       line.style.transform = `translateX(${left}px)`;

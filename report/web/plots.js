@@ -3,14 +3,15 @@
 import * as Plot from '@observablehq/plot';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
-import { style } from './page.js';
+import { number, style, tell } from './page.js';
 
 const kBound = '#d55e00';
 
 export class Plots {
   /**
    * s: of each row, along an axis named `axis`; series: { title, unit, values (one a row, null where unknown), low, high (bounds, or
-   * null) }; seek: called with the row, not always a whole number, that the user points at.
+   * null), from0: the axis begins at 0 }, or with lines: [{ name, values }], of which one is `bold`, instead of values; seek: called
+   * with the row, not always a whole number, that the user points at.
    */
   constructor(host, s, series, seek, axis = 's, m') {
     Object.assign(this, { s, axis });
@@ -20,28 +21,33 @@ export class Plots {
       box.innerHTML = '<h3><span></span><b></b></h3><div class="stack"><div class="chart"></div><div class="cursor"></div></div>';
       box.querySelector('span').textContent = `${one.title}, ${one.unit}`;
       host.append(box);
-      const plot = { ...one, chart: box.querySelector('.chart'), value: box.querySelector('b'), line: box.querySelector('.cursor') };
+      const told = (k) => (one.lines ? one.lines.map(({ name, values }) => `${name}  ${text(values[k])}`).join('\n') : `${one.title}  ${text(one.values[k])} ${one.unit}`);
+      const plot = { ...one, told, chart: box.querySelector('.chart'), value: box.querySelector('b'), line: box.querySelector('.cursor') };
       const move = (event) => {
-        if (event.type === 'pointermove' && !event.buttons) return;
-        seek(plot.x.invert(event.clientX - plot.chart.getBoundingClientRect().left));
+        const at = plot.x.invert(event.clientX - plot.chart.getBoundingClientRect().left);
+        if (event.type !== 'pointermove' || event.buttons) seek(at);
+        const k = Math.min(s.length - 1, Math.max(0, Math.round(at)));
+        tell(`${axis.replace(', ', ' ')}: ${number(s[k])}\n${plot.told(k)}`, event);
       };
+      plot.chart.addEventListener('pointerleave', () => tell(null));
       plot.chart.addEventListener('pointerdown', move);
       plot.chart.addEventListener('pointermove', move);
       return plot;
     });
   }
-  drawing({ title, unit, values, low, high }, width, height, colours, label = null) {
-    const bounds = [low, high].filter((v) => v !== null), last = Math.max(1, values.length - 1);
-    const known = values.map((v, k) => ({ k, v })).filter(({ v }) => v !== null), dot = known.length === 1;
+  drawing({ title, unit, values, lines, bold, low, high, from0 }, width, height, colours, label = null) {
+    const bounds = [low, high].filter((v) => v !== null), last = Math.max(1, this.s.length - 1);
+    const all = lines ?? [{ name: title, values }], known = all.flatMap((line) => line.values.map((v, k) => ({ k, v })).filter(({ v }) => v !== null)), dot = known.length === all.length;
     return Plot.plot({
       width, height, marginLeft: 46, marginRight: 12, marginTop: label === null ? 8 : 26, marginBottom: label === null ? 20 : 34,
       style: { color: colours.soft, background: 'none', fontSize: '10px' },
       x: { domain: [0, last], ...alongPath(this.s, 4), label },
-      y: { nice: true, ticks: 4, label: label === null ? null : `${title}, ${unit}`, labelArrow: 'none', domain: extent([...known.map(({ v }) => v), ...bounds]) },
+      y: { nice: true, ticks: 4, label: label === null ? null : `${title}, ${unit}`, labelArrow: 'none', domain: extent([...known.map(({ v }) => v), ...bounds, ...(from0 ? [0] : [])]) },
       marks: [
         Plot.frame({ stroke: colours.soft, strokeOpacity: 0.35 }),
         Plot.ruleY(bounds, { stroke: kBound, strokeDasharray: '6 4' }),
-        dot ? Plot.dot(known, { x: 'k', y: 'v', fill: colours.accent }) : Plot.lineY(values, { x: (_, k) => k, y: (v) => v ?? NaN, stroke: colours.accent, strokeWidth: 1.8 }),
+        dot ? Plot.dot(known, { x: 'k', y: 'v', fill: colours.accent }) : all.map((line, i) => Plot.lineY(line.values, { x: (_, k) => k, y: (v) => v ?? NaN,
+          stroke: lines && i !== bold ? colours.soft : colours.accent, strokeWidth: lines && i !== bold ? 0.9 : 1.8, strokeOpacity: lines && i !== bold ? 0.7 : 1 })),
       ],
     });
   }
@@ -59,11 +65,10 @@ export class Plots {
   /** The cursor and the values at it, which move with every frame. */
   draw(cursor) {
     this.cursor = cursor;
-    for (const { values, value, line, x } of this.plots) {
+    for (const { values, lines, bold, value, line, x } of this.plots) {
       line.style.transform = `translateX(${x.apply(cursor).toFixed(1)}px)`;
-      const here = values[Math.round(cursor)];
-      const text = here === null || here === undefined ? '–' : here.toPrecision(4);
-      if (value.textContent !== text) value.textContent = text;
+      const here = text((lines ? lines[bold].values : values)[Math.round(cursor)]);
+      if (value.textContent !== here) value.textContent = here;
     }
   }
   /** All plots as one drawing for papers. */
@@ -71,6 +76,8 @@ export class Plots {
     return sheet(this.plots.map((plot) => this.drawing(plot, 640, 170, PAPER, this.axis)));
   }
 }
+
+const text = (v) => (v === null || v === undefined ? '–' : v.toPrecision(4));
 
 /** A little wider than the values, and never empty. */
 function extent(values) {

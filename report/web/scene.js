@@ -37,10 +37,13 @@ function geometry(body, meshes, around) {
   return shape;
 }
 
+/** What stands still of the robot is told apart from what moves. */
+const kindOf = (body) => (body.kind !== 'scene' && body.group === 0 ? 'fixed' : body.kind);
+
 export class View {
   /** gap: an element that is kept beside the line between the nearest bodies. */
   constructor(canvas, gap, data) {
-    Object.assign(this, { data, canvas, gap });
+    Object.assign(this, { canvas, gap });
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: false });  // edges are smoothed by drawing more pixels at rest
     this.quality = new Quality();
     this.scene = new THREE.Scene();
@@ -51,23 +54,68 @@ export class View {
       const fine = geometry(body, data.meshes, kFine), coarse = body.mesh === undefined ? geometry(body, data.meshes, kCoarse) : fine;
       return { body, fine, coarse, rest: matrix(body.pose) };
     });
-    this.materials = { robot: surface(0xf0a830), tool: surface(0x59636f), scene: surface(0x93a3b3, { twoSided: true }), near: surface(0xd55e00), 'near scene': surface(0xd9a58c, { twoSided: true }) };
+    this.materials = { robot: surface(0xf0a830), tool: surface(0x59636f), scene: surface(0x93a3b3, { twoSided: true }), fixed: surface(0xb4b9bf),
+      near: surface(0xe58fc0), 'near scene': surface(0xc3a3bf, { twoSided: true }), hit: surface(0xd11f1f), 'hit scene': surface(0xd9705f, { twoSided: true }) };
     this.arm = this.parts.map((part) => {
-      const mesh = new THREE.Mesh(part.fine, this.materials[part.body.kind]);
+      const mesh = new THREE.Mesh(part.fine, this.materials[kindOf(part.body)]);
       mesh.matrixAutoUpdate = false;
       mesh.matrix.copy(part.rest);
       mesh.userData = part;
       this.scene.add(mesh);
       return mesh;
     });
-    this.addGhosts();
-    this.addPath();
     this.addNearest();
+    this.addTool();
+    this.show(data);
     this.orbit = new OrbitControls(this.camera, canvas);
-    this.frame();
+    this.look('best');
     this.orbit.addEventListener('change', () => (this.dirty = this.moving = true));
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
     this.resize();
+  }
+  /** Another plan of the same arm among the same bodies. poses: of the scene's objects in their order, where they stand elsewhere. */
+  show(data) {
+    this.data = data;
+    if (data.poses) this.parts.filter(({ body }) => body.kind === 'scene').forEach(({ rest }, k) => rest.copy(matrix(data.poses[k])));
+    this.shown?.traverse(({ geometry }) => geometry?.dispose());
+    this.shown?.removeFromParent();
+    for (const { label } of this.names ?? []) label.remove();
+    this.shown = new THREE.Group();
+    this.scene.add(this.shown);
+    this.addGhosts();
+    this.addPath();
+    this.addNames();
+    this.dirty = true;
+  }
+  /** Coloured squares { x, y, half: [hx, hy], colour } in a frame (its pose), below all that stands on them; a ring at one point of theirs. */
+  lay(squares, frame, ring) {
+    this.floor?.traverse(({ geometry }) => geometry?.dispose());
+    this.floor?.removeFromParent();
+    const corners = new Float32Array(12 * squares.length), colours = new Float32Array(12 * squares.length), index = new Uint32Array(6 * squares.length), known = new Map();
+    const rgb = (colour) => known.get(colour) ?? known.set(colour, new THREE.Color(colour).convertLinearToSRGB().toArray()).get(colour);
+    squares.forEach(({ x, y, half: [hx, hy], colour }, k) => {
+      corners.set([x - hx, y - hy, 0, x + hx, y - hy, 0, x + hx, y + hy, 0, x - hx, y + hy, 0], 12 * k);
+      for (let c = 0; c < 4; ++c) colours.set(rgb(colour), 12 * k + 3 * c);
+      index.set([0, 1, 2, 0, 2, 3].map((c) => 4 * k + c), 6 * k);
+    });
+    const shape = new THREE.BufferGeometry().setAttribute('position', new THREE.BufferAttribute(corners, 3)).setAttribute('color', new THREE.BufferAttribute(colours, 3))
+      .setIndex(new THREE.BufferAttribute(index, 1));
+    const mark = new THREE.Mesh(new THREE.RingGeometry(0.012, 0.018, 32), surface(0x000000, { lit: false, side: THREE.DoubleSide }));
+    mark.position.set(...ring, 0.001);
+    this.floor = new THREE.Group();
+    this.floor.add(new THREE.Mesh(shape, surface(null, { lit: false, twoSided: true })), mark);
+    this.floor.matrixAutoUpdate = false;
+    this.floor.matrix.copy(matrix(frame));
+    this.floor.matrix.elements[14] = Math.min(0, this.lowest()) + 0.002;
+    this.scene.add(this.floor);
+    this.dirty = true;
+  }
+  /** z of the lowest point of the scene. */
+  lowest() {
+    return this.parts.filter(({ body }) => body.kind === 'scene').reduce((least, { fine, rest }) => {
+      fine.computeBoundingBox();
+      return Math.min(least, fine.boundingBox.clone().applyMatrix4(rest).min.z);
+    }, Infinity);
   }
   addGrid() {
     const grid = new THREE.GridHelper(4, 20);
@@ -78,8 +126,8 @@ export class View {
   }
   /** The poses at start and end, one body each, that do not hide what moves. */
   addGhosts() {
-    this.ghosts = new THREE.Group();
-    this.scene.add(this.ghosts);
+    this.ghosts = Object.assign(new THREE.Group(), { visible: this.ghosts?.visible ?? true });
+    this.shown.add(this.ghosts);
     const { rows, chain } = this.data;
     if (rows.length < 2) return;
     for (const [row, colour] of [[rows[0], 0x0072b2], [rows.at(-1), 0x009e73]]) {
@@ -94,7 +142,21 @@ export class View {
     this.rings = Math.min(2 * points.length, 200);
     const tube = points.length > 1 ? new THREE.TubeGeometry(new THREE.CatmullRomCurve3(points, false, 'centripetal'), this.rings, 0.004, 5) : new THREE.BufferGeometry();
     this.line = new THREE.Mesh(tube, surface(null));
-    this.scene.add(this.line);
+    // What bodies hide of the path shows through them, faintly; arrows tell its direction.
+    const through = Object.assign(new THREE.Mesh(tube, surface(null, { opacity: 0.3, lit: false, depthTest: false })), { renderOrder: 1 });
+    this.shown.add(this.line, through);
+    const length = points.reduce((sum, point, k) => sum + (k ? point.distanceTo(points[k - 1]) : 0), 0);
+    const cone = new THREE.ConeGeometry(0.011, 0.03, 10).rotateX(Math.PI / 2), arrow = surface(0x1b222b, { opacity: 0.75, depthTest: false });
+    for (let k = 1, passed = 0, next = length / 8; k < points.length && length > 0.05; ++k) {
+      const way = points[k].clone().sub(points[k - 1]);
+      passed += way.length();
+      if (passed < next) continue;
+      next += length / 4;
+      const mesh = Object.assign(new THREE.Mesh(cone, arrow), { renderOrder: 2 });
+      mesh.position.copy(points[k]);
+      mesh.lookAt(points[k].clone().add(way));
+      this.shown.add(mesh);
+    }
     this.around = 6;  // vertices of a ring: the first again at the end
   }
   /** The shortest line between two bodies, drawn over everything. */
@@ -106,23 +168,109 @@ export class View {
     this.nearest.visible = false;
     this.scene.add(this.nearest);
   }
-  /** Robot and path into the picture. */
-  frame() {
-    const box = new THREE.Box3().setFromPoints(this.data.tool_path.map(vector));
-    const target = box.getCenter(new THREE.Vector3()).multiplyScalar(0.6).add(new THREE.Vector3(0, 0, 0.35));
-    this.camera.position.copy(target).add(new THREE.Vector3(-0.8, -1.9, 1.1).normalize().multiplyScalar(2.3));
-    this.orbit.target.copy(target);
-    this.orbit.update();
+  /** The tool's frame: x red, y green, z blue. */
+  addTool() {
+    this.tool = new THREE.Group();
+    for (const [axis, colour] of [[[1, 0, 0], 0xd62728], [[0, 1, 0], 0x2ca02c], [[0, 0, 1], 0x1f4fd6]]) {
+      const rod = new THREE.Mesh(new THREE.CylinderGeometry(0.003, 0.003, 0.07, 6).translate(0, 0.035, 0), surface(colour, { lit: false, depthTest: false }));
+      rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), vector(axis));
+      rod.renderOrder = 2;
+      this.tool.add(rod);
+    }
+    this.tool.matrixAutoUpdate = false;
+    this.scene.add(this.tool);
   }
-  /** pair: names of the two bodies that are nearest, or null; line: { points (six numbers), text } between them, or null. */
-  pose(q, pair, line = null) {
+  /** The names of the scene's objects, beside them. */
+  addNames() {
+    const objects = new Map();
+    for (const { body, rest, fine } of this.parts) {
+      if (body.kind !== 'scene') continue;
+      fine.computeBoundingBox();
+      const box = fine.boundingBox.clone().applyMatrix4(rest);
+      objects.set(body.name, objects.has(body.name) ? objects.get(body.name).union(box) : box);
+    }
+    this.names = [...objects].map(([name, box]) => {
+      const label = document.createElement('span');
+      label.className = 'name';
+      label.textContent = name;
+      this.gap.parentElement.append(label);
+      const top = box.getCenter(new THREE.Vector3());
+      top.z = Math.min(box.max.z, top.z + 0.25);
+      return { label, at: top };
+    });
+  }
+  /** The path, and the arm's bodies that move at both ends of it: what should be seen. */
+  subject() {
+    const { rows, cut, chain, tool_path } = this.data, box = new THREE.Box3().setFromPoints(tool_path.map(vector)), centres = [];
+    for (const { q } of rows.length ? [rows[0], rows.at(-1)] : cut ? [cut] : []) {
+      const g = displacements(chain, q);
+      for (const { body, coarse, rest } of this.parts) {
+        if (body.group === 0) continue;
+        coarse.computeBoundingBox();
+        const own = coarse.boundingBox.clone().applyMatrix4(g[body.group].clone().multiply(rest));
+        box.union(own);
+        centres.push(own.getCenter(new THREE.Vector3()));
+      }
+    }
+    return { box, centres };
+  }
+  /** From where most of the path, of the arm and of the place that is nearest to something is seen past what stands still. */
+  bestDirection({ box, centres }) {
+    const { tool_path, rows } = this.data, path = tool_path.map(vector), target = box.getCenter(new THREE.Vector3()), radius = box.getSize(new THREE.Vector3()).length();
+    const nearest = rows.filter((row) => row.nearest).sort((a, b) => a.clearance_mm - b.clearance_mm).slice(0, 1).map((row) => vector(row.nearest));
+    const marks = [...Array.from({ length: 10 }, (_, k) => [path[Math.round((k / 9) * (path.length - 1))], 2]), ...nearest.map((p) => [p, 6]), ...centres.map((p) => [p, 8 / centres.length])];
+    const still = this.arm.filter((mesh) => mesh.userData.body.group === 0);
+    // Heavy meshes are boxes here: a ray against each of their triangles would take seconds.
+    const boxes = still.map((mesh) => {
+      mesh.updateMatrixWorld();
+      const { fine, rest } = mesh.userData;
+      fine.computeBoundingBox();
+      return { mesh, light: fine.index === null || fine.index.count < 6000, box: fine.boundingBox.clone().expandByScalar(-0.002), inverse: rest.clone().invert() };
+    });
+    const caster = new THREE.Raycaster(), local = new THREE.Ray();
+    const hidden = (from, to) => {
+      const way = to.clone().sub(from), far = way.length() - 0.01;
+      caster.set(from, way.normalize());
+      caster.far = far;
+      return boxes.some(({ mesh, light, box: own, inverse }) => {
+        const hit = local.copy(caster.ray).applyMatrix4(inverse).intersectBox(own, new THREE.Vector3());
+        if (!hit || hit.distanceTo(local.origin) > far) return false;
+        return light ? caster.intersectObject(mesh).length > 0 : !own.containsPoint(to.clone().applyMatrix4(inverse));
+      });
+    };
+    const along = path.at(-1).clone().sub(path[0]).normalize();
+    let best = null;
+    for (const up of [0.3, 0.62, 1.0])
+      for (let k = 0; k < 16; ++k) {
+        const turn = -Math.PI / 2 - 0.4 + (k * Math.PI) / 8;
+        const direction = new THREE.Vector3(Math.cos(turn) * Math.cos(up), Math.sin(turn) * Math.cos(up), Math.sin(up)), from = target.clone().addScaledVector(direction, 1.6 * radius);
+        let score = 3 * Math.sqrt(1 - along.dot(direction) ** 2) + (up === 0.62 ? 1 : 0) - 0.05 * Math.min(k, 16 - k);
+        for (const [point, worth] of marks) score += hidden(from, point) ? 0 : worth;
+        if (best === null || score > best.score) best = { score, direction };
+      }
+    return best.direction;
+  }
+  /** 'best', 'fit' (from where it is seen now), 'front', 'side', 'top': arm and path into the picture. */
+  look(from) {
+    const subject = this.subject(), ball = subject.box.getBoundingSphere(new THREE.Sphere());
+    const direction = { front: () => new THREE.Vector3(1, 0, 0.001), side: () => new THREE.Vector3(0, -1, 0.001), top: () => new THREE.Vector3(-0.001, 0, 1),
+      fit: () => this.camera.position.clone().sub(this.orbit.target).normalize(), best: () => this.bestDirection(subject) }[from]();
+    const half = Math.atan(Math.tan((this.camera.fov * Math.PI) / 360) * Math.min(1, this.camera.aspect));
+    this.camera.position.copy(ball.center).addScaledVector(direction, Math.max(0.3, (0.88 * ball.radius) / Math.sin(half)));
+    this.orbit.target.copy(ball.center);
+    this.orbit.update();
+    this.dirty = true;
+  }
+  /** pair: names of the two bodies that are nearest, or that hit each other, or null; line: { points (six numbers), text } between them, or null. */
+  pose(q, pair, line = null, hit = false) {
     const g = displacements(this.data.chain, q);
     for (const mesh of this.arm) {
       const { body, rest } = mesh.userData;
       mesh.matrix.multiplyMatrices(g[body.group], rest);
-      const kind = pair?.includes(body.name) ? (body.kind === 'scene' ? 'near scene' : 'near') : body.kind;
+      const kind = pair?.includes(body.name) ? (hit ? 'hit' : 'near') + (body.kind === 'scene' ? ' scene' : '') : kindOf(body);
       mesh.material = this.materials[kind];
     }
+    this.tool.matrix.multiplyMatrices(g.at(-1), matrix(this.data.chain.home));
     this.nearest.visible = line !== null;
     this.gap.hidden = line === null;
     if (line) {
@@ -168,12 +316,14 @@ export class View {
     if (!this.dirty) return false;
     this.dirty = this.moving = false;
     this.renderer.render(this.scene, this.camera);
-    if (this.nearest.visible) this.placeGap();
+    if (this.nearest.visible) this.place(this.gap, this.nearest.children[0].position, 12, -26);
+    for (const { label, at } of this.names) this.place(label, at, 0, 0);
     return true;
   }
-  placeGap() {
-    const at = this.nearest.children[0].position.clone().project(this.camera), { width, height } = this.size;
-    const x = ((at.x + 1) / 2) * width, y = ((1 - at.y) / 2) * height;
-    this.gap.style.transform = `translate(${Math.min(Math.max(4, x + 12), width - 90).toFixed(0)}px, ${Math.min(Math.max(4, y - 26), height - 24).toFixed(0)}px)`;
+  /** An element beside a point of the scene. */
+  place(element, point, right, down) {
+    const at = point.clone().project(this.camera), { width, height } = this.size;
+    const x = ((at.x + 1) / 2) * width + right, y = ((1 - at.y) / 2) * height + down;
+    element.style.transform = `translate(${Math.min(Math.max(4, x), width - element.offsetWidth - 4).toFixed(0)}px, ${Math.min(Math.max(4, y), height - 24).toFixed(0)}px)`;
   }
 }

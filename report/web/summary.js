@@ -2,13 +2,36 @@
 // The plan in words and numbers.
 import { $, number, table } from './page.js';
 
-export function verdict({ result, rows, map }) {
-  const d = result.diagnosis, clearances = rows.map((row) => row.clearance_mm).filter((v) => v !== undefined);
-  if (result.status === 'solved')
-    return `Solved: ${rows.length} layers, cost ${number(result.cost)}, tool-path error at most ${number(Math.max(...rows.map((row) => row.error_mm ?? 0)), 3)} mm`
-      + (clearances.length ? `, clearance at least ${number(Math.min(...clearances), 3)} mm.` : '.');
-  if (!d || d.reached_layer === null) return `No path at this resolution: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`;
-  return `No path at this resolution: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), where ${d.reason} stops it.`;
+/** The answer in one line; what it names along the path are buttons that go there. jump: called with s, m. */
+export function verdict(host, { result, rows, map }, jump) {
+  const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = result.summary ?? {}, d = result.diagnosis;
+  const say = (text, s) => {
+    if (host.childNodes.length) host.append(' · ');
+    if (s === undefined || s === null) return host.append(text);
+    const button = document.createElement('button');
+    Object.assign(button, { textContent: `${text} at s ${s.toFixed(3)}`, title: 'Go there' });
+    button.addEventListener('click', () => jump(s));
+    host.append(button);
+  };
+  host.classList.add(result.status === 'solved' ? 'solved' : 'failed');
+  if (result.status !== 'solved') {
+    const none = { every_resolution: 'No path at any resolution', exact_tool: 'No path for a tool that follows exactly' }[d?.holds] ?? 'No path at this resolution';
+    say(!d || d.reached_layer === null ? `${none}: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`
+      : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), where ${d.reason} stops it.`);
+    if (d?.unreachable) say(`no joints within their limits reach ${d.unreachable.waypoint === null ? `layer ${d.unreachable.layer}` : `waypoint ${d.unreachable.waypoint}`}`, d.unreachable.s);
+  } else {
+    say(`Solved: ${rows.length} layers, cost ${number(result.cost)}`);
+    if (clearance) say(`least clearance ${number(1e3 * clearance.value, 3)} mm (asked ${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`, clearance.s);
+    if (limit) say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s);
+    if (error) say(`tool ${number(error.max_mm, 2)} mm off${error.allowed_mm === null || error.allowed_mm === undefined ? '' : ` (allowed ${number(error.allowed_mm)})`}`, error.s);
+    if (speed) say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s);
+  }
+  for (const warning of result.warnings ?? []) {
+    const line = document.createElement('p');
+    line.className = 'warning';
+    line.textContent = warning;
+    host.after(line);
+  }
 }
 
 const words = (object) => Object.entries(object ?? {}).filter(([, v]) => typeof v !== 'object')

@@ -16,7 +16,7 @@ import unittest
 
 SWIVEL = os.environ["SWIVEL"]
 DATA = pathlib.Path(os.environ["SWIVEL_DATA"])
-SHARED = pathlib.Path(os.environ["SWIVEL_SHARED"])
+SHARED = pathlib.Path(os.environ.get("SWIVEL_SHARED", "/nonexistent"))  # real robots, where there are any
 VERIFY = pathlib.Path(__file__).with_name("verify.py")
 PROBLEMS = DATA / "problems"
 LINE = "x,y,z,qw,qx,qy,qz\n0.6,-0.1,0.9,0.7071067811865476,0,-0.7071067811865476,0\n0.6,0.4,0.9,0.7071067811865476,0,-0.7071067811865476,0\n"
@@ -37,6 +37,95 @@ class WithFolder(unittest.TestCase):
         out, result = self.folder / "t.csv", self.folder / "r.json"
         done = run("plan", problem, "--out", out, "--json", result, *options)
         return done, out, json.loads(result.read_text()) if result.exists() else None
+
+
+class Certificates(WithFolder):
+    """That there is no path: written by plan, verified by check."""
+
+    def setUp(self):
+        super().setUp()
+        self.problem = PROBLEMS / "experiment_a_start.yaml"
+        self.certificate = self.folder / "none.json"
+        done, _, self.result = self.plan(self.problem, "--certificate", self.certificate)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("certificate: layers", done.stdout)
+
+    def check(self, *options):
+        return run("check", self.problem, "--certificate", self.certificate, *options)
+
+    def test_it_is_verified_and_counted(self):
+        done = self.check()
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertTrue(done.stdout.startswith("passed: no path at this resolution"), done.stdout)
+        told = self.result["certificate"]
+        self.assertEqual(told["bytes"], self.certificate.stat().st_size)
+        written = json.loads(self.certificate.read_text())
+        nodes = sum(last - first + 1 for layer in written["layers"] for first, last, _ in layer["nodes"])
+        self.assertEqual(sum(removed["nodes"] for removed in told["removed"]), nodes)
+        self.assertEqual(told["layers"], [written["layers"][0]["layer"], written["layers"][-1]["layer"]])
+        self.assertIn(f"{nodes} nodes and 0 edges asked", done.stdout)
+        self.assertIsNone(self.result["checked"])
+
+    def test_a_forged_one_is_refused(self):
+        written = json.loads(self.certificate.read_text())
+        for forge in (lambda w: w["layers"][5]["nodes"].pop(), lambda w: w["layers"][7]["reached"].clear(), lambda w: w["layers"].pop(),
+                      lambda w: w["layers"][3]["nodes"][0].__setitem__(1, 200), lambda w: w["witnesses"][0].update(side="lower")):
+            bad = json.loads(json.dumps(written))
+            forge(bad)
+            self.certificate.write_text(json.dumps(bad))
+            done = self.check()
+            self.assertEqual(done.returncode, 1, done.stdout + done.stderr)
+            self.assertIn("failed: this certificate proves nothing", done.stdout)
+
+    def test_bad_ones_are_bad_input(self):
+        good = self.certificate.read_text()
+        for bad in ("", "{", "[]", "null", '{"format": 1}', good[:-20], good.replace("certificate 1", "certificate 9"), good.replace('"limit"', '"whim"', 1),
+                    good.replace('"slots":1008', '"slots":-1', 1), good.replace('"slots":1008', '"slots":1e300', 1), good.replace("[786,786]", "[786]", 1), "[" * 100000):
+            self.certificate.write_text(bad)
+            done = self.check()
+            self.assertEqual(done.returncode, 2, f"{bad[:50]}: {done.stdout}{done.stderr}")
+            self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+            self.assertIn("allowed", done.stderr)
+        self.certificate.write_text(good)
+        for options in (("--ds", "0.02"), ("--edges", "nodes"), ("--arcs",), ("trajectory.csv",)):
+            done = self.check(*options)
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn("allowed", done.stderr)
+        for options in (("--refine",), ("--speed", "0.1")):
+            done, _, _ = self.plan(self.problem, "--certificate", self.certificate, *options)
+            self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1), done.stderr)
+            self.assertEqual(self.certificate.read_text(), good)
+        done = run("check", self.problem)
+        self.assertEqual((done.returncode, len(done.stderr.strip().splitlines())), (2, 1), done.stderr)
+
+    def test_a_stale_one_goes_where_there_is_a_path(self):
+        done, out, result = self.plan(PROBLEMS / "experiment_a.yaml", "--certificate", self.certificate, "--ds", "0.02", "--dphi", "0.2")
+        self.assertEqual(done.returncode, 0)
+        self.assertFalse(self.certificate.exists())
+        self.assertIn("there is a path now", done.stderr)
+        self.assertIsNone(result["certificate"])
+        self.assertTrue(out.exists())
+
+
+class Checked(WithFolder):
+    """Every answer is proved before it is written."""
+
+    def test_answers_say_that_they_were(self):
+        quick = ("--ds", "0.02", "--dphi", "0.2")
+        for options in ((), ("--refine",), ("--speed", "0.05"), ("--refine", "--speed", "0.05")):
+            done, out, result = self.plan(PROBLEMS / "experiment_a.yaml", *quick, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertIs(result["checked"], True)
+            self.assertGreater(result["time_ms"]["check"], 0)
+            self.assertIn("checked in", done.stdout)
+            done, plain, result = self.plan(PROBLEMS / "experiment_a.yaml", *quick, *options, "--no-check")
+            self.assertIs(result["checked"], False)
+            self.assertEqual(result["time_ms"]["check"], 0)
+        problem = PROBLEMS / "experiment_c.yaml"
+        _, out, _ = self.plan(problem, "--refine")
+        for options in ((), ("--no-check",)):
+            done = run("time", problem, out, "--speed", "0.05", *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
 class Experiments(WithFolder):
@@ -229,6 +318,7 @@ limits: {{clearance: 0.005}}
         ("ds: 0.02", "ds: -1", ["ds"]),
         ("ds: 0.02", "ds: 1e-9", ["ds"]),
         ("ds: 0.02, dphi: 0.2", "ds: 1e-5, dphi: 1e-5", ["larger"]),
+        ("dphi: 0.2", "dphi: 0.2, arcs: maybe", ["resolution.arcs", "one of false, true"]),
         ("path:\n", "path:\n  frame: nowhere\n", ["nowhere", "frame"]),
         ("tip_link: arm_left_link_7_t", "tip_link: arm_left_link_9", ["arm_left_link_9"]),
         ("base_link: base_link", "base_link: bottom", ["bottom"]),
@@ -280,10 +370,9 @@ limits: {{clearance: 0.005}}
         problem = "robot: {urdf: bent.urdf, base_link: base_link, tip_link: tool0}\npath: {waypoints: [{xyz: [0.5, 0, 0.5]}, {xyz: [0.5, 0.1, 0.5]}]}\n"
         self.bad(problem + "limits: {step_error: 0.1}\n", ["limits.step_error", "S-R-S"])
         (self.folder / "bent.yaml").write_text(problem)
-        done = run("plan", self.folder / "bent.yaml", "--refine")
-        self.assertEqual(done.returncode, 2, done.stdout)
-        for words in ("axes 6 and 7", "88.0 mm", "refining"):
-            self.assertIn(words, done.stderr)
+        done = run("plan", self.folder / "bent.yaml", "--refine")  # all else takes it
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("refined: cost", done.stdout)
 
     def test_command_line(self):
         problem = PROBLEMS / "experiment_a.yaml"
@@ -367,7 +456,8 @@ class Stopping(WithFolder):
 class Campaign(WithFolder):
     PROBLEM = PROBLEMS / "experiment_c.yaml"
     QUICK = ("--ds", "0.02", "--dphi", "0.2", "--edges", "nodes")
-    HEADER = "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,reason"
+    HEADER = "episode,status,cost,plan_ms,nodes_checked,fcl_calls,tool_path_error_mm_mean,tool_path_error_mm_max,failed_s,cause,by,reason"
+    OFFSETS = [f"door.{name}" for name in ("x", "y", "z", "roll", "pitch", "yaw")]
     EPISODES = 12
 
     def campaign(self, name, *options, code=0, episodes=EPISODES, problem=None):
@@ -377,6 +467,15 @@ class Campaign(WithFolder):
         done = run("campaign", problem or self.PROBLEM, "--episodes", episodes, *quick, "--out", out, *options)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done, out
+
+    def test_a_flag_that_is_not_given_changes_nothing(self):
+        text = BadInput.BASE.format(data=DATA) + "vary: [{object: post, xyz: [0.1, 0.1, 0.1]}]\n"
+        for in_file in (False, True):
+            problem = self.folder / "problem.yaml"
+            problem.write_text(text.replace("dphi: 0.2", "dphi: 0.2, arcs: true") if in_file else text)
+            for option, expected in (((), in_file), (("--arcs",), True), (("--no-arcs",), False)):
+                _, out = self.campaign("shard.csv", "--shard", "0/1", *option, episodes=1, problem=problem)
+                self.assertIn(f'"arcs":"{str(expected).lower()}"', out.read_text().splitlines()[0])
 
     def killed(self, name, *options, problem=None, rows=3):
         """The .part file of a campaign that was killed after some rows."""
@@ -392,10 +491,11 @@ class Campaign(WithFolder):
         return part
 
     def rows(self, out):
-        self.assertEqual(out.read_text().splitlines()[0], self.HEADER)
+        """Of a whole campaign, or of a shard, whose first line says so."""
+        lines = [line for line in out.read_text().splitlines() if not line.startswith("# swivel campaign {")]
+        self.assertEqual(lines[0], ",".join([self.HEADER, *self.OFFSETS]))
         self.assertFalse(out.with_name(out.name + ".part").exists())
-        with out.open(newline="") as file:
-            return list(csv.DictReader(file))
+        return list(csv.DictReader(lines))
 
     @staticmethod
     def without_times(rows):
@@ -408,7 +508,7 @@ class Campaign(WithFolder):
         for row in one:
             solved = row["status"] == "solved"
             self.assertEqual([row[key] != "" for key in ("cost", "tool_path_error_mm_mean", "tool_path_error_mm_max")], [solved] * 3)
-            self.assertEqual(row["reason"] == "", solved)
+            self.assertEqual([row[key] == "" for key in ("reason", "cause")], [solved] * 2)
             self.assertTrue(not solved or row["failed_s"] == "")
         two = self.rows(self.campaign("two.csv", "--threads", "2")[1])
         self.assertEqual(self.without_times(one), self.without_times(two))
@@ -419,16 +519,68 @@ class Campaign(WithFolder):
             union += shard
         self.assertEqual(self.without_times(one), self.without_times(sorted(union, key=lambda row: int(row["episode"]))))
 
-    def test_rows_of_shards_are_put_together(self):
+    def test_rows_say_where_the_objects_stood(self):
+        """The offsets, put into a problem of no campaign, give the episode."""
+        rows = self.rows(self.campaign("r.csv", episodes=40)[1])
+        half = {"x": 0.1, "y": 0.1, "z": 0.1, "roll": 0.3, "pitch": 0.3, "yaw": 0.3}
+        for name, most in half.items():
+            values = [float(row["door." + name]) for row in rows]
+            self.assertTrue(all(abs(value) <= most for value in values) and min(values) < -most / 2 and max(values) > most / 2, name)
+        self.assertGreaterEqual(len({row["by"] for row in rows if row["status"] == "infeasible"}), 2)
+        met = set()
+        for row in rows[:12]:
+            words = [f"--{name}={row['door.' + name]}" for name in half]
+            result = self.folder / "one.json"
+            done = run("plan", self.PROBLEM, *self.QUICK, "--object", "door", *words, "--json", result, "--quiet")
+            self.assertIn(done.returncode, (0, 1), done.stderr)
+            said = json.loads(result.read_text())
+            met.add(said["status"])
+            self.assertEqual(said["status"], row["status"])
+            if said["status"] == "solved":
+                self.assertAlmostEqual(said["cost"], float(row["cost"]), 6)  # poses of placements are rounded to 1e-12
+            else:
+                self.assertEqual((said["diagnosis"]["cause"]["cause"], said["diagnosis"]["reason"]), (row["cause"], row["reason"]))
+        self.assertEqual(met, {"solved", "infeasible"})
+        two = self.folder / "two.yaml"
+        two.write_text(self.PROBLEM.read_text().replace("../", str(DATA) + "/").replace("{object: door, xyz: [0.1, 0.1, 0.1], rpy: [0.3, 0.3, 0.3]}", "{object: post, xyz: [0.1, 0, 0]}\n  - {object: rail, rpy: [0, 0, 0.1]}"))
+        out = self.campaign("two.csv", problem=two)[1]
+        self.assertEqual(out.read_text().splitlines()[0], self.HEADER + ",post.x,rail.yaw")
+        done, _ = self.campaign("bad.csv", "--rows", out, code=2)
+        self.assertIn("other objects or coordinates vary", done.stderr)
+
+    def test_the_share_of_a_task_of_a_job_array(self):
+        wanted = self.campaign("two.csv", "--shard", "2/3")[1].read_text()
+
+        def share(name, code=0, **task):
+            environment = {key: value for key, value in os.environ.items() if not key.startswith("SLURM_")}
+            environment.update({"SLURM_ARRAY_TASK_" + key: value for key, value in task.items()})
+            out = self.folder / name
+            done = subprocess.run([SWIVEL, "campaign", self.PROBLEM, "--episodes", str(self.EPISODES), *self.QUICK, "--shard", "auto", "--out", out],
+                                  capture_output=True, text=True, timeout=300, env=environment)
+            self.assertEqual(done.returncode, code, done.stderr)
+            if code:
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                self.assertFalse(out.exists())
+                return done.stderr
+            return self.without_times(self.rows(out))
+
+        two = self.without_times(self.rows(self.folder / "two.csv"))
+        self.assertEqual(len(wanted.splitlines()), 2 + self.EPISODES // 3)
+        self.assertEqual(share("a.csv", ID="7", COUNT="3", MIN="5"), two)
+        self.assertEqual(share("b.csv", ID="14", COUNT="3", MIN="10", STEP="2"), two)
+        self.assertIn("SLURM_ARRAY_TASK_ID is not set", share("c.csv", 2))
+        self.assertIn("SLURM_ARRAY_TASK_COUNT is 'x'", share("d.csv", 2, ID="1", COUNT="x", MIN="0"))
+        for task in ({"ID": "9", "COUNT": "3", "MIN": "5"}, {"ID": "4", "COUNT": "3", "MIN": "5"}, {"ID": "6", "COUNT": "3", "MIN": "5", "STEP": "2"}, {"ID": "6", "COUNT": "3", "MIN": "5", "STEP": "0"}):
+            self.assertIn("--array=0-31", share("e.csv", 2, **task))
+
+    def test_a_finished_campaign_is_made_longer(self):
         whole = self.rows(self.campaign("whole.csv")[1])
-        shards = [self.campaign(f"shard{k}.csv", "--shard", f"{k}/3")[1] for k in (2, 0, 1)]
-        done, joined = self.campaign("joined.csv", "--rows", *shards, "--json", "-")
-        self.assertEqual(self.without_times(self.rows(joined)), self.without_times(whole))
-        self.assertEqual([row["plan_ms"] for row in self.rows(joined)][::3], [row["plan_ms"] for row in self.rows(shards[1])])  # not planned again
-        more = self.rows(self.campaign("more.csv", "--rows", joined, episodes=self.EPISODES + 2)[1])
-        self.assertEqual(self.without_times(more)[: self.EPISODES], self.without_times(whole))
-        self.assertEqual(len(more), self.EPISODES + 2)
-        for rows in (shards[:2], [*shards, shards[0]], [self.PROBLEM]):
+        first = self.campaign("first.csv", episodes=5)[1]
+        longer = self.rows(self.campaign("longer.csv", "--rows", first)[1])
+        self.assertEqual(self.without_times(longer), self.without_times(whole))
+        self.assertEqual([row["plan_ms"] for row in longer][:5], [row["plan_ms"] for row in self.rows(first)])  # not planned again
+        shard = self.campaign("shard.csv", "--shard", "0/3")[1]
+        for rows in ([first, first], [shard], [self.PROBLEM]):
             done, _ = self.campaign("bad.csv", "--rows", *rows, code=2)
             self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
             self.assertFalse((self.folder / "bad.csv.part").exists())
@@ -497,7 +649,7 @@ class Campaign(WithFolder):
 
         changed = 0
         for options, words in ((("--seed", "6"), ["seed 1, this is 6"]), (("--planner", "lazy"), ["planner parallel, this is lazy"]), (("--ds", "0.021"), ["ds 0.02, this is 0.021"]),
-                               (("--dphi", "0.21"), ["dphi 0.2, this is 0.21"]), (("--edges", "continuous"), ["edges nodes, this is continuous"]), (("--shard", "0/2"), ["shard 0/1, this is 0/2"])):
+                               (("--dphi", "0.21"), ["dphi 0.2, this is 0.21"]), (("--arcs",), ["arcs false, this is true"]), (("--edges", "continuous"), ["edges nodes, this is continuous"]), (("--shard", "0/2"), ["shard 0/1, this is 0/2"])):
             with self.subTest(options=options):
                 refused(words, *options)
                 changed += 1
@@ -516,7 +668,7 @@ class Campaign(WithFolder):
                 refused(["the problem file" if name.endswith(".yaml") else "../" + name])
                 file.write_bytes(before)
                 changed += 1
-        self.assertEqual(changed, 11)
+        self.assertEqual(changed, 12)
         for threads in ("1", "3"):  # from another folder and by another name, with other outputs
             part.write_text(text)
             (self.folder / "problems/other.yaml").write_bytes(problem.read_bytes())

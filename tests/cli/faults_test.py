@@ -341,7 +341,7 @@ class Errors(WithFiles):
         done = self.faulty("plan", SOLVED, *self.EAGER, "--out", self.old, "--json", self.json)
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertEqual(done.stderr, f"swivel: removed the earlier {self.old}: there is no answer now\nswivel: internal error: injected\n")
-        self.assertEqual(json.loads(self.json.read_text()), {"status": "error", "message": "injected"})
+        self.assertEqual(json.loads(self.json.read_text()), {"schema_version": 1, "status": "error", "message": "injected"})
         self.nothing_beside()
         done = self.faulty("plan", SOLVED, *self.EAGER, "--json", "-")
         self.assertEqual((done.returncode, json.loads(done.stdout)["status"]), (5, "error"))
@@ -355,7 +355,7 @@ class Errors(WithFiles):
         self.assertEqual([row[0] for row in rows], [str(k) for k in range(6)])
         errors = [row for row in rows if row[1] == "error"]
         self.assertGreater(len(errors), 0)
-        self.assertEqual({row[-1] for row in errors}, {"injected"})
+        self.assertEqual({row[11] for row in errors}, {"injected"})
         self.assertEqual(done.stderr, f"swivel: internal error in {len(errors)} episodes, the first in episode {errors[0][0]}: injected\n")
         self.assertEqual(json.loads(self.json.read_text())["errors"], len(errors))
         self.assertFalse((self.folder / "rows.csv.part").exists())

@@ -241,11 +241,63 @@ class Motion(unittest.TestCase):
 
         self.assertLess(way(refined), way(plain))
 
-    def worst_rates(self, file):
+    def test_arms_without_an_arm_angle(self):
+        """Of seven joints without one, and of six whose tool may roll: executable, by rates and by check, in every format."""
+        for name, coarse in ("panda_weld_seam", ()), ("kr6_weld_pipe", ()), ("ur5e_deburr_edge", ("--ds", "0.01")):
+            problem, out, result = PROBLEMS / f"{name}.yaml", self.folder / "arm.csv", self.folder / "arm.json"
+            options = ("--refine", "--speed", "0.05", "--quiet", *coarse)
+            done = run("plan", problem, "--rate", "1000", "--out", out, "--json", result, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            told = json.loads(result.read_text())
+            self.assertTrue(told["refinement"]["refined"])
+            self.assertLess(told["refinement"]["cost"], told["refinement"]["cost_before"])
+            self.assertLess(told["motion"]["duration"], 1.05 * told["motion"]["ideal"])
+            header, rows = self.table(out)
+            roll = header[10] == "roll"
+            self.assertEqual(roll, name != "panda_weld_seam")
+            self.assertLessEqual(max(self.worst_rates(out, 6 if roll else 7)), 1 + 1e-9)
+            for row in rows:
+                self.assertTrue(not roll or row[2] == row[10])
+            self.assertEqual(run("check", problem, out, *coarse).returncode, 0)
+            # A phi that is not the roll is found.
+            if roll:
+                lines = out.read_text().splitlines()
+                fields = lines[9].split(",")
+                fields[2] = repr(float(fields[2]) + 0.01)
+                bad = self.folder / "bad_roll.csv"
+                bad.write_text("\n".join(lines[:9] + [",".join(fields)] + lines[10:]) + "\n")
+                done = run("check", problem, bad, *coarse)
+                self.assertEqual(done.returncode, 1)
+                self.assertIn("the roll", done.stdout)
+            # A trajectory planned without speed, refined and timed afterwards.
+            trajectory, later = self.folder / "plain.csv", self.folder / "later.json"
+            self.assertEqual(run("plan", problem, "--out", trajectory, "--quiet", *coarse).returncode, 0)
+            done = run("time", problem, trajectory, "--out", later, *options)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            message = json.loads(later.read_text())
+            names = header[4:10] if roll else header[4:11]
+            self.assertEqual(message["joint_names"], names)
+            self.assertEqual({len(point["positions"]) for point in message["points"]}, {len(names)})
+            log = self.folder / "arm.mcap"
+            self.assertEqual(run("plan", problem, "--out", log, *options).returncode, 0)
+            cdr = Cdr(Mcap(log.read_bytes()).messages[0][4])
+            cdr.take("i"), cdr.take("I"), cdr.text()
+            self.assertEqual([cdr.text() for _ in range(cdr.take("I"))], names)
+            self.assertEqual(len(cdr.numbers()), len(names))
+
+    def test_pages_of_arms_without_an_arm_angle(self):
+        page = self.folder / "page.html"
+        done = run("plan", PROBLEMS / "kr6_weld_pipe.yaml", "--refine", "--speed", "0.05", "--report", page, "--quiet")
+        if "built without reports" in done.stderr:
+            self.skipTest("built without reports")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn('"tool_mm_s":[', page.read_text())
+
+    def worst_rates(self, file, joints=7):
         """Largest differences of the joints over what they can do, at rest before and after."""
         _, rows = self.table(file)
         dt = rows[1][0] - rows[0][0]
-        q = [rows[0][4:11]] * 3 + [row[4:11] for row in rows] + [rows[-1][4:11]] * 3
+        q = [row[4:4 + joints] for row in [rows[0]] * 3 + rows + [rows[-1]] * 3]
         most = [0, 0]
         for k in range(3, len(q)):
             for a, b, c, d in zip(*(q[k - i] for i in range(4))):

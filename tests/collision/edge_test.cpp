@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "plain_edge_rule.hpp"
 #include "support.hpp"
 #include "swivel/collision/world.hpp"
 
@@ -57,6 +58,15 @@ TEST(EdgeRule, Midpoints) {
   EXPECT_EQ(rule.midpoints(q0, q1), 128);
 }
 
+/// At every midpoint in turn.
+bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
+  const std::int64_t n = rule.midpoints(q0, q1);
+  for (std::int64_t m = 0; m < n; ++m)
+    if (query.pair_below(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair, Keep::kMidpoint))
+      return true;
+  return false;
+}
+
 TEST(EdgeBlocked, AgreesWithThePlainRule) {
   Random random(41);
   RobotModel robot = capsule_arm();
@@ -67,7 +77,7 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
   Problem problem = problem_for(robot);
   const World base(robot, arm, problem);
   const EdgeRule rule = base.edge_rule(motion_radii(arm.chain, base.bodies()));
-  int blocked = 0, free = 0, in_band = 0;
+  int blocked = 0, free = 0, in_band = 0, blocked_by = 0, free_of = 0;
   std::int64_t leaves = 0;
   for (int w = 0; w < 100; ++w) {
     const World world(base, random_scene(random));
@@ -78,8 +88,18 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
         q0 = random.config(1.5);  // as a planner's: mostly free
       const Config q1 = q0 + random.config(0.06);
       leaves += rule.midpoints(q0, q1);
-      const bool fast = edge_blocked(query, rule, q0, q1).has_value(), plain = edge_blocked_plain(query, rule, q0, q1).has_value();
+      const bool fast = edge_blocked(query, rule, q0, q1).has_value(),
+                 plain = test::edge_blocked_plain(query, rule, q0, q1).has_value();
       ++(plain ? blocked : free);
+      if (const auto pair = edge_blocked(query, rule, q0, q1)) {
+        EXPECT_TRUE(edge_blocked_by(*pair, query, rule, q0, q1)) << world.names(*pair)[0] << " " << world.names(*pair)[1];
+      }
+      if (k < 2)
+        for (const BodyPair& pair : world.pairs()) {
+          const bool by = edge_blocked_by(pair, query, rule, q0, q1), plain_by = blocked_by_plain(pair, query, rule, q0, q1);
+          ++(plain_by ? blocked_by : free_of);
+          in_band += by != plain_by;
+        }
       if (fast == plain) continue;
       double least = 1;
       const std::int64_t n = rule.midpoints(q0, q1);
@@ -93,6 +113,8 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
   EXPECT_EQ(blocked + free, 2500);
   EXPECT_GT(blocked, 100);
   EXPECT_GT(free, 100);
+  EXPECT_GT(blocked_by, 20);
+  EXPECT_GT(free_of, 1000);
   EXPECT_LE(in_band, 5);
   RecordProperty("in_band", in_band);
   std::cout << "blocked " << blocked << ", free " << free << ", disagreements within tau " << in_band << ", midpoints " << leaves
@@ -145,7 +167,7 @@ TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
       q0[5] = random.uniform(-2.5, 2.5);
       q0[6] = random.uniform(-2.5, 2.5);
       const Config q1 = q0 + random.config(0.04);
-      const auto found = edge_blocked(fast, rule, q0, q1), expected = edge_blocked_plain(plain, rule, q0, q1);
+      const auto found = edge_blocked(fast, rule, q0, q1), expected = test::edge_blocked_plain(plain, rule, q0, q1);
       ++(expected ? blocked : free);
       const auto clearance = [&](double t) { return plain.clearance(q0 + t * (q1 - q0))->least; };
       if (found.has_value() != expected.has_value()) {

@@ -94,8 +94,8 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
   EXPECT_EQ(query.counters().fcl_failures, 0);
 }
 
-/// A suspect changes who is named, not whether.
-TEST(World, ASuspectIsAskedFirst) {
+/// A likely pair changes who is named, not whether.
+TEST(World, TheLikelyPairIsAskedFirst) {
   const RobotModel robot = mixed_arm();
   Problem problem = problem_for(robot);
   problem.scene = mixed_scene();
@@ -105,14 +105,14 @@ TEST(World, ASuspectIsAskedFirst) {
   int named = 0, others = 0, none = 0;
   for (int k = 0; k < 3000; ++k) {
     const Config q = random.config(2.5);
-    const BodyPair suspect = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
-    const bool guilty = query.pair_below(q, suspect, 0.005);
-    const auto plain = query.first_below(q, 0.005), found = query.first_below(q, 0.005, suspect);
+    const BodyPair likely = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
+    const bool guilty = query.pair_below(q, likely, 0.005);
+    const auto plain = query.first_below(q, 0.005), found = query.first_below(q, 0.005, likely);
     ASSERT_EQ(plain.has_value(), found.has_value());
     if (!found) {
       ++none;
     } else if (guilty) {
-      ASSERT_EQ(*found, suspect);
+      ASSERT_EQ(*found, likely);
       ++named;
     } else {
       ASSERT_EQ(*found, *plain);

@@ -36,7 +36,7 @@ Angles run(const CircleKernels& kernels, const TripleCircle& m, double shift, co
   task.cos_phi = c.data();
   for (std::size_t sign = 0; sign < 2; ++sign)
     for (std::size_t j = 0; j < 3; ++j) task.q[sign][j] = result.out.data() + (sign * 3 + j) * n;
-  for (std::size_t sign = 0; sign < 2; ++sign) task.bar[sign] = result.out.data() + (6 + sign) * n;
+  for (std::size_t sign = 0; sign < 2; ++sign) task.mask[sign] = result.out.data() + (6 + sign) * n;
   kernels.solve_triple(task);
   return result;
 }

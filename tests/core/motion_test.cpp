@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "inner_posture.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/cubic_spline.hpp"
@@ -19,10 +20,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-Vector3d random_vector(Random& random, double size) {
-  return size * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
-}
 
 Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
   Waypoint to = from;
@@ -241,31 +238,27 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
 /// A path from a posture well inside the limits, and rows with arm angles that wander on a grid, as a lattice has them.
 struct Followed {
   Chain chain;
-  SrsArm arm;
+  ArmClass kind;
   std::optional<ToolPath> path;
   std::vector<TrajectoryRow> rows;
 };
 std::optional<Followed> followed(const TestRobot& robot, Random& random, const PathSmoothing& smooth) {
   Followed f;
   f.chain = arm_of(robot).chain;
-  f.arm = fit_srs(f.chain, robot.name);
-  Config q;
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = f.chain.limit[static_cast<std::size_t>(j)];
-    const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2;
-    q[j] = middle + random.uniform(-0.6, 0.6) + (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
-  }
+  f.kind = classify(f.chain, robot.name);
+  const SrsArm& arm = *f.kind.srs;
+  Config q = inner_posture(f.chain, random);
   f.path.emplace(random_waypoints(random, waypoint_of(f.chain.tool(q))), Resolution{.ds = 0.01, .dphi = 0.05, .dalpha = 0.1},
                  "test", Budget(), smooth);
   ArmPlane plane;
   double phi = 0;
-  const int branch = f.arm.branch(q);
+  const int branch = arm.branch(q);
   for (int i = 0; i < f.path->size(); ++i) {
     const Pose& tool = f.path->layer(i).tool;
-    plane = i == 0 ? first_plane(f.arm, tool) : carry_plane(f.arm, plane, tool);
-    if (reach_status(f.arm, plane.reach) != ReachStatus::kReachable) return std::nullopt;
-    phi = i == 0 ? plane.angle_of(f.arm.elbow_axis(q)) : phi + 0.05 * (random.below(3) - 1);
-    Config next = srs_ik(f.arm, elbow_circles(f.arm, plane, tool), phi, branch);
+    plane = i == 0 ? first_plane(arm, tool) : carry_plane(arm, plane, tool);
+    if (reach_status(arm, plane.reach) != ReachStatus::kReachable) return std::nullopt;
+    phi = i == 0 ? plane.angle_of(arm.elbow_axis(q)) : phi + 0.05 * (random.below(3) - 1);
+    Config next = srs_ik(arm, elbow_circles(arm, plane, tool), phi, branch);
     for (int j = 0; j < kDof; ++j) next[j] = q[j] + wrap_angle(next[j] - q[j]);
     if (i > 0 && (next - q).lpNorm<Eigen::Infinity>() > 0.3) return std::nullopt;
     q = next;
@@ -292,8 +285,8 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
     options.speed = random.coin() ? 0.05 : 0.25;
     options.rate = random.coin() ? 250 : 1000;
     if (random.coin()) options.turn_speed = 0.5;
-    const PathMotion motion(f->chain, f->arm, *f->path, f->rows);
-    const TimingResult result = time_path(motion, rates, options);
+    const auto motion = make_path_motion(f->chain, f->kind, *f->path, f->rows);
+    const TimingResult result = time_path(*motion, rates, options);
     if (!result.motion) continue;
     ++timed;
     const TimedPath& out = *result.motion;
@@ -352,7 +345,8 @@ TEST(TimePath, KeepsTheRatesOfTheJointsAndTheToolOnItsPath) {
 
 TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {
   const Chain chain = arm_of(data_robot("iiwa14")).chain;
-  const SrsArm arm = fit_srs(chain, "iiwa14");
+  const ArmClass kind = classify(chain, "iiwa14");
+  const SrsArm& arm = *kind.srs;
   const Config q = (Config() << 0.2, 0.6, -0.3, -1.2, 0.4, 0.9, 0.1).finished();
   const Waypoint first = waypoint_of(chain.tool(q));
   Limits limits;
@@ -371,7 +365,7 @@ TEST(TimePath, StartsAsBrisklyOnCoarseLayers) {
           {path.layer(i).s, phi, arm.branch(q),
            srs_ik(arm, elbow_circles(arm, planes[static_cast<std::size_t>(i)], path.layer(i).tool), phi, arm.branch(q))});
     const TimingResult result =
-        time_path(PathMotion(chain, arm, path, rows), rates, {.speed = 0.05, .turn_speed = {}, .rate = 250});
+        time_path(*make_path_motion(chain, kind, path, rows), rates, {.speed = 0.05, .turn_speed = {}, .rate = 250});
     ASSERT_TRUE(result.motion);
     durations.push_back(result.motion->duration);
   }

@@ -11,9 +11,9 @@ namespace swivel {
 namespace {
 
 void work(int depth) {
-  Span span("outer");
+  TraceSpan span("outer");
   span.count("depth", depth);
-  for (int k = 0; k < 3; ++k) const Span inner("inner");
+  for (int k = 0; k < 3; ++k) const TraceSpan inner("inner");
 }
 
 TEST(Timeline, RecordsEveryThreadsSpansInnerBeforeOuter) {

@@ -78,10 +78,10 @@ TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
     std::optional<ArcLattice> lattice(std::in_place, arm.chain, found.lock, path, problem);
     std::variant<ArcLattice::Rows, ArcLattice::Joints> unwrapped;
     for (int attempt = 0; attempt < 3; ++attempt) {
-      const auto togo = make_cost_to_go(*lattice);
-      togo->sweep(lattice->layers() - 1);
+      const auto cost_to_go = make_cost_to_go(*lattice);
+      cost_to_go->sweep(lattice->layers() - 1);
       std::int64_t expansions = 0;
-      const SlotPath slots = best_path(*togo, expansions);
+      const SlotPath slots = best_path(*cost_to_go, expansions);
       ASSERT_EQ(slots.size(), static_cast<std::size_t>(lattice->layers())) << name;
       unwrapped = lattice->unwrap(slots);
       if (std::holds_alternative<ArcLattice::Rows>(unwrapped)) break;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "formats.hpp"
 
-#include <cstdlib>
+#include <algorithm>
+#include <array>
+#include <cstring>
 
-#include "mutator.hpp"
 #include "robots.hpp"
+#include "swivel/io/motion.hpp"
+#include "swivel/io/placement.hpp"
+#include "swivel/io/shards.hpp"
 
 namespace swivel::test {
 
@@ -92,25 +96,193 @@ void prepare(const TempFolder& folder) {
   folder.write("problems/good.yaml", kProblem);
 }
 
-void fuzz(const char* name, const std::vector<Reader>& readers, int inputs, bool mild) {
-  const std::uint64_t first = seed(name);
-  const char* const keep = std::getenv("SWIVEL_FUZZ_KEEP");
-  for (const Reader& reader : readers) {
-    for (const std::string& good : reader.seeds) EXPECT_NO_THROW(reader.read(good)) << reader.name << ": " << good;
-    const Mutator mutator(reader.seeds, reader.words, mild);
-    const auto input = [&](int k) { return mutator.input(first * 1'000'003 + static_cast<std::uint64_t>(k)); };
-    const int count = inputs / static_cast<int>(readers.size());
-    const Tally tally = watch(count, kAllowance, [&](int k) { reader.read(input(k)); });
-    std::printf("%s: %d inputs, %d read, %d refused, %zu findings\n", reader.name, count, tally.accepted, tally.refused,
-                tally.findings.size());
-    EXPECT_GT(tally.accepted, count / 20);
-    EXPECT_GT(tally.refused, count / 20);
-    for (const Finding& finding : tally.findings) {
-      ADD_FAILURE() << reader.name << ", input " << finding.input << ": " << finding.what;
-      if (keep != nullptr)
-        std::ofstream(fs::path(keep) / (reader.name + std::to_string(finding.input)), std::ios::binary) << input(finding.input);
+namespace {
+
+std::string first_lines(std::string text, int lines) {
+  std::size_t end = 0;
+  while (lines-- > 0 && end < text.size()) end = std::min(text.find('\n', end), text.size() - 1) + 1;
+  return text.substr(0, end);
+}
+
+const char* const kDae = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="mm" meter="0.001"/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="15">0 0 0 1 0 0 0 0 2 0 3 0 1 1 1</float_array>
+<technique_common><accessor source="#pa" count="5" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="2"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 1 2 3</p></triangles>
+<polylist count="2"><input semantic="VERTEX" source="#v" offset="1"/><input semantic="NORMAL" source="#p" offset="0"/><vcount>3 4</vcount><p>0 0 0 1 0 2 0 0 0 1 0 4 0 3</p></polylist>
+<polygons count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 4 2 3</p></polygons>
+<tristrips count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3 4</p></tristrips>
+<trifans count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 3 4</p></trifans>
+</mesh></geometry></library_geometries>
+<library_controllers><controller id="c"><skin source="#g"/></controller></library_controllers>
+<library_nodes><node id="m"><scale>1 2 3</scale><instance_geometry url="#g"/></node></library_nodes>
+<library_visual_scenes><visual_scene id="s"><node id="n"><matrix>1 0 0 5 0 1 0 0 0 0 1 0 0 0 0 1</matrix><rotate>0 0 1 90</rotate><translate>1 2 3</translate>
+<instance_geometry url="#g"/><instance_controller url="#c"/><instance_node url="#m"/><node><instance_geometry url="#g"/></node></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>
+)";
+
+std::string bytes(const void* data, std::size_t size) {
+  return {static_cast<const char*>(data), size};
+}
+
+std::string binary_stl() {
+  std::string text(80, 'h');
+  const std::uint32_t count = 4;
+  text += bytes(&count, 4);
+  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, normal[3] = {0, 0, 0};
+  for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}) {
+    text += bytes(normal, 12);
+    for (const int corner : face) text += bytes(corners[corner], 12);
+    text += bytes("\0\0", 2);
+  }
+  return text;
+}
+
+const char* const kPly =
+    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar "
+    "red\nelement face 3\n"
+    "property list uchar int vertex_indices\nelement edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n"
+    "0 0 0 1\n0.1 0 0 2\n0 0.1 0 3\n0 0 0.1 4\n3 0 2 1\n3 0 1 3\n4 1 2 3 0\n0 1\n";
+
+std::string binary_ply(bool big) {
+  std::string text = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                     "_endian 1.0\nelement vertex 3\nproperty float x\nproperty double y\nproperty short z\nelement face "
+                     "2\nproperty list uchar int vertex_index\nend_header\n";
+  const auto put = [&](auto value) {
+    std::string raw = bytes(&value, sizeof value);
+    if (big) std::reverse(raw.begin(), raw.end());
+    text += raw;
+  };
+  for (int k = 0; k < 3; ++k) {
+    put(static_cast<float>(k == 1));
+    put(static_cast<double>(k == 2));
+    put(static_cast<std::int16_t>(k));
+  }
+  for (int face = 0; face < 2; ++face) {
+    put(static_cast<std::uint8_t>(3));
+    for (std::int32_t k = 0; k < 3; ++k) put((k + face) % 3);
+  }
+  return text;
+}
+
+const char* const kObj =
+    "# c\nmtllib m.mtl\no box\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.4 0.5 0 1\nvt 0 0\nvn 0 0 1\nusemtl m\ns off\nf 1/1/1 2/1/1 "
+    "3/1/1 4/1/1\n"
+    "f -5 -4 \\\n -3 -1 -2\nf 1//1 2//1 3//1\nl 1 2\np 1\n";
+
+}  // namespace
+
+std::vector<Reader> readers(const TempFolder& folder) {
+  const auto at = [&folder](const char* name, auto call) {
+    return [&folder, name, call](const std::string& text) { call(folder.write(name, text)); };
+  };
+  const auto mesh = [](const fs::path& file) {
+    io::MeshCache cache;
+    (void)io::load_mesh(file, Vector3d::Ones(), cache);
+  };
+  std::vector<Reader> all;
+  all.push_back({"problem",
+                 {kProblem, data("problems/experiment_a_start.yaml"), data("problems/experiment_b.yaml")},
+                 kYamlWords,
+                 at("problems/p.yaml", [](const fs::path& file) { (void)io::load_problem(file); })});
+  all.push_back({"urdf", {io::test::arm_urdf(), data("robots/iiwa14.urdf")}, kXmlWords, at("robot.urdf", [](const fs::path& file) {
+                   (void)io::load_robot(file);
+                 })});
+  all.push_back(
+      {"srdf",
+       {data("robots/iiwa14.srdf"),
+        "<robot name='a'><disable_default_collisions link='link_1'/><enable_collisions link1='link_1' link2='link_2'/></robot>"},
+       kXmlWords,
+       at("robot.srdf", [](const fs::path& file) { (void)io::load_robot(data_dir() / "robots" / "iiwa14.urdf", file); })});
+  all.push_back({"path",
+                 {first_lines(data("paths/door_polish.csv"), 30), "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n1,0,0,1,0,0,0\n"},
+                 {",", ",,", "\n", "0,0,0,1,0,0,0\n", "\""},
+                 at("path.csv", [](const fs::path& file) { (void)io::load_path(file); })});
+  const std::array<std::string, kDof> joints{"a", "b", "c", "d", "e", "f", "g,\"h\""};
+  PlanResult result;
+  result.joint_names = joints;
+  for (int k = 0; k < 5; ++k) result.trajectory.push_back({0.1 * k, 0.2, k, Config::Constant(0.1 * k)});
+  io::write_trajectory(folder.path() / "good.csv", result);
+  all.push_back({"trajectory",
+                 {TempFolder::read(folder.path() / "good.csv")},
+                 {",", "\"", "\n", "1e9,"},
+                 at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory(file, joints); })});
+  TimedPath motion;
+  for (int k = 0; k < 5; ++k)
+    motion.rows.push_back(
+        {0.1 * k, result.trajectory[static_cast<std::size_t>(k)], Config::Constant(1), Config::Constant(0.1 * k)});
+  const std::string timed = io::to_timed_csv(motion, joints);
+  all.push_back({"motion",
+                 {timed, TempFolder::read(folder.path() / "good.csv")},
+                 {",", "\"", "\n", "1e9,", first_lines(timed, 1)},
+                 at("motion.csv", [joints](const fs::path& file) { (void)io::load_trajectory_file(file, joints); })});
+  const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}}, {{"arm.urdf", 0x0123456789abcdef}}};
+  {
+    io::CampaignFile part(folder.path() / "good_results.csv", settings, {}, 100);
+    EpisodeRow row;
+    row.status = PlanStatus::kSolved;
+    row.cost = 1.5;
+    part.append(row);
+    row = {};
+    for (const char* reason : {"a \"b\", c", "joint step"}) {
+      ++row.episode;
+      row.failed_s = 0.25;
+      row.reason = reason;
+      part.append(row);
     }
   }
+  all.push_back({"campaign",
+                 {TempFolder::read(folder.path() / "good_results.csv.part")},
+                 {",", "\"", "\n", "0,solved,", "{", "}", "# swivel campaign "},
+                 at("results.csv.part", [&folder, settings](const fs::path&) {
+                   (void)io::CampaignFile(folder.path() / "results.csv", settings, {}, 100);
+                 })});
+  const auto shard = [&](const char* command, std::uint64_t total) {
+    return io::to_line({command, settings, {}, total, "p.yaml", "swivel plan p.yaml"});
+  };
+  const std::string long_text(1000, 'x');  // what is changed in a text is read as before
+  PlacementRow cell;
+  cell.by = long_text;
+  all.push_back({"shard",
+                 {shard("campaign", 2) + io::to_csv(std::vector{EpisodeRow(0, "a \"b\", c"), EpisodeRow(1, long_text)}, {}),
+                  shard("place", 1) + io::to_csv(std::vector{cell})},
+                 {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
+                 at("shard.csv", [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })});
+  Cut cut;
+  cut.layers = 99;
+  cut.first_layer = 3;
+  cut.windings = {{false, true}};
+  cut.witnesses.resize(2);
+  cut.witnesses[0].kind = Cause::Kind::kLimit;
+  cut.witnesses[0].joint = "a";
+  cut.witnesses[0].side = Cause::Side::kLower;
+  cut.witnesses[1].kind = Cause::Kind::kPair;
+  cut.witnesses[1].bodies = {"b", "c"};
+  cut.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}}, {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
+  for (int k = 0; k < 60; ++k)
+    cut.band.insert(cut.band.begin() + 1,
+                    {1008, {{k, k + 20}, {700, 900}}, {{{100, 200 + k}, k % 2}}, {{{5, 7}, {300, 310 + k}, 1, k}}});
+  std::string noted = io::to_json(cut);  // what is changed in a key that nobody reads is read as before
+  noted.insert(1, "\"note\":\"" + std::string(2 * noted.size(), 'x') + "\",");
+  all.push_back({"certificate",
+                 {io::to_json(cut), noted},
+                 {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
+                 at("certificate.json", [](const fs::path& file) { (void)io::load_cut(file); })});
+  all.push_back({"stl",
+                 {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
+                 {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"},
+                 at("a.stl", mesh)});
+  all.push_back({"obj", {kObj}, {"f 1 2 3\n", "v 1 2 3\n", " 1", " -1", "/", "\\\n", "f"}, at("a.obj", mesh)});
+  all.push_back({"ply",
+                 {kPly, binary_ply(false), binary_ply(true)},
+                 {"element face 1000\n", "element vertex 1\n", "property list uchar int vertex_indices\n", "property double x\n",
+                  "end_header\n", "comment ", "3 0 1 2\n"},
+                 at("a.ply", mesh)});
+  all.push_back({"dae", {kDae}, kXmlWords, at("a.dae", mesh)});
+  return all;
 }
 
 }  // namespace swivel::test

@@ -5,17 +5,10 @@
 #include <vector>
 
 #include "io_support.hpp"
-#include "watchdog.hpp"
 
 namespace swivel::test {
 
 using io::test::TempFolder;
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr Allowance kAllowance{5, 3072};  // the sanitizer keeps what was freed for a while
-#else
-constexpr Allowance kAllowance{5, 1024};
-#endif
 
 /// A format: good files, pieces of its syntax, and what reads it.
 struct Reader {
@@ -34,8 +27,7 @@ std::string data(const std::string& name);
 /// Puts into an empty folder what problems/*.yaml name: links to the data, problems/box.stl, problems/good.yaml.
 void prepare(const TempFolder& folder);
 
-/// Tries `inputs` mutated files, the same number of each format; every finding is a failure of the test. SWIVEL_FUZZ_KEEP: a folder
-/// where inputs with findings are kept. `mild`: see Mutator.
-void fuzz(const char* name, const std::vector<Reader>& readers, int inputs, bool mild);
+/// Of every format. Files are written into `folder`, a prepared one.
+std::vector<Reader> readers(const TempFolder& folder);
 
 }  // namespace swivel::test

@@ -122,12 +122,22 @@ std::pair<std::size_t, std::size_t> line(const std::string& text, Random& random
 std::string Mutator::input(std::uint64_t seed_value) const {
   Random random(seed_value);
   std::string text = one_of(seeds_, random);
+  change_some(text, random);
+  return text;
+}
+
+std::string Mutator::changed(std::string text, std::uint64_t seed_value) const {
+  Random random(seed_value);
+  change_some(text, random);
+  return text;
+}
+
+void Mutator::change_some(std::string& text, Random& random) const {
   for (int changes = 1 + random.below(3); changes > 0; --changes) {
     if (text.empty()) text = one_of(kAnyWords, random);
     change(text, random);
     text.resize(std::min(text.size(), kMostBytes));
   }
-  return text;
 }
 
 void Mutator::change(std::string& text, Random& random) const {

@@ -17,8 +17,11 @@ class Mutator {
 
   /// A seed with one to three changes.
   [[nodiscard]] std::string input(std::uint64_t seed_value) const;
+  /// The text with one to three changes.
+  [[nodiscard]] std::string changed(std::string text, std::uint64_t seed_value) const;
 
  private:
+  void change_some(std::string& text, Random& random) const;
   void change(std::string& text, Random& random) const;
 
   std::vector<std::string> seeds_, words_;

@@ -3,9 +3,10 @@
 // must end with an answer, a time-out, or an InputError. SWIVEL_TEST_TRIALS over 10 inputs (200 unless given).
 #include <gtest/gtest.h>
 
-#include "formats.hpp"
 #include "robots.hpp"
+#include "seed.hpp"
 #include "swivel/planner/planner.hpp"
+#include "trial.hpp"
 
 namespace swivel::test {
 namespace {

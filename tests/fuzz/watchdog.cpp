@@ -3,6 +3,7 @@
 
 #include <sys/mman.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,30 +25,43 @@ struct Progress {
   char what[500];
 };
 
-void note(Progress& progress, const char* kind, const std::string& what) {
-  std::snprintf(progress.what, sizeof progress.what, "%s: %s", kind, printable(what).c_str());
+void note(Progress& progress, const std::string& what) {
+  std::snprintf(progress.what, sizeof progress.what, "%s", what.c_str());
 }
 
-/// Empty where the input is fine.
+/// Of the processor, since the machine may do other things; what waits for something else may wait twenty times as long.
+void kill_after(int seconds) {
+  const itimerval timer{{0, 0}, {seconds, 0}};
+  setitimer(ITIMER_PROF, &timer, nullptr);
+  alarm(20 * static_cast<unsigned>(seconds));
+}
+
+/// Notes what is wrong with the input, if anything.
 void run_one(Progress& progress, const Allowance& allowance, const std::function<void(int)>& read) {
-  try {
-    read(progress.input);
-    ++progress.accepted;
-  } catch (const InputError& error) {
-    ++progress.refused;
-    const std::string message = error.what();
-    if (!is_valid_name(message) || message.find("allowed") == std::string::npos || message.size() > 4000)
-      note(progress, "not one printable line that says what is allowed", message);
-  } catch (const std::exception& error) {
-    note(progress, "thrown", error.what());
-  }
+  const Verdict verdict = judge([&] { read(progress.input); });
+  progress.accepted += verdict.accepted;
+  progress.refused += verdict.refused;
+  if (!verdict.wrong.empty()) note(progress, verdict.wrong);
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   if (static_cast<std::size_t>(usage.ru_maxrss) / 1024 > allowance.megabytes)
-    note(progress, "memory", std::to_string(usage.ru_maxrss / 1024) + " MB");
+    note(progress, "memory: " + std::to_string(usage.ru_maxrss / 1024) + " MB");
 }
 
 }  // namespace
+
+Verdict judge(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    const bool fine = is_valid_name(message) && message.find("allowed") != std::string::npos && message.size() <= 4000;
+    return {false, true, fine ? "" : "not one printable line that says what is allowed: " + printable(message)};
+  } catch (const std::exception& error) {
+    return {false, false, "thrown: " + printable(error.what())};
+  }
+  return {true, false, ""};
+}
 
 Tally watch(int count, const Allowance& allowance, const std::function<void(int)>& read) {
   void* const shared = mmap(nullptr, sizeof(Progress), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -65,7 +79,7 @@ Tally watch(int count, const Allowance& allowance, const std::function<void(int)
       setrlimit(RLIMIT_AS, &most);
 #endif
       for (; progress.input < count; ++progress.input) {
-        alarm(static_cast<unsigned>(allowance.seconds));  // kills
+        kill_after(allowance.seconds);
         run_one(progress, allowance, read);
         if (progress.what[0] != '\0') _exit(1);
       }
@@ -75,7 +89,9 @@ Tally watch(int count, const Allowance& allowance, const std::function<void(int)
     waitpid(child, &status, 0);
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) break;
     std::string what = progress.what;
-    if (WIFSIGNALED(status)) what = WTERMSIG(status) == SIGALRM ? "hangs" : std::string("crash: ") + strsignal(WTERMSIG(status));
+    if (WIFSIGNALED(status))
+      what = WTERMSIG(status) == SIGPROF || WTERMSIG(status) == SIGALRM ? "hangs"
+                                                                        : std::string("crash: ") + strsignal(WTERMSIG(status));
     if (what.empty()) what = "ended with " + std::to_string(WEXITSTATUS(status));  // as sanitizers do
     tally.findings.push_back({progress.input, what});
     ++progress.input;

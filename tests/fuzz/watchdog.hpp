@@ -7,9 +7,16 @@
 
 namespace swivel::test {
 
+/// How an input was answered: it may be read, or refused by an InputError of one printable line that says what is allowed.
+struct Verdict {
+  bool accepted = false, refused = false;
+  std::string wrong;  ///< empty where it is as it should be
+};
+[[nodiscard]] Verdict judge(const std::function<void()>& read);
+
 /// What one input may take.
 struct Allowance {
-  int seconds = 5;
+  int seconds = 5;               ///< of the processor
   std::size_t megabytes = 1024;  ///< resident, of the whole process
 };
 
@@ -22,8 +29,8 @@ struct Tally {
   std::vector<Finding> findings;
 };
 
-/// Calls read(k) for k in [0, count) in a child process. It may return (accepted) or throw an InputError of one printable line
-/// (refused). A crash, a hang, too much memory and everything else that is thrown is a finding; the next child goes on after it.
+/// Calls read(k) for k in [0, count) in a child process, and judges it. What is wrong, a crash, a hang and too much memory are
+/// findings; the next child goes on after them.
 [[nodiscard]] Tally watch(int count, const Allowance& allowance, const std::function<void(int)>& read);
 
 }  // namespace swivel::test

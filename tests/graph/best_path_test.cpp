@@ -17,15 +17,15 @@ using namespace test;
 struct PlainLattice {
   PlainLattice(const Lattice& lattice, const Verdicts& verdicts) : lattice_(lattice), verdicts_(verdicts) {
     nodes.resize(lattice.layers());
-    togo.resize(lattice.layers());
+    cost_to_go.resize(lattice.layers());
     for (int layer = lattice.layers() - 1; layer >= 0; --layer) {
       lattice.layer_nodes(layer, nodes[layer]);
       std::erase_if(nodes[layer], [&](const auto& node) { return verdicts.node(layer, node.slot) == Verdict::kRemoved; });
       for (std::size_t a = 0; a < nodes[layer].size(); ++a) {
         double least = layer + 1 == lattice.layers() ? 0 : kUnreachable;
         for (std::size_t b = 0; layer + 1 < lattice.layers() && b < nodes[layer + 1].size(); ++b)
-          least = std::min(least, cost(layer, a, b) + togo[layer + 1][b]);
-        togo[layer].push_back(least);
+          least = std::min(least, cost(layer, a, b) + cost_to_go[layer + 1][b]);
+        cost_to_go[layer].push_back(least);
       }
     }
   }
@@ -41,25 +41,25 @@ struct PlainLattice {
   /// would.
   [[nodiscard]] SlotPath descend(int& ties) const {
     SlotPath path;
-    double left = togo[0].empty() ? kUnreachable : *std::min_element(togo[0].begin(), togo[0].end());
+    double left = cost_to_go[0].empty() ? kUnreachable : *std::min_element(cost_to_go[0].begin(), cost_to_go[0].end());
     if (left == kUnreachable) return path;
     std::size_t here = 0;
     for (int layer = 0; layer < lattice_.layers(); ++layer) {
       std::optional<std::size_t> first;
       for (std::size_t b = 0; b < nodes[layer].size(); ++b) {
-        if ((layer == 0 ? 0 : cost(layer - 1, here, b)) + togo[layer][b] != left) continue;
+        if ((layer == 0 ? 0 : cost(layer - 1, here, b)) + cost_to_go[layer][b] != left) continue;
         if (first) ++ties;
         if (!first) first = b;
       }
       here = first.value();
-      left = togo[layer][here];
+      left = cost_to_go[layer][here];
       path.push_back(nodes[layer][here].slot);
     }
     return path;
   }
 
   std::vector<std::vector<Lattice::Node>> nodes;
-  std::vector<std::vector<double>> togo;
+  std::vector<std::vector<double>> cost_to_go;
 
  private:
   const Lattice& lattice_;
@@ -88,27 +88,28 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     problem.cost.metric = random.coin() ? CostMetric::kL2 : CostMetric::kMax;
     if (random.coin(0.2)) problem.cost.weights = {0, 0, 0, 0, 0, 0, 0};  // all paths are equal, the first one wins
     if (random.coin(0.3)) problem.start = q0;
+    problem.resolution.arcs = trial % 2 == 1;
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
     const SrsLattice lattice(arm.chain, srs, path, problem);
-    const auto togo = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
-    togo->sweep(lattice.layers() - 1);
+    const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
+    cost_to_go->sweep(lattice.layers() - 1);
     for (int round = 0; round < 4; ++round) {
       const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
                                robot.name + " round " + std::to_string(round);
-      const SlotPath wanted = PlainLattice(lattice, togo->verdicts()).descend(ties);
+      const SlotPath wanted = PlainLattice(lattice, cost_to_go->verdicts()).descend(ties);
       std::int64_t expansions = 0;
-      ASSERT_EQ(best_path(*togo, expansions), wanted) << what;
+      ASSERT_EQ(best_path(*cost_to_go, expansions), wanted) << what;
       ++(wanted.empty() ? none : found);
       if (wanted.empty()) break;
       ASSERT_EQ(expansions, lattice.layers()) << what;  // no vertex beside the path
-      const double before = togo->best();
+      const double before = cost_to_go->best();
       const int layer = random.below(lattice.layers() - 1);
       if (random.coin())
-        togo->verdicts().remove_node(layer, wanted[layer]);
+        cost_to_go->verdicts().remove_node(layer, wanted[layer]);
       else
-        togo->remove_edge(layer, wanted[layer], wanted[layer + 1]);
-      togo->repair();
-      changed += togo->best() != before;
+        cost_to_go->remove_edge(layer, wanted[layer], wanted[layer + 1]);
+      cost_to_go->repair();
+      changed += cost_to_go->best() != before;
     }
   }
   std::printf("%d paths, %d lattices without one; %d ties, %d removals changed the optimum\n", found, none, ties, changed);

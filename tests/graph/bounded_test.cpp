@@ -31,6 +31,7 @@ Problem random_problem(const TestRobot& robot, const Chain& chain, Random& rando
   if (random.coin())
     for (double& weight : problem.cost.weights) weight = random.coin(0.1) ? 0 : random.uniform(0.1, 10);
   if (random.coin()) problem.start = q0;
+  problem.resolution.arcs = layers % 2 == 1;
   return problem;
 }
 
@@ -73,11 +74,11 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       whole_ik += whole.ik_nodes();
       bounded_ik += bounded.ik_nodes();
 
-      const ChordBound chords(lattice);
+      const CoarseBound bound(lattice);
       const auto come = cost_to_come(whole);
-      ASSERT_LE(chords.best(), whole.best());
+      ASSERT_LE(bound.best(), whole.best());
       for (int layer = 0; layer < lattice.layers(); ++layer)
-        for (int slot = 0; const float* row = chords.row(layer) ? chords.row(layer) + slot : nullptr; ++slot) {
+        for (int slot = 0; const float* row = bound.row(layer) ? bound.row(layer) + slot : nullptr; ++slot) {
           if (slot == lattice.width()) break;
           const double cost = come[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
           ASSERT_LE(*row, cost) << robot.name << " trial " << trial << " layer " << layer << " slot " << slot;
@@ -107,21 +108,21 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         const int layer = random.below(lattice.layers()), slot = best[static_cast<std::size_t>(layer)];
         const int kind = random.below(4);
         const int reach = random.below(lattice.angles() / 2);
-        for (GridCostToGo* togo : {&whole, &bounded}) {
+        for (GridCostToGo* cost_to_go : {&whole, &bounded}) {
           if (kind == 0 && layer > 0) {
-            togo->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
+            cost_to_go->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
           } else if (kind == 1) {
             std::vector<int> alike;
             lattice.alike(layer, slot, 1u << 4, alike);
-            for (const int like : alike) togo->verdicts().remove_node(layer, like);
+            for (const int like : alike) cost_to_go->verdicts().remove_node(layer, like);
           } else {  // a blob of arm angles, over some layers
             for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
               for (int k = -reach; k <= reach; ++k) {
                 const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
-                togo->verdicts().remove_node(i, lattice.label_of(slot) * n + j);
+                cost_to_go->verdicts().remove_node(i, lattice.sheet_of(slot) * n + j);
               }
           }
-          togo->repair();
+          cost_to_go->repair();
         }
         changed += whole.best() != before;
       }
@@ -208,52 +209,52 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
                            .unit = unit,
                            .metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax,
                            .wraps = random.coin()};
-    RelaxTask<float> chord{.n = n,
-                           .offsets = offsets,
-                           .from = {},
-                           .to = {},
-                           .value = nullptr,
-                           .best = nullptr,
-                           .scale = {},
-                           .bound = {},
-                           .turn = {},
-                           .unit = static_cast<float>(unit),
-                           .metric = task.metric,
-                           .wraps = task.wraps};
+    RelaxTask<float> coarse{.n = n,
+                            .offsets = offsets,
+                            .from = {},
+                            .to = {},
+                            .value = nullptr,
+                            .best = nullptr,
+                            .scale = {},
+                            .bound = {},
+                            .turn = {},
+                            .unit = static_cast<float>(unit),
+                            .metric = task.metric,
+                            .wraps = task.wraps};
     std::array<std::vector<float>, kDof> chord_from, chord_to;
-    const std::vector<float> chord_value(value.begin(), value.end());
+    const std::vector<float> coarse_value(value.begin(), value.end());
     for (std::size_t j = 0; j < kDof; ++j) {
       chord_from[j].assign(from[j].begin(), from[j].end());
       chord_to[j].assign(to[j].begin(), to[j].end());
       task.from[j] = from[j].data();
       task.to[j] = to[j].data();
-      chord.from[j] = chord_from[j].data();
-      chord.to[j] = chord_to[j].data();
+      coarse.from[j] = chord_from[j].data();
+      coarse.to[j] = chord_to[j].data();
       task.scale[j] = idle || random.coin(0.2) ? 0 : unit * random.uniform(0, 3);
-      chord.scale[j] = static_cast<float>(task.scale[j]);
+      coarse.scale[j] = static_cast<float>(task.scale[j]);
       task.bound[j] = random.uniform(1, 9);
       task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
-      chord.turn[j] = static_cast<float>(task.turn[j]);
+      coarse.turn[j] = static_cast<float>(task.turn[j]);
     }
-    chord.value = chord_value.data();
+    coarse.value = coarse_value.data();
     idle_runs += idle;
     std::vector<std::vector<double>> best;
-    std::vector<std::vector<float>> chord_best;
+    std::vector<std::vector<float>> coarse_best;
     const std::vector<double> plain = relaxed_plainly(task);
     for (const double found : plain) (found == kUnreachable ? barred : reached) += 1;
     for (const RelaxKernels* kernels : units) {
       best.emplace_back(static_cast<std::size_t>(n), kUnreachable);
-      chord_best.emplace_back(static_cast<std::size_t>(n), std::numeric_limits<float>::infinity());
+      coarse_best.emplace_back(static_cast<std::size_t>(n), std::numeric_limits<float>::infinity());
       task.best = best.back().data();
-      chord.best = chord_best.back().data();
+      coarse.best = coarse_best.back().data();
       kernels->relax(task);
-      kernels->chord(chord);
+      kernels->coarse(coarse);
       ASSERT_EQ(best.back(), plain);
-      ASSERT_EQ(chord_best.back(), chord_best.front());
+      ASSERT_EQ(coarse_best.back(), coarse_best.front());
       ++runs;
     }
-    // A chord allows every step, so it is nowhere dearer, and single precision loses little.
-    for (std::size_t k = 0; k < best[0].size(); ++k) ASSERT_LE(chord_best[0][k], best[0][k] + 1e-4 * unit);
+    // A coarse step allows every step, so it is nowhere dearer, and single precision loses little.
+    for (std::size_t k = 0; k < best[0].size(); ++k) ASSERT_LE(coarse_best[0][k], best[0][k] + 1e-4 * unit);
   }
   std::printf("%zu units, %d runs, %d nodes reached, %d not\n", units.size(), runs, reached, barred);
   EXPECT_GT(reached, runs);

@@ -8,6 +8,7 @@
 #include "grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
+#include "window.hpp"
 
 namespace swivel {
 namespace {
@@ -24,10 +25,9 @@ struct Edge {
 std::vector<Edge> brute_force(const SrsLattice& lattice, int layer, int a, const std::vector<std::optional<Config>>& here,
                               const std::vector<std::optional<Config>>& next) {
   std::vector<Edge> edges;
-  const double reach = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
   for (int b = 0; b < lattice.width(); ++b) {
     if (!here[static_cast<std::size_t>(a)] || !next[static_cast<std::size_t>(b)]) continue;
-    if (std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) > reach) continue;
+    if (!window_allows(lattice, layer, a, b)) continue;
     Config delta = *next[static_cast<std::size_t>(b)] - *here[static_cast<std::size_t>(a)];
     bool allowed = true;
     for (int j = 0; j < kDof; ++j) {
@@ -116,6 +116,7 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
         problem.resolution = {.ds = 10, .dphi = random.uniform(0.08, 0.3), .dalpha = 10};
         problem.limits.arm_slope = random.uniform(0.0, 0.1);
         problem.limits.joint_step = random.uniform(0.3, 0.7);
+        problem.resolution.arcs = trial % 2 == 1;
         const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
         const SrsLattice lattice(arm.chain, srs, path, problem);
         std::vector<std::optional<Config>> here, next;
@@ -123,14 +124,14 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
           here.push_back(lattice.node(0, slot));
           next.push_back(lattice.node(1, slot));
         }
-        GridCostToGo togo(lattice);
-        togo.sweep(1);
-        const ImplicitLattice graph(togo, kUnreachable);
+        GridCostToGo cost_to_go(lattice);
+        cost_to_go.sweep(1);
+        const ImplicitLattice graph(cost_to_go, kUnreachable);
         for (int a = 0; a < lattice.width(); ++a) {
           const std::vector<Edge> wanted = brute_force(lattice, 0, a, here, next);
           double least = kUnreachable;
           for (const Edge& edge : wanted) least = std::min(least, edge.cost);
-          ASSERT_EQ(togo.at(0, a), least) << robot.name << " " << name;  // the vector sweep sees the same edges
+          ASSERT_EQ(cost_to_go.at(0, a), least) << robot.name << " " << name;  // the vector sweep sees the same edges
           if (!here[static_cast<std::size_t>(a)]) continue;
           std::vector<Edge> found;
           for (const auto& edge : graph.expand(graph.vertex(0, a))) found.push_back({graph.slot_of(edge.target), edge.cost});
@@ -139,14 +140,14 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
           total += static_cast<std::int64_t>(found.size());
           for (const Edge& edge : found) {
             const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
-            if (lattice.label_of(a) != lattice.label_of(edge.b)) ++changing[place];
+            if (lattice.sheet_of(a) != lattice.sheet_of(edge.b)) ++changing[place];
             for (int bit = 0; bit < 3; ++bit) flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
-            windings += change == 0 && lattice.label_of(a) != lattice.label_of(edge.b);
+            windings += change == 0 && lattice.sheet_of(a) != lattice.sheet_of(edge.b);
           }
         }
       }
   }
-  std::printf("%lld edges; label-changing:", static_cast<long long>(total));
+  std::printf("%lld edges; sheet-changing:", static_cast<long long>(total));
   for (const auto& [place, count] : changing) std::printf(" %s %lld", places.at(place), static_cast<long long>(count));
   std::printf("; shoulder %lld, wrist %lld, elbow %lld, winding %lld\n", static_cast<long long>(flips[0]),
               static_cast<long long>(flips[1]), static_cast<long long>(flips[2]), static_cast<long long>(windings));
@@ -158,22 +159,22 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
 }
 
 /// Cost-to-go of the whole lattice by the definition: every pair, minus removed nodes and edges.
-std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice, const GridCostToGo& togo) {
+std::vector<std::vector<double>> plain_cost_to_go(const SrsLattice& lattice, const GridCostToGo& cost_to_go) {
   std::vector<std::vector<double>> g(static_cast<std::size_t>(lattice.layers()),
                                      std::vector<double>(static_cast<std::size_t>(lattice.width()), kUnreachable));
   std::vector<std::optional<Config>> next;
-  for (int layer = togo.goal_layer(); layer >= 0; --layer) {
+  for (int layer = cost_to_go.goal_layer(); layer >= 0; --layer) {
     std::vector<std::optional<Config>> here;
     for (int slot = 0; slot < lattice.width(); ++slot)
-      here.push_back(togo.verdicts().node(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
+      here.push_back(cost_to_go.verdicts().node(layer, slot) == Verdict::kRemoved ? std::nullopt : lattice.node(layer, slot));
     for (int a = 0; a < lattice.width(); ++a) {
       double& value = g[static_cast<std::size_t>(layer)][static_cast<std::size_t>(a)];
-      if (layer == togo.goal_layer()) {
+      if (layer == cost_to_go.goal_layer()) {
         if (here[static_cast<std::size_t>(a)]) value = 0;
         continue;
       }
       for (const Edge& edge : brute_force(lattice, layer, a, here, next))
-        if (togo.verdicts().edge(layer, a, edge.b) != Verdict::kRemoved)
+        if (cost_to_go.verdicts().edge(layer, a, edge.b) != Verdict::kRemoved)
           value = std::min(value, edge.cost + g[static_cast<std::size_t>(layer) + 1][static_cast<std::size_t>(edge.b)]);
     }
     next.swap(here);
@@ -197,30 +198,31 @@ TEST(CostToGo, StaysExactUnderRemovals) {
       problem.resolution = {.ds = length / 5, .dphi = robot.name == "windings" ? 0.4 : random.uniform(0.1, 0.3), .dalpha = 10};
       problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
       if (random.coin()) problem.start = q0;
+      problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      GridCostToGo togo(lattice);
-      togo.sweep(lattice.layers() - 1);
+      GridCostToGo cost_to_go(lattice);
+      cost_to_go.sweep(lattice.layers() - 1);
       for (int round = 0; round < 6; ++round) {
-        const auto wanted = plain_cost_to_go(lattice, togo);
+        const auto wanted = plain_cost_to_go(lattice, cost_to_go);
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int slot = 0; slot < lattice.width(); ++slot)
-            ASSERT_EQ(togo.at(layer, slot), wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
+            ASSERT_EQ(cost_to_go.at(layer, slot), wanted[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)])
                 << robot.name << " trial " << trial << " round " << round << " layer " << layer << " slot " << slot;
         ++rounds;
-        if (togo.best() == kUnreachable) break;
-        const double before = togo.best();
+        if (cost_to_go.best() == kUnreachable) break;
+        const double before = cost_to_go.best();
         // Remove a blob about the best path, and an edge of it.
-        ImplicitLattice graph(togo);
+        ImplicitLattice graph(cost_to_go);
         int slot = 0;
         for (int s = 0; s < lattice.width(); ++s)
-          if (togo.at(0, s) == before) slot = s;
+          if (cost_to_go.at(0, s) == before) slot = s;
         const int cut = random.below(lattice.layers());
         for (int layer = 0; layer <= cut && layer < lattice.layers(); ++layer) {
           if (layer == cut) {
             for (int k = 0; k < 3; ++k) {
               const int j = (lattice.angle_of(slot) + k) % lattice.angles();
-              togo.verdicts().remove_node(layer, lattice.label_of(slot) * lattice.angles() + j);
+              cost_to_go.verdicts().remove_node(layer, lattice.sheet_of(slot) * lattice.angles() + j);
               ++removed_nodes;
             }
             break;
@@ -229,19 +231,19 @@ TEST(CostToGo, StaysExactUnderRemovals) {
           if (edges.empty()) break;
           const int next = graph.slot_of(edges[0].target);
           if (random.coin(0.3)) {
-            togo.remove_edge(layer, slot, next);
+            cost_to_go.remove_edge(layer, slot, next);
             ++removed_edges;
           }
           slot = next;
         }
-        togo.repair();
-        changed += togo.best() != before;
+        cost_to_go.repair();
+        changed += cost_to_go.best() != before;
       }
       // A fresh sweep with the same removals agrees with the repaired values.
       std::vector<double> repaired;
-      for (int s = 0; s < lattice.width(); ++s) repaired.push_back(togo.at(0, s));
-      togo.sweep(togo.goal_layer());
-      for (int s = 0; s < lattice.width(); ++s) ASSERT_EQ(togo.at(0, s), repaired[static_cast<std::size_t>(s)]);
+      for (int s = 0; s < lattice.width(); ++s) repaired.push_back(cost_to_go.at(0, s));
+      cost_to_go.sweep(cost_to_go.goal_layer());
+      for (int s = 0; s < lattice.width(); ++s) ASSERT_EQ(cost_to_go.at(0, s), repaired[static_cast<std::size_t>(s)]);
     }
   }
   std::printf("%d rounds, %d nodes and %d edges removed, optimum changed %d times\n", rounds, removed_nodes, removed_edges,
@@ -266,6 +268,7 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
       problem.limits.arm_slope = 0.7 / problem.resolution.ds;
       problem.limits.joint_step = 0.8;
       if (random.coin()) problem.start = q0;
+      problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
       std::vector<std::vector<std::optional<Config>>> nodes(static_cast<std::size_t>(lattice.layers()));
@@ -285,10 +288,10 @@ TEST(CostToGo, DeepestReachableIsThatOfBruteForce) {
         if (std::find(ahead.begin(), ahead.end(), 1) != ahead.end()) deepest = layer + 1;
         reached.swap(ahead);
       }
-      GridCostToGo togo(lattice);
-      EXPECT_EQ(togo.deepest_reachable(), deepest) << robot.name;
-      togo.sweep(lattice.layers() - 1);
-      EXPECT_EQ(togo.best() == kUnreachable, deepest + 1 < lattice.layers());
+      GridCostToGo cost_to_go(lattice);
+      EXPECT_EQ(cost_to_go.deepest_reachable(), deepest) << robot.name;
+      cost_to_go.sweep(lattice.layers() - 1);
+      EXPECT_EQ(cost_to_go.best() == kUnreachable, deepest + 1 < lattice.layers());
       blocked += deepest + 1 < lattice.layers();
     }
   }

@@ -95,6 +95,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       if (random.coin(0.3))
         for (double& weight : problem.cost.weights) weight = random.coin(0.2) ? 0 : random.uniform(0.1, 5);
       if (!open && random.coin()) problem.start = q0;
+      problem.resolution.arcs = trial % 2 == 1;
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
 
@@ -171,24 +172,26 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int k = -reach; k <= reach; ++k) {
             const int n = lattice.angles(), slot = best[static_cast<std::size_t>(layer)];
-            const int there = lattice.label_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
+            const int there = lattice.sheet_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
             if (whole.verdicts().knows_cost(layer, there) || !lattice.node(layer, there) || !random.coin(share)) continue;
             const double cost = random.coin(0.2) ? 0 : lattice.rounded_cost(random.uniform(0, scale));
             costs[static_cast<std::size_t>(layer)][static_cast<std::size_t>(there)] = cost;
             raised += cost > 0;
-            each([&](CostToGo& togo, const auto& number) { togo.verdicts().set_cost(layer, number(layer, there), cost); });
+            each([&](CostToGo& cost_to_go, const auto& number) {
+              cost_to_go.verdicts().set_cost(layer, number(layer, there), cost);
+            });
           }
         const int layer = random.below(lattice.layers());
         const auto i = static_cast<std::size_t>(layer);
         if (random.coin(0.3)) {
-          each([&](CostToGo& togo, const auto& number) { togo.verdicts().remove_node(layer, number(layer, best[i])); });
+          each([&](CostToGo& cost_to_go, const auto& number) { cost_to_go.verdicts().remove_node(layer, number(layer, best[i])); });
         } else if (layer > 0 && random.coin(0.4)) {
-          each([&](CostToGo& togo, const auto& number) {
-            togo.remove_edge(layer - 1, number(layer - 1, best[i - 1]), number(layer, best[i]));
+          each([&](CostToGo& cost_to_go, const auto& number) {
+            cost_to_go.remove_edge(layer - 1, number(layer - 1, best[i - 1]), number(layer, best[i]));
           });
         }
         const double before = whole.best();
-        each([](CostToGo& togo, const auto&) { togo.repair(); });
+        each([](CostToGo& cost_to_go, const auto&) { cost_to_go.repair(); });
         ASSERT_GE(whole.best(), before) << what;
         dearer += whole.best() > before;
       }
@@ -203,8 +206,8 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
   }
   std::printf("%d rounds (%d on lists), %d costs, best path dearer %d times and another %d times, %d ended without one\n", rounds,
               listed_rounds, raised, dearer, moved, ended);
-  EXPECT_GT(rounds, 300);
-  EXPECT_GT(listed_rounds, 60);
+  EXPECT_GT(rounds, at_least(300));
+  EXPECT_GT(listed_rounds, at_least(60));
   EXPECT_GT(raised, 4 * rounds);
   EXPECT_GT(dearer, rounds / 4);
   EXPECT_GT(moved, rounds / 4);

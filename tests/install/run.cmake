@@ -58,10 +58,21 @@ if(SHARED)
   endif()
 endif()
 
+if(PYTHON)  # the module finds shared libraries from where it lies
+  file(GLOB_RECURSE package ${prefix}/*/__init__.py)
+  get_filename_component(folder ${package} DIRECTORY)
+  get_filename_component(folder ${folder} DIRECTORY)
+  run(printed ${CMAKE_COMMAND} -E env PYTHONPATH=${folder} PYTHONDONTWRITEBYTECODE=1 ${PYTHON} -c
+      "import swivel\nprint(swivel.__file__, swivel.Box([1, 2, 3]))")
+  if(NOT printed STREQUAL "${package} Box([1.0, 2.0, 3.0])\n")
+    message(SEND_ERROR "the Python package printed ${printed}")
+  endif()
+endif()
+
 # By CMake, without Boost and with it.
 foreach(boost IN ITEMS OFF ON)
   run(_ ${CMAKE_COMMAND} -G Ninja -S ${consumer} -B ${SCRATCH}/cmake_${boost} -DCMAKE_PREFIX_PATH=${prefix} -DCMAKE_CXX_COMPILER=${CXX}
-      -DMAIN=${main} -DBOOST=${boost})
+      -DMAIN=${main} -DBOOST=${boost} -DVERSION=${VERSION})
   run(_ ${CMAKE_COMMAND} --build ${SCRATCH}/cmake_${boost})
 endforeach()
 run(printed ${SCRATCH}/cmake_OFF/consumer)

@@ -127,15 +127,18 @@ TEST(Files, InputsAreNotedWithTheirContents) {
 TEST(Files, CampaignsKnowTheirSettings) {
   const TempFolder folder;
   const fs::path csv = folder.path() / "r.csv";
-  const CampaignSettings settings{{{"version", "1"}, {"seed", "2"}}, {{"the problem file", 3}, {"a,\"b\".stl", 4}}};
+  const RunSettings settings{
+      {{"version", "1"}, {"seed", "2"}}, {{"the problem file", 3}, {"a,\"b\".stl", 4}}, {"a,\"b\".x", "c.yaw"}};
   const Shard shard;
   std::string written;
   {
     CampaignFile file(csv, settings, shard, 3);
-    file.append(EpisodeRow(0, std::string("broken, \"twice\"")));
+    EpisodeRow row(0, std::string("broken, \"twice\""));
+    row.offsets = {0.1, -2.5e-17};
+    file.append(row);
     written = file.csv();
   }
-  CampaignSettings other = settings;
+  RunSettings other = settings;
   other.values[0].second = "2";
   expect_message(input_error([&] { CampaignFile(csv, other, shard, 3); }), {"r.csv.part:1", "begun with version 1, this is 2"});
   other = settings;
@@ -151,10 +154,15 @@ TEST(Files, CampaignsKnowTheirSettings) {
   ASSERT_EQ(file.rows().size(), 1u);
   EXPECT_EQ(file.rows()[0].status, PlanStatus::kError);
   EXPECT_EQ(file.rows()[0].reason, "broken, \"twice\"");
+  EXPECT_EQ(file.rows()[0].offsets, (std::vector<double>{0.1, -2.5e-17}));
   EXPECT_EQ(file.csv(), written);
+  const EpisodeTable table = load_rows(folder.write("whole.csv", written));
+  EXPECT_EQ(table.coordinates, settings.coordinates);
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.rows[0].offsets, file.rows()[0].offsets);
   expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"another campaign"});
   file.finish();
-  EXPECT_EQ(count_files(folder.path()), 0u);
+  EXPECT_EQ(count_files(folder.path()), 1u);
   for (const char* line : {"{}", "{\"settings\": {}}", "[]", "{\"settings\": 1, \"files\": 2}", "no JSON"}) {
     std::ofstream(csv.string() + ".part") << "# swivel campaign " << line << '\n';
     expect_message(input_error([&] { CampaignFile(csv, settings, shard, 3); }), {"r.csv.part:1", "its settings cannot be read"});

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
 
 #include "../support/seed.hpp"
 #include "io_support.hpp"
@@ -184,6 +185,30 @@ TEST(Mesh, HeadersThatPromiseTooMuchAreBadInput) {
   expect_message(input_error([&] { (void)load(folder.write("many.stl", stl)); }), {"many.stl", "cut short"});
 }
 
+TEST(Mesh, WhatTakesManyTimesItsBytesIsBadInput) {
+  const TempFolder folder;
+  const auto message = [&](const char* name, const std::string& text) {
+    return input_error([&] { (void)load(folder.write(name, text)); });
+  };
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", half(std::size_t{8} << 20, ' ');
+  EXPECT_EQ(load(folder.write("a.obj", corners + "#" + std::string((std::size_t{16} << 20) - 2, ' ')))->triangles.size(), 1u);
+  expect_message(message("a.obj", corners + "#" + half + half), {"a.obj:5", "too long", "16 MiB"});
+  expect_message(message("a.obj", corners + "f" + half + "\\\n" + half), {"a.obj:5", "too long", "16 MiB"});
+  std::string elements = "ply\nformat ascii 1.0\n", properties = elements + "element vertex 0\n";
+  for (int k = 0; k < 1'000; ++k) elements += "element a 0\n", properties += "property int a\n";
+  EXPECT_EQ(message("a.ply", elements + "end_header\n").find("too many elements"), std::string::npos);
+  expect_message(message("a.ply", elements + "element a 0\nend_header\n"),
+                 {"a.ply:1003", "too many elements and properties", "1000"});
+  expect_message(message("a.ply", properties + "end_header\n"), {"a.ply:1003", "too many elements and properties"});
+  const std::string face =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
+      "property list int int vertex_index\nend_header\n0 0 0 1 0 0 0 1 0 ";
+  std::string ones;
+  for (int k = 0; k < 2'000'003; ++k) ones += "1 ";
+  expect_message(message("a.ply", face + "2000003 " + ones), {"2000003 corners", "2000000 triangles"});
+  EXPECT_EQ(load(folder.write("a.ply", face + "3 0 1 2 "))->triangles.size(), 1u);
+}
+
 TEST(Mesh, DaeWithABrokenIndexIsBadInput) {
   const TempFolder folder;
   const std::string good = dae("Z_UP", "", kIdentity);
@@ -219,7 +244,48 @@ TEST(Mesh, DaeInstancesOfInstancesAreBounded) {
   }
   std::string text = with(dae("Z_UP", "", kIdentity), "<instance_geometry url=\"#g\"/>", "<instance_node url='#n0'/>");
   text = with(text, "<library_visual_scenes>", "<library_nodes>" + nodes + "</library_nodes><library_visual_scenes>");
-  expect_message(input_error([&] { (void)load(folder.write("doubling.dae", text)); }), {"too many nodes"});
+  expect_message(input_error([&] { (void)load(folder.write("doubling.dae", text)); }), {"too many parts"});
+}
+
+/// Nodes that are there 65,536 times, with `inside` each.
+std::string doubling_dae(const std::string& inside) {
+  std::string nodes;
+  for (int k = 0; k < 16; ++k) {
+    const std::string next = "<instance_node url='#n" + std::to_string(k + 1) + "'/>";
+    nodes += "<node id='n" + std::to_string(k) + "'>" + next + next + "</node>";
+  }
+  const std::string text = with(dae("Z_UP", "", kIdentity), "<instance_geometry url=\"#g\"/>", "<instance_node url='#n0'/>");
+  return with(text, "<library_visual_scenes>",
+              "<library_nodes>" + nodes + "<node id='n16'>" + inside + "</node></library_nodes><library_visual_scenes>");
+}
+
+// Each once took minutes.
+TEST(Mesh, DaeThatRepeatsItselfIsReadSoon) {
+  const TempFolder folder;
+  const std::clock_t begin = std::clock();
+  const auto message = [&](const std::string& text) { return input_error([&] { (void)load(folder.write("a.dae", text)); }); };
+  std::string instances, scales;
+  for (int k = 0; k < 3'000; ++k) instances += "<instance_geometry url='#none'/>", scales += "<scale>1 1 1</scale>";
+  const std::string nothing = "<library_geometries><geometry id=\"none\"/>";
+  expect_message(message(with(doubling_dae(instances), "<library_geometries>", nothing)), {"too many parts"});
+  expect_message(message(doubling_dae(scales)), {"too many parts"});
+  const std::string blank(1 << 20, ' ');
+  EXPECT_EQ(
+      load(folder.write("a.dae", doubling_dae("<scale>1 1" + blank + "1</scale><instance_geometry url='#g'/>")))->triangles.size(),
+      65'536u);
+  std::string sources, numbers;
+  for (int k = 0; k < 300'000; ++k) numbers += "1 ";
+  for (int k = 0; k < 2'000; ++k) {
+    const std::string n = std::to_string(k);
+    sources += "<source id='p" + n +
+               "'><technique_common><accessor source='#many' count='1' stride='3'/></technique_common></source><vertices id='v" +
+               n + "'><input semantic='POSITION' source='#p" + n + "'/></vertices><triangles><input semantic='VERTEX' source='#v" +
+               n + "'/><p>0 0 0</p></triangles>";
+  }
+  const std::string text =
+      with(dae("Z_UP", "", kIdentity), "<mesh>", "<mesh><source><float_array id='many'>" + numbers + "</float_array></source>");
+  EXPECT_EQ(load(folder.write("a.dae", with(text, "</mesh>", sources + "</mesh>")))->triangles.size(), 2'001u);
+  EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 20);
 }
 
 /// Geometry as `faces` over the corners of a unit square in z = 0, counted round.
@@ -228,6 +294,14 @@ std::string square_dae(const std::string& faces) {
   text = with(text, "count=\"3\" stride", "count=\"4\" stride");
   const auto begin = text.find("<triangles"), end = text.find("</triangles>") + 12;
   return text.replace(begin, end - begin, faces);
+}
+
+TEST(Mesh, DaePolylistHasOneListOfCorners) {
+  const TempFolder folder;
+  const std::string faces = "<polylist count='1'><input semantic='VERTEX' source='#v' offset='0'/><vcount>3</vcount><p>0 1 2</p>";
+  EXPECT_EQ(load(folder.write("a.dae", square_dae(faces + "</polylist>")))->triangles.size(), 1u);
+  expect_message(input_error([&] { (void)load(folder.write("a.dae", square_dae(faces + "<p>1 2 3</p></polylist>"))); }),
+                 {"several <p>", "one"});
 }
 
 TEST(Mesh, DaeFacesOfEveryKind) {

@@ -93,7 +93,7 @@ TEST(ProblemFile, EveryKey) {
   - {name: door, mesh: box.stl, scale: [1, -1, 1], quat: [2, 0, 0, 0], allow: [grinder, link_7]})"},
       {"path",
        "{frame: door, waypoints: [{xyz: [0.6, -0.1, 0.9], rpy: [0, -1.5707963, 0]}, {xyz: [0, 0, 1], quat: [0.9995, 0, 0, 0]}]}"},
-      {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3}"},
+      {"resolution", "{ds: 0.01, dphi: 0.2, dalpha: 0.3, arcs: true}"},
       {"limits",
        "{clearance: 0.01, self_clearance: 0.002, manipulability: 0.02, joint_margin: 0.03, joint_step: 0.4, arm_slope: 5, "
        "step_error: 0.6, "
@@ -129,6 +129,7 @@ TEST(ProblemFile, EveryKey) {
   EXPECT_EQ(problem.path_frame, "door");
   EXPECT_EQ(problem.waypoints[1].orientation.w(), 0.9995);
   EXPECT_EQ(problem.resolution.dalpha, 0.3);
+  EXPECT_TRUE(problem.resolution.arcs);
   const Limits& limits = problem.limits;
   EXPECT_EQ(limits.clearance, 0.01);
   EXPECT_EQ(limits.joint_step, 0.4);

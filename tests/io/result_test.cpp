@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io_support.hpp"
+#include "swivel/io/schema_text.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -48,23 +49,20 @@ PlanResult solved() {
   return result;
 }
 
-TEST(Result, KeysInOrder) {
-  const Json json = Json::parse(to_json(solved()));
-  EXPECT_EQ(keys_of(json), (std::vector<std::string>{"status",        "summary",     "cost",
-                                                     "planner",       "threads",     "lattice",
-                                                     "counters",      "time_ms",     "tool_path_error_mm",
-                                                     "min_clearance", "min_margin",  "min_manipulability",
-                                                     "arm_angle",     "refinement",  "motion",
-                                                     "diagnosis",     "advice",      "trajectory",
-                                                     "partial",       "robot_pairs", "warnings",
-                                                     "joint_names"}));
-  EXPECT_EQ(keys_of(json["lattice"]), (std::vector<std::string>{"layers", "phi", "branches", "windings", "window", "nodes",
-                                                                "merged_waypoints", "cost", "method", "complete"}));
-  EXPECT_EQ(keys_of(json["counters"]),
-            (std::vector<std::string>{"ik_nodes", "edges", "nodes_checked", "edges_checked", "fcl_calls", "certified_free",
-                                      "certified_colliding", "expansions", "iterations"}));
-  EXPECT_EQ(keys_of(json["time_ms"]), (std::vector<std::string>{"load", "prepare", "plan", "report", "stages"}));
-  EXPECT_EQ(keys_of(json["trajectory"][0]), (std::vector<std::string>{"s", "phi", "branch", "joints"}));
+/// Of the objects that the schema of a value allows, the first.
+Json properties_of(const Json& schema) {
+  if (schema.contains("anyOf")) return properties_of(schema["anyOf"][0]);
+  return schema["type"] == "array" ? properties_of(schema["items"]) : schema["properties"];
+}
+
+TEST(Result, KeysInTheOrderOfTheSchema) {
+  const Json json = Json::parse(to_json(solved())), schema = properties_of(Json::parse(result_json_schema()));
+  EXPECT_EQ(keys_of(json), keys_of(schema));
+  for (const char* const key : {"counters", "time_ms"}) EXPECT_EQ(keys_of(json[key]), keys_of(properties_of(schema[key]))) << key;
+  EXPECT_EQ(keys_of(json["trajectory"][0]), keys_of(properties_of(schema["trajectory"])));
+  Json lattice = properties_of(schema["lattice"]);
+  lattice.erase("arcs");  // of other arms
+  EXPECT_EQ(keys_of(json["lattice"]), keys_of(lattice));
 }
 
 TEST(Result, SolvedRoundTrip) {
@@ -75,6 +73,8 @@ TEST(Result, SolvedRoundTrip) {
   EXPECT_EQ(json["lattice"]["nodes"], 203616);
   EXPECT_EQ(json["lattice"]["merged_waypoints"], 1);
   EXPECT_EQ(json["lattice"]["cost"].get<double>(), result.lattice.cost);
+  EXPECT_EQ(json["checked"], result.checked);
+  EXPECT_TRUE(json["certificate"].is_null());
   EXPECT_EQ(json["counters"]["iterations"], 9);
   EXPECT_EQ(json["time_ms"]["load"], 1.5);
   EXPECT_EQ(json["time_ms"]["prepare"], 0.0);
@@ -130,9 +130,9 @@ TEST(Result, Infeasible) {
   for (const char* key : {"cost", "min_clearance", "min_margin", "min_manipulability"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["tool_path_error_mm"]["mean"].is_null());
   const Json& diagnosis = json["diagnosis"];
-  EXPECT_EQ(keys_of(diagnosis),
-            (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s", "waypoints", "without_it",
-                                      "without_it_s", "together", "empty_layers", "removed", "complete", "layers_known"}));
+  EXPECT_EQ(keys_of(diagnosis), (std::vector<std::string>{"reached_layer", "reached_s", "reason", "cause", "at_s", "waypoints",
+                                                          "without_it", "without_it_s", "together", "empty_layers", "removed",
+                                                          "holds", "unreachable", "complete", "layers_known"}));
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
   EXPECT_EQ(diagnosis["reason"], "joint j5");
@@ -155,6 +155,13 @@ TEST(Result, Infeasible) {
   EXPECT_EQ(diagnosis["complete"], false);
   EXPECT_EQ(diagnosis["layers_known"], 16);
   EXPECT_EQ(diagnosis["removed"]["no IK"], 9);
+  EXPECT_EQ(diagnosis["holds"], "this_resolution");
+  EXPECT_TRUE(diagnosis["unreachable"].is_null());
+  result.diagnosis.unreachable = {14, 0.36, -1};
+  EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "exact_tool");
+  EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["unreachable"], Json::parse(R"({"layer": 14, "s": 0.36, "waypoint": null})"));
+  result.diagnosis.unreachable->waypoint = 4;
+  EXPECT_EQ(Json::parse(to_json(result))["diagnosis"]["holds"], "every_resolution");
   EXPECT_EQ(json["trajectory"], Json::array());
 }
 

@@ -232,6 +232,24 @@ TEST(Robot, Srdf) {
   EXPECT_EQ(model->disabled_pairs, expected);
 }
 
+TEST(Robot, TextsAreReadAsFilesAre) {
+  const TempFolder folder;
+  const std::string urdf = arm_urdf(), srdf = robot("<disable_collisions link1='link_2' link2='link_1'/>");
+  const auto read = load_robot(folder.write("r.urdf", urdf), folder.write("r.srdf", srdf)), parsed = parse_robot(urdf, srdf);
+  ASSERT_EQ(parsed->joints.size(), read->joints.size());
+  for (std::size_t k = 0; k < read->joints.size(); ++k) {
+    EXPECT_EQ(parsed->joints[k].name, read->joints[k].name);
+    EXPECT_EQ(parsed->joints[k].origin.matrix(), read->joints[k].origin.matrix());
+    EXPECT_EQ(parsed->joints[k].upper, read->joints[k].upper);
+  }
+  EXPECT_EQ(parsed->disabled_pairs, read->disabled_pairs);
+  expect_message(input_error([] { (void)parse_robot("<robot name='r'>\n<link/></robot>"); }), {"URDF text:2", "no name"});
+  expect_message(input_error([&] { (void)parse_robot(urdf, "<robot"); }), {"SRDF text:1"});
+  const fs::path box = folder.write("pkg/box.stl", box_stl());
+  const std::string with_mesh = robot(mesh_link("a", "package://pkg/box.stl"));
+  EXPECT_EQ(parse_robot(with_mesh, {}, {{"pkg", box.parent_path()}})->links[0].collision.size(), 1u);
+}
+
 TEST(Robot, SrdfDefaults) {
   const TempFolder folder;
   const fs::path urdf = folder.write("r.urdf", robot("<link name='a'/><link name='b'/><link name='c'/>" +

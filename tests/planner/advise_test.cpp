@@ -26,6 +26,7 @@ Problem followed(Problem problem, const Advice& advice) {
     case Change::kFiner:
       for (double* step : {&problem.resolution.ds, &problem.resolution.dphi, &problem.resolution.dalpha, &problem.resolution.arc})
         *step *= 0.5;
+      problem.resolution.arcs = true;
       break;
     case Change::kClearance:
       if (limits.self_clearance) limits.self_clearance = *limits.self_clearance * (share / limits.clearance);

@@ -11,6 +11,7 @@
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "window.hpp"
 
 namespace swivel {
 namespace {
@@ -21,10 +22,8 @@ Answer truth_of(const Problem& problem) {
   const PreparedRobot robot(problem);
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, problem);
-  const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
-  return brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), [&](int layer, int a, int b) {
-    return std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) <= window;
-  });
+  return brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()),
+                     [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); });
 }
 
 constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
@@ -82,18 +81,6 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       options.evidence = Evidence::all();
       results.push_back(plan(problem, options));
     }
-    PlanOptions astar;
-    astar.planner = PlannerKind::kEager;
-    astar.evidence = Evidence::all();
-    astar.eager_search = EagerSearch::kAStar;
-    results.push_back(plan(problem, astar));
-    PlanOptions compared;
-    compared.planner = PlannerKind::kLazy;
-    compared.evidence = Evidence::all();
-    compared.compare_with_fcl = true;  // throws where a certificate contradicts FCL
-    results.push_back(plan(problem, compared));
-    ASSERT_EQ(results.back().counters.certified_free, results[2].counters.certified_free) << what;
-    ASSERT_EQ(results.back().counters.certified_colliding, results[2].counters.certified_colliding) << what;
     certified += results[2].counters.certified_free + results[2].counters.certified_colliding;
     lazy_fcl_calls += results[2].counters.fcl_calls;
     ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
@@ -116,7 +103,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
         const int slot = truth.slots[static_cast<std::size_t>(i)];
         ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot)) << what;
         ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].branch, lattice.branch_of(slot)) << what;
-        if (i > 0) label_changes += lattice.label_of(slot) != lattice.label_of(truth.slots[static_cast<std::size_t>(i) - 1]);
+        if (i > 0) label_changes += lattice.sheet_of(slot) != lattice.sheet_of(truth.slots[static_cast<std::size_t>(i) - 1]);
       }
       detours += results[2].counters.iterations > 1;
       const CheckResult check = check_trajectory(problem, results[0].trajectory);
@@ -136,7 +123,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     }
   }
   std::printf(
-      "%d problems: %d solved (%d after failures, %d label changes), %d infeasible, %d continuous, %d with a start, %d with "
+      "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, %d with a start, %d with "
       "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
       count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
       static_cast<long long>(lazy_fcl_calls));

@@ -10,9 +10,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/planner/check.hpp"
-#include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
-#include "swivel/planner/refine.hpp"
 
 namespace swivel {
 namespace {
@@ -77,7 +75,6 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
       options.planner = planner;
       options.threads = 2;
       options.evidence = Evidence::all();
-      options.compare_with_fcl = true;
       results.push_back(plan(robot, problem, options));
       const PlanResult& result = results.back();
       ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
@@ -212,19 +209,11 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
   }
 }
 
-/// What asks for an arm angle so far says so.
-TEST(Arms, RefiningAndTimingSayThatTheyNeedAnArmAngle) {
+TEST(Arms, StepErrorSaysThatItNeedsAnArmAngle) {
   Random random(1);
-  const Problem problem = random_task(arms()[0], random);
-  const PreparedRobot robot(problem);
-  const std::vector<TrajectoryRow> rows(static_cast<std::size_t>(problem_path(problem, robot.arm().chain).size()));
-  TimingOptions slow;
-  slow.speed = 0.05;
-  EXPECT_THROW((void)refine(robot, problem, rows), InputError);
-  EXPECT_THROW((void)time_trajectory(robot, problem, rows, slow), InputError);
-  Problem with_step_error = problem;
-  with_step_error.limits.step_error = 0.1;
-  EXPECT_THROW((void)plan(with_step_error), InputError);
+  Problem problem = random_task(arms()[0], random);
+  problem.limits.step_error = 0.1;
+  EXPECT_THROW((void)plan(problem), InputError);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "chord_bound.hpp"
+#include "coarse_bound.hpp"
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
@@ -77,7 +77,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
   };
   Config q = Config::Zero(), away = Config::Constant(0.5);
   const auto togo_of = make_cost_to_go(lattice, Extent::kBounded, spent);
-  CostToGo& togo = *togo_of;
+  CostToGo& cost_to_go = *togo_of;
   SearchCounters counters;
   EagerOutcome eager;
   Diagnosis diagnosis;
@@ -86,17 +86,17 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
       {"tool path", [&] { long_path(); }},
       {"lattice", [&] { SrsLattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
       {"scene", [&] { World(robot.world(), problem.scene, spent); }},
-      {"chord bound", [&] { ChordBound(lattice, spent); }},
-      {"sweep", [&] { togo.sweep(lattice.layers() - 1); }},
+      {"chord bound", [&] { CoarseBound(lattice, spent); }},
+      {"sweep", [&] { cost_to_go.sweep(lattice.layers() - 1); }},
       {"search",
        [&] {
          auto asked = validity();
-         static_cast<void>(path_first(togo, asked, {}, counters));
+         static_cast<void>(path_first(cost_to_go, asked, {}, counters));
        }},
       {"furthest layer",
        [&] {
          auto asked = validity();
-         static_cast<void>(deepest_valid_layer(togo, asked, {}, counters));
+         static_cast<void>(deepest_valid_layer(cost_to_go, asked, {}, counters));
        }},
       {"nodes",
        [&] {
@@ -120,7 +120,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
       {"eager",
        [&] {
          auto asked = validity();
-         eager_search(lattice, asked, EagerSearch::kDijkstra, spent, eager);
+         eager_search(lattice, asked, spent, eager);
        }},
       {"eager_dp",
        [&] {
@@ -133,7 +133,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
        }},
   };
   for (const auto& [name, stage] : stages) EXPECT_THROW(stage(), Stopped) << name;
-  EXPECT_EQ(togo.edges(), 0);
+  EXPECT_EQ(cost_to_go.edges(), 0);
   EXPECT_EQ(eager.ik_nodes, 0);
   EXPECT_FALSE(diagnosis.complete);
   EXPECT_EQ(diagnosis.reached_layer, 3);

@@ -4,12 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <memory>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "collision_validity.hpp"
+#include "inner_posture.hpp"
+#include "plain_edge_rule.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
@@ -90,21 +95,13 @@ Waypoint moved(const Waypoint& from, const Vector3d& by, const Vector3d& turn) {
 Problem some_problem(const TestRobot& robot, Random& random) {
   Problem problem = problem_for(robot);
   const Chain chain = arm_of(robot).chain;
-  Config q;
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-    const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2;
-    q[j] = middle + random.uniform(-0.6, 0.6) + (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
-  }
-  const auto vector = [&](double size) {
-    return Vector3d(size * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized());
-  };
+  const Config q = inner_posture(chain, random);
   problem.waypoints.push_back(waypoint_of(chain.tool(q)));
   const int more = 2 + random.below(3), on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
   for (int k = 0; k < more; ++k)
     problem.waypoints.push_back(moved(problem.waypoints.back(),
-                                      k == on_the_spot ? Vector3d::Zero() : vector(random.uniform(0.04, 0.1)),
-                                      vector(random.uniform(0.2, 0.5))));
+                                      k == on_the_spot ? Vector3d::Zero() : random_vector(random, random.uniform(0.04, 0.1)),
+                                      random_vector(random, random.uniform(0.2, 0.5))));
   problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.1};
   problem.limits.clearance = 0.002;
   problem.scene.push_back(
@@ -142,6 +139,9 @@ TEST(Check, PlannersTrajectoriesPass) {
   for (const Good& good : good_trajectories()) {
     const CheckResult result = check_trajectory(*good.robot, good.problem, good.rows);
     EXPECT_TRUE(result.passed) << good.what << ": " << first(result);
+    const CheckResult verdict = check_trajectory(*good.robot, good.problem, good.rows, {.margins = false});
+    EXPECT_TRUE(verdict.passed) << good.what << ": " << first(verdict);
+    EXPECT_EQ(verdict.rows_examined, result.rows_examined) << good.what;
     EXPECT_EQ(result.rows_examined, static_cast<std::int64_t>(good.rows.size())) << good.what;
     EXPECT_EQ(result.moves_examined, static_cast<std::int64_t>(good.rows.size()) - 1) << good.what;
     rows += good.rows.size();
@@ -436,6 +436,9 @@ TEST(Check, MutationsFail) {
       EXPECT_FALSE(result.passed) << name << " (" << words << "), " << bad.what << ", trial " << trial;
       EXPECT_GT(result.failure_count, 0);
       EXPECT_FALSE(result.failures.empty());
+      const CheckResult verdict = check_trajectory(*bad.robot, bad.problem, bad.rows, {.margins = false});
+      EXPECT_FALSE(verdict.passed) << name << " (" << words << "), " << bad.what << ", trial " << trial << ", without margins";
+      EXPECT_FALSE(verdict.failures.empty());
       ++done;
     }
     EXPECT_EQ(done, each) << name;
@@ -443,6 +446,66 @@ TEST(Check, MutationsFail) {
   }
   std::printf("%d mutations of %zu kinds\n", count, mutations().size());
   EXPECT_GE(count, 20 * each);
+}
+
+/// Changes the problem under the planner's hands, once it plans: its lattice and its world know the one before.
+class Fault final : public StateCheck {
+ public:
+  explicit Fault(std::function<void()> strike) : strike_(std::move(strike)) {}
+  [[nodiscard]] std::string name() const override { return "fault"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    std::fill_n(allowed.begin(), states.size(), true);
+    if (strike_) std::exchange(strike_, nullptr)();
+  }
+
+ private:
+  std::function<void()> strike_;
+};
+
+/// An answer that is wrong is an error of the program, never an answer; right ones are answers as they were.
+TEST(Check, WrongAnswersOfAPlannerAreRefused) {
+  const std::uint64_t base = seed("Faults");
+  const std::vector<std::function<void(Problem&, double)>> faults = {
+      [](Problem& p, double) { p.limits.clearance = 1; },
+      [](Problem& p, double) { p.limits.joint_step = 1e-6; },
+      [](Problem& p, double) { p.limits.manipulability = 1e3; },
+      [](Problem& p, double) { p.limits.joint_margin = 10; },
+      [](Problem& p, double) { p.waypoints.back().position.x() += 1e-4; },
+      [](Problem& p, double x) { p.start = Config::Constant(x); },
+      [](Problem& p, double) { p.limits.tool_path_error = 1e-9; },
+  };
+  int refused = 0, right = 0;
+  for (const Good& good : good_trajectories()) {
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    options.check = true;
+    const PlanResult plain = plan(*good.robot, good.problem, options);
+    ASSERT_EQ(plain.status, PlanStatus::kSolved) << good.what;
+    EXPECT_TRUE(plain.checked && plain.time_ms.contains("check")) << good.what;
+    ASSERT_EQ(plain.trajectory.size(), good.rows.size());
+    for (std::size_t k = 0; k < good.rows.size(); ++k) ASSERT_EQ(plain.trajectory[k].q, good.rows[k].q) << good.what;
+    ++right;
+    Random random(base + static_cast<std::uint64_t>(right));
+    for (std::size_t k = 0; k < faults.size(); ++k) {
+      Planner planner(good.robot, good.problem);
+      auto& problem = const_cast<Problem&>(planner.problem());
+      const double x = random.uniform(0.1, 1);
+      options.hooks.check = std::make_shared<Fault>([&] { faults[k](problem, x); });
+      EXPECT_THROW(static_cast<void>(planner.plan(options)), std::logic_error) << good.what << ", fault " << k;
+      options.hooks.check.reset();
+      ++refused;
+    }
+  }
+  std::printf("%d right answers, %d wrong ones refused\n", right, refused);
+  EXPECT_GE(right, 20);
+}
+
+TEST(Check, StopsWhereItsTimeIsUp) {
+  const Good& good = good_trajectories()[0];
+  const std::atomic<bool> cancel{true};
+  for (const bool margins : {true, false})
+    EXPECT_THROW(static_cast<void>(check_trajectory(*good.robot, good.problem, good.rows, {margins, Budget({}, &cancel)})),
+                 Stopped);
 }
 
 /// A row at any place, by closed-form IK (polished on inexact arms), its joints next to those given.
@@ -475,7 +538,7 @@ bool keeps_rules(const Good& good, const World& world, World::Query& query, cons
   const double steps = std::max(1.0, std::floor(end - begin + 1e-9));
   if (move.lpNorm<Eigen::Infinity>() > std::min(3.0, 0.9 * steps * limits.joint_step)) return false;
   if (deviation(good, a.q, b.q, begin, end, 0.5 * *limits.tool_path_error, 0.01) > 1) return false;
-  return !query.first_below(b.q, Keep::kNode) && !edge_blocked_plain(query, world.edge_rule(good.robot->radii()), a.q, b.q);
+  return !query.first_below(b.q, Keep::kNode) && !test::edge_blocked_plain(query, world.edge_rule(good.robot->radii()), a.q, b.q);
 }
 
 TEST(Check, LegalResamplingsPass) {

@@ -109,10 +109,10 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
         ASSERT_EQ(deepest, truth.deepest) << what << ' ' << planner;
       }
     };
-    for (const EagerSearch search : {EagerSearch::kDijkstra, EagerSearch::kAStar}) {
+    {
       CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
       EagerOutcome found;
-      eager_search(lattice, validity, search, never, found);
+      eager_search(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     {
@@ -122,19 +122,18 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kCompared, executor, batch == 1 ? 1 : 4,
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, batch == 1 ? 1 : 4,
                                  never);
-      const auto togo = make_cost_to_go(lattice);
-      togo->sweep(lattice.layers() - 1);
+      const auto cost_to_go = make_cost_to_go(lattice);
+      cost_to_go->sweep(lattice.layers() - 1);
       SearchCounters counters;
-      const SearchOutcome found = path_first(*togo, validity, {.batch = batch}, counters);
+      const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
       rounds += static_cast<int>(counters.iterations);
       int deepest = -1;
-      if (found.path.empty()) deepest = deepest_valid_layer(*togo, validity, {.batch = batch}, counters);
+      if (found.path.empty()) deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
       expect_truth(found.path, found.cost, deepest, "lazy");
-      ASSERT_EQ(validity.counters().contradictions, 0) << what;
       int removed = 0;
-      for (const Verdict verdict : togo->verdicts().nodes()) removed += verdict == Verdict::kRemoved;
+      for (const Verdict verdict : cost_to_go->verdicts().nodes()) removed += verdict == Verdict::kRemoved;
       shared += removed;
     }
     if (HasFatalFailure()) return;

@@ -22,6 +22,7 @@
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "window.hpp"
 
 namespace swivel {
 namespace {
@@ -158,14 +159,10 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
     const std::shared_ptr<WaveCheck> check = trial % 4 == 1 ? nullptr : random_check(random);
     const std::shared_ptr<WaveCost> cost = trial % 4 == 2 ? nullptr : random_cost(random, lattice.cost_unit());
     const Hooks hooks{check, cost};
-    const double window = lattice.window() * kTwoPi / lattice.angles() + 1e-9;
     const World world(robot.world(), problem);
     const Answer truth = brute_force(
         lattice, world, world.edge_rule(robot.radii()),
-        [&](int layer, int a, int b) {
-          return std::abs(std::remainder(lattice.phi(layer + 1, b) - lattice.phi(layer, a), kTwoPi)) <= window;
-        },
-        hooks);
+        [&](int layer, int a, int b) { return window_allows(lattice, layer, a, b); }, hooks);
     (truth.solved ? solved : infeasible) += 1;
     with_cost += cost != nullptr;
     with_check += check != nullptr;
@@ -173,9 +170,8 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
     if (check) check->look_for_collisions(world);
 
     std::vector<PlanResult> results;
-    for (int k = 0; k < 5; ++k) {
-      PlanOptions options = options_for(kPlanners[k % 4]);
-      if (k == 4) options.eager_search = EagerSearch::kAStar;
+    for (int k = 0; k < 4; ++k) {
+      PlanOptions options = options_for(kPlanners[k]);
       options.evidence.layers = true;
       options.hooks = hooks;
       if (check) check->asked = check->refused = 0;
@@ -285,27 +281,24 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
       ASSERT_TRUE(!truth.solved || cost == truth.cost) << what << ' ' << planner;
       ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
     };
-    for (const int search : {0, 1, 2}) {
+    for (const bool stored : {true, false}) {
       CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
       HookedValidity validity(lattice, collision, hooks, never);
       EagerOutcome found;
-      if (search == 2)
-        eager_dp(lattice, validity, never, found);
-      else
-        eager_search(lattice, validity, search == 0 ? EagerSearch::kDijkstra : EagerSearch::kAStar, never, found);
+      (stored ? eager_search : eager_dp)(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     for (const int batch : {1, 32}) {
       CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, batch == 1 ? 1 : 4,
                                   never);
       HookedValidity validity(lattice, collision, hooks, never);
-      const auto togo = make_cost_to_go(lattice);
-      togo->sweep(lattice.layers() - 1);
+      const auto cost_to_go = make_cost_to_go(lattice);
+      cost_to_go->sweep(lattice.layers() - 1);
       SearchCounters counters;
-      const SearchOutcome found = path_first(*togo, validity, {.batch = batch}, counters);
+      const SearchOutcome found = path_first(*cost_to_go, validity, {.batch = batch}, counters);
       rounds += static_cast<int>(counters.iterations);
       int deepest = -1;
-      if (found.path.empty()) deepest = deepest_valid_layer(*togo, validity, {.batch = batch}, counters);
+      if (found.path.empty()) deepest = deepest_valid_layer(*cost_to_go, validity, {.batch = batch}, counters);
       expect_truth(found.path, found.cost, deepest, "lazy");
     }
     if (HasFatalFailure()) return;

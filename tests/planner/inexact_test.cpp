@@ -10,6 +10,7 @@
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "window.hpp"
 
 namespace swivel {
 namespace {
@@ -29,11 +30,8 @@ struct Laid {
 };
 
 Answer truth_of(const Laid& laid) {
-  const double window = laid.lattice.window() * kTwoPi / laid.lattice.angles() + 1e-9;
-  return brute_force(
-      laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()), [&](int layer, int a, int b) {
-        return std::abs(std::remainder(laid.lattice.phi(layer + 1, b) - laid.lattice.phi(layer, a), kTwoPi)) <= window;
-      });
+  return brute_force(laid.lattice, laid.robot.world(), laid.robot.world().edge_rule(laid.robot.radii()),
+                     [&](int layer, int a, int b) { return window_allows(laid.lattice, layer, a, b); });
 }
 
 TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {

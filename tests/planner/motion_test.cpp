@@ -10,6 +10,7 @@
 #include <set>
 
 #include "inexact_robots.hpp"
+#include "motion_problem.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
@@ -22,40 +23,6 @@ namespace {
 
 using namespace test;
 
-/// Two to four segments from a posture well inside the limits, a ball near the arm, sometimes a start, a turn on the spot or a
-/// metric other than l2.
-Problem some_problem(const TestRobot& robot, Random& random) {
-  Problem problem = problem_for(robot);
-  const Chain chain = arm_of(robot).chain;
-  Config q;
-  for (int j = 0; j < kDof; ++j) {
-    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-    const double middle = limit.continuous ? 0 : (limit.lower + limit.upper) / 2;
-    q[j] = middle + random.uniform(-0.6, 0.6) + (j == 1 || j == 3 || j == 5 ? (random.coin() ? 0.8 : -0.8) : 0.0);
-  }
-  const auto vector = [&](double size) {
-    return Vector3d(size * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized());
-  };
-  problem.waypoints.push_back(waypoint_of(chain.tool(q)));
-  const int more = 2 + random.below(3), on_the_spot = random.below(3) == 0 ? random.below(more) : -1;
-  for (int k = 0; k < more; ++k) {
-    Waypoint to = problem.waypoints.back();
-    if (k != on_the_spot) to.position += vector(random.uniform(0.04, 0.1));
-    const Vector3d turn = vector(random.uniform(0.05, 0.4));
-    to.orientation = to.orientation * Quaterniond(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
-    problem.waypoints.push_back(to);
-  }
-  problem.resolution = {.ds = 0.01, .dphi = 0.1, .dalpha = 0.1};
-  problem.limits.clearance = 0.003;
-  Pose ball = Pose::Identity();
-  ball.translation() = problem.waypoints[1].position + vector(0.18);
-  problem.scene.push_back({"ball", Sphere{0.04}, ball, {}});
-  if (random.coin(0.3)) problem.start = q;
-  if (random.coin(0.3)) problem.cost.metric = random.coin() ? CostMetric::kMax : CostMetric::kTime;
-  problem.smooth = PathSmoothing{};
-  return problem;
-}
-
 /// Calls each(problem, robot, rows) for problems with a path; returns how many.
 template <class Each>
 int for_solved(const char* name, int count, const Each& each) {
@@ -64,7 +31,7 @@ int for_solved(const char* name, int count, const Each& each) {
   int solved = 0;
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    const Problem problem = some_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     const PreparedRobot robot(problem);
     PlanOptions options;
     options.planner = PlannerKind::kLazy;
@@ -133,7 +100,7 @@ TEST(Refine, IsValidOnWhatUsersHave) {
   for (int trial = 0; trial < trials(40); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const std::size_t which = static_cast<std::size_t>(trial) % robots.size();
-    Problem problem = some_problem(robots[which], random);
+    Problem problem = motion_problem(robots[which], random);
     problem.start.reset();
     const auto refined = [&](const Problem& kind, const char* name) -> std::optional<Refined> {
       const PreparedRobot robot(kind);
@@ -344,7 +311,7 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
   const std::vector<TestRobot> robots = all_robots();
   for (int trial = 0; trial < trials(16); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = some_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
     problem = with_motion_defaults(problem);
     EXPECT_EQ(problem.limits.edge_clearance, problem.limits.clearance);
     if (random.coin(0.3)) problem.limits.edges = EdgeMode::kNodes;
@@ -475,7 +442,7 @@ TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
 
 TEST(Motion, RefusesSpeedsThatMakeNoSense) {
   Random random(1);
-  const Problem some = some_problem(data_robot("iiwa14"), random);
+  const Problem some = motion_problem(data_robot("iiwa14"), random);
   const PreparedRobot robot(some);
   for (const TimingOptions& options :
        {TimingOptions{.speed = 0, .turn_speed = {}, .rate = 250},

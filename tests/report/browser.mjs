@@ -28,12 +28,13 @@ export async function withBrowser({ packages, shots }, test) {
   const browser = await chromium.launch({ executablePath: browserFile, args: ['--no-sandbox', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync'] });
   /** A page that must stay without errors and without network: `close` asserts it. */
-  const open = async (html, options) => {
+  const open = async (html, { before, hash = '', ...options }) => {  // before: a script that runs first in the page
     const page = await browser.newPage(options), troubles = [];
+    if (before) await page.addInitScript(before);
     page.on('pageerror', (error) => troubles.push(String(error)));
     page.on('console', (message) => message.type() === 'error' && troubles.push(message.text()));
     page.on('request', (request) => /^(file|data|blob):/.test(request.url()) || troubles.push(`network: ${request.url()}`));
-    await page.goto(`file://${html}`);
+    await page.goto(`file://${html}${hash}`);
     return { page, close: async () => { assert.deepEqual(troubles, []); await page.close(); } };
   };
   const shoot = async (page, name, options) => shots && (await page.screenshot({ path: join(shots, name), ...options }));
@@ -42,6 +43,15 @@ export async function withBrowser({ packages, shots }, test) {
   } finally {
     await browser.close();
     rmSync(folder, { recursive: true });
+  }
+}
+
+/** Waits until `holds` (a function of the page, with one argument) is true. The driver's own waiting evaluates text in the page, which its
+ * content security policy refuses. */
+export async function until(page, holds, argument) {
+  for (const end = Date.now() + 30_000; !(await page.evaluate(holds, argument));) {
+    assert.ok(Date.now() < end, `not within 30 s: ${holds}`);
+    await new Promise((resolve) => setTimeout(resolve, 10));
   }
 }
 

@@ -150,7 +150,7 @@ TEST_P(Maps, SvgIsWellFormedAndCoversEveryPanel) {
   for (auto* line = document.RootElement()->FirstChildElement("polyline"); line; line = line->NextSiblingElement("polyline"))
     ++lines;
   EXPECT_EQ(lines > 0, lazy.map.path.size() > 1);
-  for (const int label : lazy.map.inhabited_labels()) EXPECT_NE(svg.find(lazy.map.label_name(label)), std::string::npos);
+  for (const int label : lazy.map.inhabited_sheets()) EXPECT_NE(svg.find(lazy.map.sheet_name(label)), std::string::npos);
   EXPECT_LT(svg.size(), 2'000'000U);
 }
 

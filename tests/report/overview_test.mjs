@@ -16,7 +16,7 @@ function firstRows(csv, to, count) {
 
 function campaign(csv, html, ...options) {
   execFileSync(swivel, ['campaign', problem, '--planner', 'lazy', '--ds', '0.02', '--dphi', '0.2', '--episodes', String(kEpisodes), '--seed', '1', '--out', csv, '--report', html, ...options]);
-  const rows = readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(','));
+  const rows = readFileSync(csv, 'utf8').trim().split('\n').filter((line) => !line.startsWith('# ')).slice(1).map((line) => line.split(','));
   return { html, csv, rows, bytes: statSync(html).size };
 }
 /** The page's data without the time of planning. */
@@ -34,6 +34,17 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.equal(await page.locator('#reasons svg').count(), 1);
   assert.equal(await page.locator('#times .pick circle').count(), rows.length);
   assert.equal(await page.locator('#places .pick circle').count(), failed.filter(([, , , , , , , , s]) => s !== '').length);
+
+  // Where the objects stood, coloured by what ended the paths: an object, a joint or the cause.
+  assert.equal(await page.locator('#offsets .pick circle').count(), rows.length);
+  const subjects = new Set(failed.map((row) => row[10] || row[9]));
+  assert.ok(subjects.size >= 2);
+  assert.equal(await page.locator('#legend span').count(), 1 + subjects.size);
+  assert.equal(new Set(await page.$$eval('#offsets .pick circle', (dots) => dots.map((dot) => dot.getAttribute('fill')))).size, 1 + subjects.size);
+  await page.selectOption('#up', { label: 'door.yaw' });
+  assert.match(await page.textContent('#offsets svg'), /door\.yaw, rad/);
+  await page.selectOption('#up', { label: 'door.y' });
+  assert.match(await page.textContent('#facts'), /door\.x/);
 
   await shoot(page, 'overview_c.png');
 
@@ -64,7 +75,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     assert.equal(result.cost ?? '', wanted[2] === '' ? '' : Number(wanted[2]));
     assert.ok(statSync(join(folder, `episode_${wanted[0]}.html`)).size > 1e5);
   }
-  for (const section of ['times', 'costs', 'work', 'reasons']) {
+  for (const section of ['times', 'costs', 'work', 'reasons', 'offsets']) {
     const svg = await saved(page, page.locator(`#${section} h2 button`).filter({ hasText: 'SVG' }));
     assert.equal(svg.name, `experiment_c_${section}.svg`);
     assert.ok((await elements(page, svg.bytes.toString())).text > 4);
@@ -85,5 +96,6 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   assert.match(await second.page.textContent('#title'), /shard 1 of 3$/);
   assert.deepEqual(await column(second.page, 0), shards[1].rows.map(([episode]) => episode));
   await second.close();
-  assert.equal(told(campaign(join(folder, 'joined.csv'), join(folder, 'joined.html'), '--rows', ...shards.map((shard) => shard.csv)).html), told(html));
+  execFileSync(swivel, ['merge', join(folder, 'joined.csv'), ...shards.map((shard) => shard.csv), '--report', join(folder, 'joined.html')]);
+  assert.equal(told(join(folder, 'joined.html')), told(html));
 });

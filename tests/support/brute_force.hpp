@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "plain_edge_rule.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"

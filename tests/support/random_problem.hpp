@@ -94,6 +94,7 @@ inline Problem random_problem(const TestRobot& robot, Random& random) {
     }
     if (fits) problem.start = q0;
   }
+  problem.resolution.arcs = (waypoints + obstacles) % 2 == 1;
   return problem;
 }
 

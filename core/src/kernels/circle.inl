@@ -53,8 +53,8 @@ void solve_triple(const TripleTask& task) {
   double* __restrict first1 = task.q[1][0];
   double* __restrict middle1 = task.q[1][1];
   double* __restrict last1 = task.q[1][2];
-  double* __restrict bar0 = task.bar[0];
-  double* __restrict bar1 = task.bar[1];
+  double* __restrict mask0 = task.mask[0];
+  double* __restrict mask1 = task.mask[1];
   const double a02 = task.m[0][0], b02 = task.m[0][1], c02 = task.m[0][2], a12 = task.m[1][0], b12 = task.m[1][1],
                c12 = task.m[1][2], a22 = task.m[2][0], b22 = task.m[2][1], c22 = task.m[2][2], a20 = task.m[3][0],
                b20 = task.m[3][1], c20 = task.m[3][2], a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
@@ -78,8 +78,8 @@ void solve_triple(const TripleTask& task) {
     first1[k] = f1;
     middle1[k] = m1;
     last1[k] = l1;
-    bar0[k] = excess0 <= 0 ? 0.0 : __builtin_inf();
-    bar1[k] = excess1 <= 0 ? 0.0 : __builtin_inf();
+    mask0[k] = excess0 <= 0 ? 0.0 : __builtin_inf();
+    mask1[k] = excess1 <= 0 ? 0.0 : __builtin_inf();
   }
 }
 

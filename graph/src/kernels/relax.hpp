@@ -5,7 +5,7 @@ namespace swivel {
 
 enum class RelaxMetric { kL2, kMax };
 
-/// A run of n nodes of one label against runs of a label in a layer nearby: node k with the partners k, k + 1, ...,
+/// A run of n nodes of one sheet against runs of a sheet in a layer nearby: node k with the partners k, k + 1, ...,
 /// k + offsets - 1. In double precision with the rounding of Lattice::edge_cost and the largest moves allowed; in single precision,
 /// for bounds, with neither.
 template <class T>
@@ -25,7 +25,7 @@ struct RelaxTask {
 
 struct RelaxKernels {
   void (*relax)(const RelaxTask<double>&);
-  void (*chord)(const RelaxTask<float>&);
+  void (*coarse)(const RelaxTask<float>&);
 };
 const RelaxKernels& relax_kernels();
 const RelaxKernels& scalar_relax_kernels();

@@ -91,23 +91,20 @@ struct CollisionCounters {
   std::int64_t certified_free = 0;       ///< first_below: answers "none" that needed no FCL
   std::int64_t certified_colliding = 0;  ///< first_below: pairs found without FCL
   std::int64_t pairs_kept = 0;           ///< next_below: pairs that a clearance kept proved free
-  std::int64_t contradictions = 0;       ///< pairs that FCL and a certificate judge differently; with Certificates::kCompared
   CollisionCounters& operator+=(const CollisionCounters& o) {
     fcl_calls += o.fcl_calls;
     fcl_failures += o.fcl_failures;
     certified_free += o.certified_free;
     certified_colliding += o.certified_colliding;
     pairs_kept += o.pairs_kept;
-    contradictions += o.contradictions;
     return *this;
   }
 };
 
-/// Who answers a Query's first_below and pair_below. The answers are the same.
+/// How a Query decides. Its answers are the same.
 enum class Certificates {
-  kOff,       ///< FCL, behind bounding volumes
-  kOn,        ///< closed forms, where they prove the clearance outside the band; FCL within it
-  kCompared,  ///< FCL, asked about every pair; what kOn would have answered is held against it. For tests.
+  kOff,  ///< FCL, behind bounding volumes
+  kOn,   ///< closed forms, where they prove the clearance outside the band; FCL within it
 };
 
 /// The robot's bodies among the scene's, with FCL as the authority on every pair. Immutable after construction; const calls are
@@ -126,9 +123,10 @@ class World {
   World(const World& like, const std::vector<SceneObject>& scene, const Budget& budget = {});
   /// The same with the problem's scene and limits. Pairs may be nearer by `forgiven` than they should, m, but not touch.
   World(const World& like, const Problem& problem, const Budget& budget = {}, double forgiven = 0);
-  /// The same bodies, but of its pairs only those with one of these scene objects, by their number in the scene: what a change of
-  /// these objects may change.
-  World(const World& whole, const std::vector<int>& objects);
+  /// Pairs with one of some scene objects, which a change of these may change, or the others, which it does not.
+  enum class Pairs { kOf, kBut };
+  /// The same bodies, but of its pairs only some. `objects`: by their number in the scene.
+  World(const World& whole, const std::vector<int>& objects, Pairs pairs = Pairs::kOf);
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -140,6 +138,8 @@ class World {
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
+  /// How far any point of a scene object moves at most from one pose to another, m, rounding included.
+  [[nodiscard]] double displacement(int object, const Pose& from, const Pose& to) const;
   /// Of the robot or the scene: questions then take a hundred times as long.
   [[nodiscard]] bool has_meshes() const;
   /// One of pairs(): what it must keep, by the limits of this world.
@@ -161,20 +161,25 @@ class World {
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
 
-    /// First of pairs() whose clearance at q is below its level, or none: "clearance >= level" for all pairs. A pair suspected is
-    /// asked before the others. A function of the arguments alone.
+    /// First of pairs() whose clearance at q is below its level, or none: "clearance >= level" for all pairs. The pair that is
+    /// likely to be below is asked before the others. A function of the arguments alone.
     [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, const Level& level,
-                                                      const std::optional<BodyPair>& suspect = {});
+                                                      const std::optional<BodyPair>& likely = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
-    /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before,
-    /// back to the last forget(). With Certificates::kOff nothing is kept.
+    /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before.
+    /// With Certificates::kOff nothing is kept.
     [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, const Level& level,
-                                                     const std::optional<BodyPair>& suspect = {});
-    void forget();
+                                                     const std::optional<BodyPair>& likely = {});
+    /// At the posture of the last next_below, which named no pair at this level: as FCL sees it, every pair's clearance is more
+    /// than its level by this, m; less than 0 where that is not known.
+    [[nodiscard]] double spare(const Level& level) const;
     /// Of the pair that one of these has just named: its clearance is proved below its level by more than FCL may err.
-    [[nodiscard]] bool surely_below() const;
+    [[nodiscard]] bool certified() const;
     /// Whether one pair's clearance is below its level.
     [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, const Level& level);
+    /// Without FCL, proves that one pair's clearance is below its level, which may be below zero here: then that one body holds a
+    /// point of the other as deep inside it. False where a short search finds no proof.
+    [[nodiscard]] bool surely_below(const Config& q, const BodyPair& pair, const Level& level);
     /// Exact as FCL: the pair with the least margin, the first that has it, and one that touches before any that does not; none
     /// when there are no pairs.
     struct Clearance {
@@ -203,12 +208,13 @@ class World {
 
 /// None when every pair is clear by its PairKeeps::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes too near.
 /// N is of the pair's own h. By bisection, coarse to fine: an interval is free when its middle is clear by as much as the interval
-/// can move, blocked when its middle is below PairKeeps::motion. The query is of the world that the rule is of. Forgets what the
-/// query kept before, so that counters depend on the edge alone. Throws Stopped.
+/// can move, blocked when its middle is below PairKeeps::motion. The query is of the world that the rule is of, and keeps
+/// clearances from one motion to the next, as from one posture to the next. `spare`, where there is no such pair and none is near
+/// by design: it would be the same if scene objects stood elsewhere by less than this, m. Throws Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                                   const Budget& budget = {});
-/// The same by asking every midpoint in turn: what edge_blocked must agree with. The pair is that of the first midpoint that fails.
-[[nodiscard]] std::optional<BodyPair> edge_blocked_plain(World::Query& query, const EdgeRule& rule, const Config& q0,
-                                                         const Config& q1);
+                                                   const Budget& budget = {}, double* spare = nullptr);
+/// Whether one pair of the world is what blocks it, whatever others do: too near at one of the midpoints. Throws Stopped.
+[[nodiscard]] bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0,
+                                   const Config& q1, const Budget& budget = {});
 
 }  // namespace swivel

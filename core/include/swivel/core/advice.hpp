@@ -12,7 +12,7 @@ namespace swivel {
 struct Advice {
   enum class Change {
     kFreeStart,       ///< no start given
-    kFiner,           ///< half the steps of the lattice
+    kFiner,           ///< half the steps of the lattice, and Resolution::arcs
     kClearance,       ///< limits.clearance, and self_clearance where that is what bars
     kJointMargin,     ///< limits.joint_margin
     kManipulability,  ///< limits.manipulability
@@ -32,6 +32,8 @@ struct Advice {
     kNoHelp,   ///< no path, and none comes further
     kUnknown,  ///< not decided in time, or not tried
   };
+
+  static constexpr double kMostMove = 0.02;  ///< m, of kMoveObject
 
   Change change = Change::kFreeStart;
   std::string object;              ///< of the last two

@@ -9,6 +9,13 @@
 
 namespace swivel {
 
+/// Two bits, for reports: sign of the determinant of the triple, and of that of the other three joints. Without a lock the sign
+/// of the determinant without joint 3.
+[[nodiscard]] int arc_branch(const Chain& chain, const LockMethod& method, const Config& q);
+/// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on axis 2 nearest axis 1 to the
+/// foot on axis 6 nearest axis 7, measured from the base's vertical, rad. Of an arm of six joints, the roll.
+[[nodiscard]] double arc_angle(const Chain& chain, const Config& q);
+
 /// Lattice of an arm that has no circle of arm angles: the nodes of a layer are points on its arcs of self-motion
 /// (self_motion.hpp). Transported nodes. Layer 0: the ends of arcs, and points between them at most 1.5 `resolution.arc` apart.
 /// Every other layer: the ends; the images of the nodes of the layer before, by Newton steps of least weighted norm, unless nearer
@@ -22,11 +29,8 @@ class ArcLattice final : public ExplicitLattice {
   /// none found. Throws Stopped.
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, const Budget& budget = {});
 
-  /// Two bits, for reports: sign of the determinant of the triple, and of that of the other three joints. Without a lock the sign
-  /// of the determinant without joint 3.
+  /// arc_branch() and arc_angle() of the node.
   [[nodiscard]] int branch(int layer, int slot) const override;
-  /// The generalised arm angle: of the foot on axis 4 nearest axis 3, about the line from the foot on axis 2 nearest axis 1 to the
-  /// foot on axis 6 nearest axis 7, measured from the base's vertical. Of an arm of six joints, the roll.
   [[nodiscard]] double phi(int layer, int slot) const override;
 
   /// Arcs of all layers.
@@ -41,11 +45,14 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
   /// The same nodes with each value of these joints that lies within the limits as a node of its own: they are circles no more.
   [[nodiscard]] ArcLattice with_windings(const Joints& joints) const;
+  /// What with_windings() was called with, from the lattice without on.
+  [[nodiscard]] const std::vector<Joints>& windings() const { return layers_.windings; }
 
  private:
   struct Layers {
     std::vector<std::vector<Point>> points;
     std::array<bool, kDof> circles{};
+    std::vector<std::array<bool, kDof>> windings{};
     std::int64_t arcs = 0;
   };
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,

@@ -6,21 +6,28 @@
 #include <vector>
 
 #include "swivel/core/plan.hpp"
+#include "swivel/core/problem.hpp"
 
 namespace swivel {
 
-/// Every count-th episode from `index` on: the share of one process of a campaign.
+/// Every count-th episode of a campaign, or every count-th placement, from `index` on: the share of one process.
 struct Shard {
   std::uint64_t index = 0, count = 1;
-  /// How many of the campaign's episodes are in this share.
+  /// How many of all episodes or placements are in this share.
   [[nodiscard]] std::uint64_t size(std::uint64_t episodes) const {
     return index < episodes ? (episodes - 1 - index) / count + 1 : 0;
   }
-  /// Its k-th episode.
+  /// The number of its k-th one.
   [[nodiscard]] std::uint64_t episode(std::uint64_t k) const { return index + k * count; }
 };
 
-/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards.
+/// The coordinates in which episodes differ, as "door.x", in the order of `vary` and x y z roll pitch yaw.
+[[nodiscard]] std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary);
+/// By how much episode_problem() moves objects along them, m and rad.
+[[nodiscard]] std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode);
+
+/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards, and, where
+/// the path stays, but what was asked.
 struct EpisodeRow {
   std::uint64_t episode = 0;
   PlanStatus status = PlanStatus::kInfeasible;
@@ -29,12 +36,15 @@ struct EpisodeRow {
   std::int64_t nodes_checked = 0, fcl_calls = 0;
   std::optional<double> tool_path_error_mm_mean, tool_path_error_mm_max;
   std::optional<double>
-      failed_s;        ///< m; where every path has ended; unset when solved, and where not even the first layer has a node
-  std::string reason;  ///< what ends them there, or the message of an internal error; empty when solved
+      failed_s;                 ///< m; where every path has ended; unset when solved, and where not even the first layer has a node
+  std::string cause;            ///< to_string(Cause::Kind) of what ends them there; empty when solved
+  std::string by;               ///< subject_of() that cause
+  std::string reason;           ///< the cause in words, or the message of an internal error; empty when solved
+  std::vector<double> offsets;  ///< of the varied_coordinates(), m and rad
 
   EpisodeRow() = default;
-  /// Evidence::tool_path_error must have been asked for.
-  EpisodeRow(std::uint64_t episode, const PlanResult& result);
+  /// Evidence::tool_path_error must have been asked for. `problem`: any episode's.
+  EpisodeRow(std::uint64_t episode, const PlanResult& result, const Problem& problem);
   /// An episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };

@@ -7,6 +7,7 @@
 
 #include "swivel/core/arm.hpp"
 #include "swivel/core/budget.hpp"
+#include "swivel/core/pose_shift.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/tool_path.hpp"
 
@@ -78,6 +79,8 @@ class Lattice {
     double distance = 0, limit = 0;  ///< m
   };
   [[nodiscard]] virtual std::optional<Reach> out_of_reach(int) const { return std::nullopt; }
+  /// True where it is proved that no joints within their limits reach the layer's pose, whatever the redundancy coordinate.
+  [[nodiscard]] virtual bool proved_unreachable(int) const { return false; }
   /// The redundancy coordinate of a node, rad: the carried arm angle of S-R-S arms.
   [[nodiscard]] virtual double phi(int layer, int slot) const = 0;
   /// Signs that name the node's solution, for reports: 0..7.
@@ -89,10 +92,21 @@ class Lattice {
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
   [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
   /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
-  /// 1..7.
+  /// 1..7. Rows of such nodes: up to rows_apart() of every group.
   [[nodiscard]] virtual bool stand_alike(unsigned groups) const = 0;
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
+  /// How far the row of a node, where it has one, may place the bodies that move with joint `group` of 1..7 from where the joints
+  /// of a node place them, itself or one at which they stand alike. `q`: the joints of either node.
+  [[nodiscard]] virtual PoseShift row_shift(int layer, int group, const Config& q) const {
+    static_cast<void>(layer), static_cast<void>(group), static_cast<void>(q);
+    return {};
+  }
+  /// How far two rows of nodes at which those bodies stand alike may place them apart. `q`: the joints of either node.
+  [[nodiscard]] virtual PoseShift rows_apart(int layer, int group, const Config& q) const {
+    static_cast<void>(layer), static_cast<void>(group), static_cast<void>(q);
+    return {};
+  }
 
   // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them, where not said otherwise
   /// Slots first ... last - 1.

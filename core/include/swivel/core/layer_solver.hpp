@@ -16,6 +16,11 @@ class LayerSolver {
   [[nodiscard]] virtual std::optional<Config> joints(int layer, double coordinate) const = 0;
   /// Of a layer, ascending; m.
   [[nodiscard]] virtual double travel(int layer) const = 0;
+  /// A coordinate of a layer for joints in between those of a layer before it, at x, and of one after it, at y.
+  [[nodiscard]] virtual double between(int layer, int before, double x, int after, double y) const {
+    const double t = (travel(layer) - travel(before)) / (travel(after) - travel(before));
+    return x + t * (y - x);
+  }
 };
 
 }  // namespace swivel

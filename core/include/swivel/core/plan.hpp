@@ -81,10 +81,27 @@ struct Diagnosis {
     bool operator==(const Removed&) const = default;
   };
   std::vector<Removed> removed;  ///< nodes and edges removed just past the furthest layer, in the order of words(cause)
+  /// A layer at whose pose no joints within their limits are, at any arm angle, by the closed form: of those at waypoints the
+  /// first, else of all. Looked for on exact S-R-S arms alone.
+  struct Unreachable {
+    int layer = 0;
+    double s = 0;       ///< m
+    int waypoint = -1;  ///< 0-based; -1: between waypoints
+  };
+  std::optional<Unreachable> unreachable;
+  /// How much further than this resolution "no path" goes: whatever the resolution, for a tool that stands exactly at its
+  /// waypoints, or exactly on all of its path.
+  enum class Holds { kThisResolution, kExactTool, kEveryResolution };
+  [[nodiscard]] Holds holds() const {
+    if (!unreachable) return Holds::kThisResolution;
+    return unreachable->waypoint < 0 ? Holds::kExactTool : Holds::kEveryResolution;
+  }
   /// False where time ran out, or the layers were too many or too costly to look at all. What is said is true nevertheless.
   bool complete = true;
   int layers_known = 0;  ///< layers, from the first on, of which it is known whether they are empty
 };
+
+[[nodiscard]] const char* to_string(Diagnosis::Holds holds);
 
 /// What a plan is to find besides verdict, trajectory, counters, and where and why every path ends. Each costs time of its own.
 struct Evidence {
@@ -149,8 +166,9 @@ struct PlanResult : Measures {
   int threads = 1;
   LatticeInfo lattice;
   Counters counters;
-  std::map<std::string, double> time_ms;  ///< load, prepare, plan, report, and stages
+  std::map<std::string, double> time_ms;  ///< load, prepare, plan, check, report, and stages
   std::vector<TrajectoryRow> trajectory;  ///< empty unless solved
+  bool checked = false;                   ///< PlanOptions::check: it was proved, and the motion that was made of it
   /// Where there is no answer: rows from the first layer on that are valid, as far as they are known; maybe none.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;

@@ -84,6 +84,7 @@ struct Resolution {
   double dphi = 0.05;   ///< rad
   double dalpha = 0.1;  ///< rad of tool rotation
   double arc = 0.2;     ///< rad of self-motion between nodes, of arms that have no arm angle
+  bool arcs = false;    ///< of S-R-S arms: nodes on arcs of arm angles that lie between those of the grid
   bool operator==(const Resolution&) const = default;
 };
 
@@ -94,7 +95,7 @@ struct Cost {
 };
 
 /// Uniform offsets of one scene object for campaign episodes, half-widths. docs/formats.md.
-struct Vary {
+struct Variation {
   std::string object;
   Vector3d xyz = Vector3d::Zero();
   Vector3d rpy = Vector3d::Zero();
@@ -141,7 +142,7 @@ struct Task {
 struct Problem : Robot, Task {
   std::string source;  ///< problem file, for messages
   std::vector<SceneObject> scene;
-  std::vector<Vary> vary;
+  std::vector<Variation> vary;
 };
 
 /// The problem of episode `k` under seed `s`: objects named in `vary` moved (SplitMix64 seeded by (s, k) alone; in the order of

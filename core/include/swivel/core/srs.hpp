@@ -49,7 +49,7 @@ struct SrsArm {
   [[nodiscard]] double shoulder_angle(const Config& q) const { return q[1] + shoulder.shift; }
   [[nodiscard]] double elbow_angle(const Config& q) const { return q[3] + elbow_shift; }
   [[nodiscard]] double wrist_angle(const Config& q) const { return q[5] + wrist.shift; }
-  /// Branch label of a configuration.
+  /// Branch sheet of a configuration.
   [[nodiscard]] int branch(const Config& q) const;
   /// Direction of axis 4 at q (fitted arm), base frame: what the arm angle measures.
   [[nodiscard]] Vector3d elbow_axis(const Config& q) const;

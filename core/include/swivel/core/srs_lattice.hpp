@@ -3,32 +3,38 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/limit_arcs.hpp"
+#include "swivel/core/row_shift.hpp"
 #include "swivel/core/srs.hpp"
 
 namespace swivel {
 
-/// The joints of all labels of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice node.
-/// Labels share the arrays of what they have in common: four branches have a triple's solution each.
+struct TripleTask;
+
+/// The joints of all sheets of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice node.
+/// Sheets share the arrays of what they have in common: four branches have a triple's solution each. Branches with a moved cell in
+/// the layer have arrays of their own.
 class LayerNodes {
  public:
-  /// Joint k (0..6) of label, an array over the run.
-  [[nodiscard]] const double* q(int label, int k) const { return data_.data() + at(label).q[static_cast<std::size_t>(k)]; }
+  /// Joint k (0..6) of sheet, an array over the run.
+  [[nodiscard]] const double* q(int sheet, int k) const { return data_.data() + at(sheet).q[static_cast<std::size_t>(k)]; }
   /// Two arrays over the run, of zeros and infinities: a node exists (IK, singularity, limits) where both are 0.
-  [[nodiscard]] const double* bar(int label, std::size_t which) const { return data_.data() + at(label).bar[which]; }
-  [[nodiscard]] bool valid(int label, int k) const { return bar(label, 0)[k] + bar(label, 1)[k] == 0; }
-  /// False where no node of the label exists, whatever the arm angle.
-  [[nodiscard]] bool alive(int label) const { return at(label).alive; }
+  [[nodiscard]] const double* mask(int sheet, std::size_t which) const { return data_.data() + at(sheet).mask[which]; }
+  [[nodiscard]] bool valid(int sheet, int k) const { return mask(sheet, 0)[k] + mask(sheet, 1)[k] == 0; }
+  /// False where no node of the sheet exists, whatever the arm angle.
+  [[nodiscard]] bool alive(int sheet) const { return at(sheet).alive; }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(data_.size()) * sizeof(double); }
   /// Copies `count` entries of every array from one place of the run to another.
   void repeat(int from, int to, int count);
-  [[nodiscard]] Config config(int label, int k) const {
+  [[nodiscard]] Config config(int sheet, int k) const {
     Config c;
-    for (int j = 0; j < kDof; ++j) c[j] = q(label, j)[k];
+    for (int j = 0; j < kDof; ++j) c[j] = q(sheet, j)[k];
     return c;
   }
 
@@ -36,20 +42,22 @@ class LayerNodes {
   friend class SrsLattice;
   struct Offsets {  // into data_
     std::array<std::size_t, kDof> q{};
-    std::array<std::size_t, 2> bar{};
+    std::array<std::size_t, 2> mask{};
     bool alive = false;
   };
-  [[nodiscard]] const Offsets& at(int label) const { return offsets_[static_cast<std::size_t>(label)]; }
+  [[nodiscard]] const Offsets& at(int sheet) const { return offsets_[static_cast<std::size_t>(sheet)]; }
   struct Layout {  // what the offsets depend on
     std::uint64_t lattice = 0;
     int count = 0;
     bool elbow0 = false, elbow1 = false, start = false;
+    std::uint8_t moved = 0;  // bit b: branch b has arrays of its own
     bool operator==(const Layout&) const = default;
   };
   Layout layout_;
   int layer_ = -1, first_ = 0, count_ = 0;
   Eigen::ArrayXd data_;
-  std::vector<Offsets> offsets_;  // [label]
+  std::vector<Offsets> offsets_;                  // [sheet]
+  std::array<std::array<Offsets, 2>, 2> shared_;  // [elbow][sign of the triples]: what is solved, of the first winding
 };
 
 /// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as the range has turns, begun ones
@@ -61,10 +69,14 @@ class LayerNodes {
 /// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's misfit; rows are
 /// polished.
 ///
-/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `labels` = 8 branches x windings of
-/// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = label * angles +
+/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `sheets` = 8 branches x windings of
+/// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = sheet * angles +
 /// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
 /// asked.
+///
+/// With `resolution.arcs` a cell, the arm angles nearest to grid angle j, has a node wherever it meets an arc: if there is none at
+/// its own angle, it is *moved* to the nearest angle of the sheet's arcs, or to the middle of an arc that lies in the cell as a
+/// whole. Moved cells are few, found when the lattice is made, and kept: 80 bytes each. The window counts cells, moved or not.
 class SrsLattice final : public Lattice {
  public:
   /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
@@ -72,19 +84,19 @@ class SrsLattice final : public Lattice {
   SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {});
 
   [[nodiscard]] int angles() const { return angles_; }
-  [[nodiscard]] int labels() const { return kBranches * windings_; }
+  [[nodiscard]] int sheets() const { return kBranches * windings_; }
   [[nodiscard]] int windings() const { return windings_; }
   [[nodiscard]] int window() const { return window_; }
   /// Slots of every layer.
-  [[nodiscard]] int width() const { return labels() * angles_; }
-  [[nodiscard]] int label_of(int slot) const { return slot / angles_; }
+  [[nodiscard]] int width() const { return sheets() * angles_; }
+  [[nodiscard]] int sheet_of(int slot) const { return slot / angles_; }
   [[nodiscard]] int angle_of(int slot) const { return slot % angles_; }
-  [[nodiscard]] int branch_of(int slot) const { return label_of(slot) / windings_; }
+  [[nodiscard]] int branch_of(int slot) const { return sheet_of(slot) / windings_; }
   [[nodiscard]] const SrsArm& arm() const { return *arm_; }
   [[nodiscard]] const ArmPlane& plane(int layer) const { return planes_[static_cast<std::size_t>(layer)]; }
   /// True where layer 0 is the given start alone.
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Slot that stands for the given start in layer 0 (its label, the grid angle nearest to its own).
+  /// Slot that stands for the given start in layer 0 (its sheet, the grid angle nearest to its own).
   [[nodiscard]] int start_slot() const { return start_->slot; }
 
   [[nodiscard]] int slots(int) const override { return width(); }
@@ -97,33 +109,58 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
   /// The wrist centre from the shoulder.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
+  /// Of exact arms: out of reach, or no sheet has an arc.
+  [[nodiscard]] bool proved_unreachable(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
+  /// The most that phi may change along an edge, rad.
+  [[nodiscard]] double most_turn() const {
+    return (window_ + (moved_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;  // both ends half a cell from the grid
+  }
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int beside(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// The last link and the tool stand where the layer puts them; links 3 and 4 where arm angle and sign of the elbow do; links 1
-  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's. On arms that are not exact only the last link and the tool
-  /// stand alike: rows place them to 1e-10 m, the others by the fitted arm's misfit.
-  [[nodiscard]] bool stand_alike(unsigned groups) const override { return arm_->exact || (groups & ~(1u << kDof)) == 0; }
+  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's.
+  [[nodiscard]] bool stand_alike(unsigned) const override { return true; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
 
+  // --- arcs
+  /// Replaces `out` by the arcs of arm angles at which a sheet's joints are within their limits, found in closed form, whether
+  /// nodes are there or not; a given start counts as any pose. Of an arm that is not exactly S-R-S those at which rows are as well:
+  /// within limits narrowed by the misfit.
+  void arcs(int layer, int sheet, std::vector<AngleArc>& out) const;
+  /// A cell whose node does not stand at its own angle.
+  struct Moved {
+    int slot = 0;
+    double phi = 0;
+    Config q;
+  };
+  /// Of a layer, in order of slots.
+  [[nodiscard]] std::span<const Moved> moved(int layer) const {
+    if (moved_.empty()) return {};
+    const std::size_t begin = moved_begin_[static_cast<std::size_t>(layer)];
+    return {moved_.data() + begin, moved_begin_[static_cast<std::size_t>(layer) + 1] - begin};
+  }
+
   // --- nodes of whole runs, in vector code
-  /// Nodes j = first ... first + count - 1 of every label, taken around the circle; first < angles, count <= 2 angles.
+  /// Nodes j = first ... first + count - 1 of every sheet, taken around the circle; first < angles, count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
-  /// Labels fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
+  /// Sheets fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
   static constexpr int kFamilies = 2;
-  [[nodiscard]] int family_of(int label) const { return label / windings_ & kElbowBit ? 1 : 0; }
-  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the labels of one family.
+  [[nodiscard]] int family_of(int sheet) const { return sheet / windings_ & kElbowBit ? 1 : 0; }
+  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the sheets of one family.
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
   void solve_part(int family, int begin, int end, LayerNodes& out) const;
   /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
   [[nodiscard]] bool alive(int layer) const { return (layer == 0 && start_) || elbow_alive(layer, 0) || elbow_alive(layer, 1); }
   /// False where no edge can lead from a family of `layer` to one of a neighbouring layer; the step's number is `step_layer`.
   [[nodiscard]] bool families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const;
-  /// A branch flips only through the zero of a middle joint: these tell labels apart, the first two those of one family.
+  /// A branch flips only through the zero of a middle joint: these tell sheets apart, the first two those of one family.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
   /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings apart.
   static constexpr std::array<int, 5> kOuterJoints{0, 2, 4, 6, 3};
@@ -147,6 +184,25 @@ class SrsLattice final : public Lattice {
     Config node, row;  // the fitted arm's solution there, or the given joints where it has none; the given joints
   };
   void lay_out_start(LayerNodes& out) const;
+  /// Entries begin ... end - 1 of what a sheet with arrays of its own has in common with others.
+  void copy_shared(int sheet, int begin, int end, LayerNodes& out) const;
+  /// The grid angle of a slot's cell, rad.
+  [[nodiscard]] double cell_angle(int slot) const { return -kPi + kTwoPi * angle_of(slot) / angles_; }
+  [[nodiscard]] const Moved* find_moved(int layer, int slot) const;
+  /// The node of a slot at an arm angle.
+  [[nodiscard]] std::optional<Config> solved(int layer, int slot, double sine, double cosine) const;
+  void prepare_arcs();
+  void triple_arcs(int layer, int sheet, int triple, std::vector<AngleArc>& out) const;
+  [[nodiscard]] bool elbow_within(int layer, int sheet) const;
+  void move_cells(const Budget& budget);
+  /// Of a sheet, among the windings of a triple.
+  [[nodiscard]] int triple_winding(int sheet, int triple) const;
+  [[nodiscard]] int triple_windings(int triple) const {
+    return static_cast<int>(triple_limits_[static_cast<std::size_t>(triple)].size());
+  }
+  void move_cells_of(int layer, int sheet, const std::vector<AngleArc>& arcs);
+  /// What a layer's shoulder (0) or wrist (1) triple asks of the kernel; the run and where its results go are the caller's.
+  [[nodiscard]] TripleTask triple_task(const ElbowCircle& circle, int triple) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
   /// Joint 4 of a layer's nodes by the sign of the elbow, which the arm angle does not move: layers without a start.
   [[nodiscard]] std::optional<double> elbow_angle(int layer, int elbow) const;
@@ -171,6 +227,11 @@ class SrsLattice final : public Lattice {
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
   std::vector<std::uint8_t> elbow_alive_;            // [layer][elbow]: its angle lies within the limits
   std::optional<Start> start_;
+  std::optional<RowShift> row_shift_;                       // of an arm that is not exact
+  std::array<std::vector<TripleLimits>, 2> triple_limits_;  // [triple][its winding]
+  std::vector<Moved> moved_;                                // empty too where resolution.arcs is off
+  std::vector<std::size_t> moved_begin_;                    // [layer], and the end
+  std::vector<std::uint8_t> moved_branches_;                // [layer], bits
 };
 
 /// The planes of a path's layers, carried from the beginning of the whole path: where it begins at a start between two layers, that

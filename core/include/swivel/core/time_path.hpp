@@ -12,7 +12,7 @@
 
 namespace swivel {
 
-/// What the joints can do: rad/s, rad/s^2, rad/s^3, all > 0.
+/// What the joints can do: rad/s, rad/s^2, rad/s^3, all > 0. Infinite for the roll of the tool, which is no joint.
 struct JointRates {
   Config speed = Config::Zero(), acceleration = Config::Zero(), jerk = Config::Zero();
   std::vector<std::string> assumed;  ///< one line for what neither problem nor robot model states
@@ -41,6 +41,7 @@ enum class JointRate { kSpeed, kAcceleration, kJerk };
 struct TimedPath {
   std::vector<TimedRow> rows;  ///< at k / rate, the last at rest at the path's end
   double rate = 0;
+  bool roll = false;    ///< the last joint of rows is the roll of the tool (Chain::roll), which no controller moves
   double duration = 0;  ///< s, until the tool rests at the end; less than the last row's t by less than a sample
   double ideal = 0;     ///< s, at the speeds asked for from the first moment to the last
   /// The largest of a joint's differences between samples, by what the joint can do.

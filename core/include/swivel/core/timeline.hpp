@@ -31,7 +31,7 @@ class Timeline {
   [[nodiscard]] static Timeline* active() { return active_.load(std::memory_order_relaxed); }
 
  private:
-  friend class Span;
+  friend class TraceSpan;
   struct Impl;
   [[nodiscard]] std::int64_t now() const;
   void add(const Event& event);
@@ -41,18 +41,18 @@ class Timeline {
 };
 
 /// A stretch of work, from construction to destruction. Costs one predicted branch at either end where no timeline lives.
-class Span {
+class TraceSpan {
  public:
-  explicit Span(const char* name) {
+  explicit TraceSpan(const char* name) {
     if (Timeline::active() != nullptr) [[unlikely]]
       begin(name);
   }
-  ~Span() {
+  ~TraceSpan() {
     if (event_.name != nullptr) [[unlikely]]
       end();
   }
-  Span(const Span&) = delete;
-  Span& operator=(const Span&) = delete;
+  TraceSpan(const TraceSpan&) = delete;
+  TraceSpan& operator=(const TraceSpan&) = delete;
   /// A number to show with it; `name` is a literal.
   void count(const char* name, std::int64_t n) {
     event_.count_name = name;

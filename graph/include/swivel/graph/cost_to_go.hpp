@@ -29,6 +29,8 @@ class CostToGo {
   /// Forgets removals and counts, and begins again within another budget. True where values are now those of a lattice without
   /// removals and the last layer as its goal, as they were found before; else sweep() comes next.
   [[nodiscard]] bool restart(const Budget& budget);
+  /// Nothing is kept for restart() from now on.
+  void never_restarts() { restarts_ = false; }
 
   /// Cost-to-go with every node of `goal_layer` as a goal; verdicts are kept.
   void sweep(int goal_layer);
@@ -79,6 +81,7 @@ class CostToGo {
   enum class Unremoved { kUnknown, kPresent, kSaved };
   void save_unremoved();
   Unremoved unremoved_ = Unremoved::kUnknown;
+  bool restarts_ = true;
 };
 
 /// kBounded may leave out nodes that a lower bound proves to lie on no best path: they then read as unreachable, or as costlier

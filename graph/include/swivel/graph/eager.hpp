@@ -7,7 +7,6 @@
 namespace swivel {
 
 /// The paper's method: every node and every edge validated first, edges stored, then a search by Boost.Graph. The baseline.
-enum class EagerSearch { kDijkstra, kAStar };
 struct EagerOutcome : SearchOutcome {
   /// Deepest layer that layer 0 reaches when there is no path; -1 when layer 0 is empty; none where it was stopped before it knew.
   std::optional<int> deepest;
@@ -15,9 +14,9 @@ struct EagerOutcome : SearchOutcome {
   std::int64_t ik_nodes = 0;
   std::int64_t expansions = 0;
 };
-/// Explicit graph. Throws std::bad_alloc beyond the machine's memory, and Stopped, like eager_dp: the counts are then those of what
-/// was done.
-void eager_search(const Lattice& lattice, Validity& validity, EagerSearch search, const Budget& budget, EagerOutcome& outcome);
+/// Explicit graph, searched by Dijkstra from the goal. Throws std::bad_alloc beyond the machine's memory, and Stopped, like
+/// eager_dp: the counts are then those of what was done.
+void eager_search(const Lattice& lattice, Validity& validity, const Budget& budget, EagerOutcome& outcome);
 
 /// Same validity, a layered dynamic program over the window, no stored edges: the strong baseline. An edge is asked about only when
 /// it would be its tail's best so far.

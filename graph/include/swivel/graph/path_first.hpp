@@ -32,7 +32,7 @@ struct SearchCounters {
   SlotPath candidate;  ///< tried last
 };
 /// What failed in a search of the same lattice before, and is likely to fail again.
-struct Suspects {
+struct AskedFirst {
   std::vector<NodeQuestion> nodes;
   std::vector<EdgeQuestion> edges;
 };
@@ -41,9 +41,9 @@ struct Suspects {
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
 /// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
 /// least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
-/// Suspects are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
+/// They are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                       SearchCounters& counters, const Suspects& suspects = {});
+                                       SearchCounters& counters, const AskedFirst& first = {});
 
 /// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
 /// the cost-to-go with that layer as its goal. Throws Stopped.

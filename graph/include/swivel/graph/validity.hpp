@@ -8,16 +8,16 @@
 namespace swivel {
 
 /// What is known of a node or edge beyond the closed form.
-enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };
+enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };  // zeros are kUnknown
 
 /// What a node fails by, numbered as the Validity likes: a hint for questions about nodes nearby, which often fail by the same.
-using Fault = std::int64_t;
-inline constexpr Fault kNoFault = -1;
+using FailureId = std::int64_t;
+inline constexpr FailureId kNoFailure = -1;
 
 struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
-  Fault suspect = kNoFault;
+  FailureId likely = kNoFailure;
 };
 struct EdgeQuestion {
   int layer = 0;  ///< of a; b lies in the next layer
@@ -30,8 +30,8 @@ struct NodeAnswer {
   /// Of a failure: true where it is one of every node of the layer at which the bodies of `groups` stand as they do here, see
   /// Lattice::alike. So one failure may remove many nodes.
   bool shared = false;
-  unsigned groups = 0;     ///< bit g: the bodies that move with joint g of 1..7
-  Fault fault = kNoFault;  ///< of a failure
+  unsigned groups = 0;             ///< bit g: the bodies that move with joint g of 1..7
+  FailureId failure = kNoFailure;  ///< of a failure
 };
 
 /// The costly predicates of nodes and edges, asked in batches; a search asks about each node and edge at most once. A batch throws

@@ -2,10 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/zeroed_array.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {
@@ -22,7 +24,7 @@ class Verdicts {
   /// Of the slots from `slot` on.
   [[nodiscard]] const Verdict* nodes(int layer, int slot) const { return node_.data() + index(layer, slot); }
   /// Of every node, layer by layer in slot order.
-  [[nodiscard]] const std::vector<Verdict>& nodes() const { return node_; }
+  [[nodiscard]] std::span<const Verdict> nodes() const { return {node_.data(), node_.size()}; }
   void keep_node(int layer, int slot);
   void remove_node(int layer, int slot);
 
@@ -85,7 +87,7 @@ class Verdicts {
   }
 
   std::vector<std::size_t> first_;  // of each layer
-  std::vector<Verdict> node_;
+  ZeroedArray<Verdict> node_;
   std::vector<std::size_t> known_;          // indices of nodes, as they came to be known
   std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
   std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "swivel/core/campaign.hpp"
+#include "swivel/core/cut.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
@@ -33,6 +34,10 @@ using MeshCache = std::map<std::string, MeshPtr>;
                                                            const std::filesystem::path& srdf = {},
                                                            const std::map<std::string, std::filesystem::path>& packages = {});
 
+/// The same of texts, as a program holds them: relative names of meshes are those of the current folder.
+[[nodiscard]] std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf = {},
+                                                            const std::map<std::string, std::filesystem::path>& packages = {});
+
 /// Links and joints of a URDF without shapes. Meshes are not read; `missing_meshes` gets a message for each that is not found.
 [[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
                                                                 const std::map<std::string, std::filesystem::path>& packages,
@@ -44,7 +49,7 @@ using MeshCache = std::map<std::string, MeshPtr>;
 /// PROBLEM.yaml, docs/formats.md. Unknown keys are errors with the nearest known key named.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
-/// TRAJ.csv: header s,phi,branch,<seven joint names>, 17 significant digits.
+/// TRAJ.csv: header s, phi, branch and the seven joint names, 17 significant digits.
 [[nodiscard]] std::string to_csv(const PlanResult& result);
 /// The same as a file, written beside and renamed.
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result);
@@ -54,6 +59,9 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 
 /// RESULT.json as text, docs/formats.md. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
+/// CERTIFICATE.json, docs/formats.md: a line for each layer.
+[[nodiscard]] std::string to_json(const Cut& cut);
+[[nodiscard]] Cut load_cut(const std::filesystem::path& json);
 /// RESULT.json after an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// The timeline in Chrome's trace event format, which Perfetto and speedscope open.
@@ -141,10 +149,11 @@ class OutputFiles {
   std::vector<Output> outputs_;
 };
 
-/// What the rows of a campaign hang on. Rows of other settings must not be mixed with them.
-struct CampaignSettings {
+/// What the rows of a campaign or of placements hang on. Rows of other settings must not be mixed with them.
+struct RunSettings {
   std::vector<std::pair<std::string, std::string>> values;   ///< as "seed", "1"
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
+  std::vector<std::string> coordinates;                      ///< whose offsets the rows have: a column each
 };
 
 /// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs: they are appended to RESULTS.csv.part as they come, so
@@ -153,7 +162,7 @@ class CampaignFile {
  public:
   /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
   /// Throws InputError, which says what differs, where it is of other settings, or its rows are not the first ones of the shard.
-  CampaignFile(const std::filesystem::path& csv, const CampaignSettings& settings, const Shard& shard, std::uint64_t episodes);
+  CampaignFile(const std::filesystem::path& csv, const RunSettings& settings, const Shard& shard, std::uint64_t episodes);
   /// Leaves the .part file, but not one without a row.
   ~CampaignFile();
   CampaignFile(const CampaignFile&) = delete;
@@ -175,13 +184,21 @@ class CampaignFile {
   [[noreturn]] void fail(int error) const;
 
   std::filesystem::path part_;
+  std::vector<std::string> coordinates_;
   std::vector<EpisodeRow> rows_;
   std::vector<std::size_t> ends_;  ///< where each row ends in the file, after the end of what stands before them
   int descriptor_ = -1;
 };
 
-/// The rows of a finished RESULTS.csv.
-[[nodiscard]] std::vector<EpisodeRow> load_rows(const std::filesystem::path& csv);
+/// A finished RESULTS.csv of a whole campaign: those of shards are for load_shard().
+struct EpisodeTable {
+  std::vector<std::string> coordinates;  ///< whose offsets the rows have
+  std::vector<EpisodeRow> rows;
+};
+[[nodiscard]] EpisodeTable load_rows(const std::filesystem::path& csv);
+
+/// The text of RESULTS.csv. `coordinates`: whose offsets the rows have.
+[[nodiscard]] std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates);
 
 /// The answer to `campaign --json -`.
 [[nodiscard]] std::string to_json(const CampaignSummary& summary);

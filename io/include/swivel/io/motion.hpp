@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swivel/core/advice.hpp"
+#include "swivel/core/cut.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
@@ -17,12 +18,17 @@ using JointNames = std::array<std::string, kDof>;
 
 /// Header t,s,phi,branch, joints, joints with _v (rad/s), joints with _a (rad/s^2); 17 significant digits.
 [[nodiscard]] std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names);
-/// ROS 2's trajectory_msgs/msg/JointTrajectory. frame_id: the arm's base link.
+/// ROS 2's trajectory_msgs/msg/JointTrajectory, of the joints alone: without the roll of the tool. frame_id: the arm's base link.
 [[nodiscard]] std::string to_trajectory_json(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
 [[nodiscard]] std::string to_trajectory_yaml(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
 /// A log of ROS 2's sensor_msgs/msg/JointState on the topic /joint_states, log time = t: MCAP, profile ros2, CDR, one uncompressed
-/// chunk, with index and summary. https://mcap.dev/spec
+/// chunk, with index and summary, without the roll of the tool. https://mcap.dev/spec
 [[nodiscard]] std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id);
+
+/// The motion in the format that the file name's ending names: .csv, .json, .yaml or .mcap. Throws InputError for another.
+[[nodiscard]] std::string motion_text(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id,
+                                      const std::filesystem::path& file);
+void require_motion_format(const std::filesystem::path& file);
 
 /// What became of a plan's path: null where it was not asked for, or where there is no path.
 struct Aftermath {
@@ -30,8 +36,10 @@ struct Aftermath {
   const TimingResult* motion = nullptr;
   TimingOptions timing;                         ///< what the motion was asked to keep
   const std::vector<Advice>* advice = nullptr;  ///< of a problem that has no path
+  const Cut* cut = nullptr;                     ///< that there is no path
+  std::size_t cut_bytes = 0;                    ///< of its file
 };
-/// to_json(result) with the keys `refinement`, `motion` and `advice` filled in. docs/formats.md "Result".
+/// to_json(result) with the keys `refinement`, `motion`, `advice` and `certificate` filled in. docs/formats.md "Result".
 [[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
 /// A trajectory as a file has it.

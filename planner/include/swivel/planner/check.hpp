@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/budget.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/time_path.hpp"
@@ -48,6 +49,14 @@ struct CheckResult {
   std::int64_t rows_examined = 0, moves_examined = 0, fcl_calls = 0;
 };
 
+struct CheckOptions {
+  /// Whether worst errors and least clearances are found out, and FCL alone is asked. Else the verdict comes sooner: certificates
+  /// answer where they prove, the second bodies that come too near are not looked for, and worst_path_error, worst_path_angle,
+  /// min_clearance and min_margin stay unset.
+  bool margins = true;
+  Budget budget = {};  ///< Stopped is thrown once it is spent
+};
+
 /// Proves a trajectory from the problem alone, or says what is wrong with it. The problem's resolution counts: it cuts the path
 /// into layers, which steps join. Rows may lie anywhere on the path, each further along it than the one before.
 ///
@@ -59,6 +68,7 @@ struct CheckResult {
 /// - of S-R-S arms, phi is the arm angle of the joints (1e-3 rad, whole turns aside), carried along the layers, for a row between
 /// two layers from
 ///   the one before it; branch tells the joints' signs where they are further than 0.01 rad (0.05 on inexact arms) from a change.
+///   Where the tool may roll, phi is the roll (1e-3 rad).
 /// The first row is the path's beginning, and the given start; the last is its end.
 ///
 /// From one row to the next, the joints moving straight:
@@ -71,15 +81,19 @@ struct CheckResult {
 /// - step_error is kept, where both rows are neighbouring layers: elsewhere it is not defined;
 /// - nothing comes nearer than d_edge (0.05 mm), with `edges: continuous`.
 /// Throws InvalidArgument and InputError as plan() does.
-[[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows);
+[[nodiscard]] CheckResult check_trajectory(const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                                           const CheckOptions& options = {});
 /// The same on a robot prepared before. Throws InvalidArgument unless it was prepared for this problem
 /// (PreparedRobot::require_prepared_for).
 [[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
-                                           const std::vector<TrajectoryRow>& rows);
+                                           const std::vector<TrajectoryRow>& rows, const CheckOptions& options = {});
 /// A motion in time: the same, and that speeds, accelerations and jerks of all joints are within joint_rates() (1e-6 of them) by
 /// divided differences of the joints, that v and a of the rows are those of the joints (within what acceleration and jerk change in
 /// a sample), and that limits.tool_speed and tool_turn_speed, where given, are kept (0.1 %). The tool may rest at both ends and at
 /// corners. The problem counts with_motion_defaults(), and nothing comes nearer between rows than d_edge (0.05 mm).
-[[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows);
+[[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
+                                       const CheckOptions& options = {});
+/// Throws std::logic_error where a program's own answer has failed: what fails first, and where.
+void require_passed(const CheckResult& result);
 
 }  // namespace swivel

@@ -32,12 +32,12 @@ struct PlanOptions {
   std::optional<double> timeout_s;
   std::stop_token stop;                       ///< asked from elsewhere to stop, as a time-out does
   const std::atomic<bool>* cancel = nullptr;  ///< the same, for signal handlers
-  Evidence evidence;                          ///< what to find besides the verdict
-  Hooks hooks;                                ///< rules and costs of the caller's own, of any planner
-  ProgressFunction progress;                  ///< called now and then from the planning thread; must be quick
-  EagerSearch eager_search = EagerSearch::kDijkstra;
-  /// lazy, parallel: FCL is asked about every pair as well; std::logic_error where a certificate contradicts it. For tests.
-  bool compare_with_fcl = false;
+  /// Prove every trajectory (and motion) as check_trajectory() does before it is returned, within the time-out: one that fails is a
+  /// bug and std::logic_error, never an answer; one that is not proved in time is none.
+  bool check = false;
+  Evidence evidence;          ///< what to find besides the verdict
+  Hooks hooks;                ///< rules and costs of the caller's own, of any planner
+  ProgressFunction progress;  ///< called now and then from the planning thread; must be quick
   Executor::Backend backend = Executor::Backend::kTbb;
   /// The budget of a plan that begins now. The options must outlive it.
   [[nodiscard]] Budget budget() const { return Budget(timeout_s, cancel, stop, &progress); }

@@ -70,6 +70,7 @@ class Planner {
   [[nodiscard]] PlanView view() const;
 
  private:
+  friend PlanResult plan(const Problem& problem, const PlanOptions& options);
   friend PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options);
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -33,24 +33,24 @@ struct LatticeMap {
   bool grid = true;  ///< a cell a node
   int layers = 0, angles = 0, windings = 1;
   std::vector<double> s;                                      ///< m, of each layer
-  std::vector<Node> nodes;                                    ///< [layer][label][angle], label = branch * windings + winding
+  std::vector<Node> nodes;                                    ///< [layer][sheet][angle], sheet = branch * windings + winding
   std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
-  std::vector<int> path;  ///< one cell in each layer, label * angles + angle: the answer, or a way to the furthest layer reached
+  std::vector<int> path;  ///< one cell in each layer, sheet * angles + angle: the answer, or a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
 
-  [[nodiscard]] int labels() const { return kBranches * windings; }
-  [[nodiscard]] const Node& at(int layer, int label, int angle) const {
-    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(labels()) + static_cast<std::size_t>(label)) *
+  [[nodiscard]] int sheets() const { return kBranches * windings; }
+  [[nodiscard]] const Node& at(int layer, int sheet, int angle) const {
+    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(sheets()) + static_cast<std::size_t>(sheet)) *
                      static_cast<std::size_t>(angles) +
                  static_cast<std::size_t>(angle)];
   }
   /// Labels that have a node, or the path.
-  [[nodiscard]] std::vector<int> inhabited_labels() const;
+  [[nodiscard]] std::vector<int> inhabited_sheets() const;
   /// What blocks a blocked node, in words.
   [[nodiscard]] std::string blocker_name(const Node& node) const;
   /// "shoulder +, wrist -, elbow +", with the winding where there are several.
-  [[nodiscard]] std::string label_name(int label) const;
+  [[nodiscard]] std::string sheet_name(int sheet) const;
 };
 
 /// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and generalised arm angle.
@@ -60,7 +60,7 @@ struct LatticeMap {
 /// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// The map in text, one panel per inhabited label: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for
+/// The map in text, one panel per inhabited sheet: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for
 /// as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 

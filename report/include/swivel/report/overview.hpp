@@ -15,7 +15,8 @@ struct CampaignFacts {
   std::uint64_t seed = 0;
   Shard shard;
   std::string planner;
-  std::string plan_command;  ///< plans one episode, but for "--episode K" at its end
+  std::string plan_command;              ///< plans one episode, but for "--episode K" at its end
+  std::vector<std::string> coordinates;  ///< whose offsets the rows have
 };
 
 /// One HTML file that needs nothing else: verdicts, times and costs, where episodes fail and why, and every episode with the

@@ -28,20 +28,22 @@ class ImplicitLattice {
 
   explicit ImplicitLattice(CostToGo& cost_to_go, double slack = 0);
 
-  [[nodiscard]] Vertex root() const { return togo_->lattice().layers() * width_; }
+  [[nodiscard]] Vertex root() const { return cost_to_go_->lattice().layers() * width_; }
   [[nodiscard]] Vertex vertex(int layer, int slot) const { return layer * width_ + slot; }
   [[nodiscard]] int layer_of(Vertex v) const { return static_cast<int>(v / width_); }
   [[nodiscard]] int slot_of(Vertex v) const { return static_cast<int>(v % width_); }
   /// Most slots of a layer.
   [[nodiscard]] std::int64_t width() const { return width_; }
-  [[nodiscard]] double cost_to_go(Vertex v) const { return v == root() ? togo_->best() : togo_->at(layer_of(v), slot_of(v)); }
-  [[nodiscard]] const CostToGo& values() const { return *togo_; }
+  [[nodiscard]] double cost_to_go(Vertex v) const {
+    return v == root() ? cost_to_go_->best() : cost_to_go_->at(layer_of(v), slot_of(v));
+  }
+  [[nodiscard]] const CostToGo& values() const { return *cost_to_go_; }
 
   /// The edges that leave v. Valid until the next call: a search looks at one vertex's edges at a time.
   [[nodiscard]] const std::vector<Edge>& expand(Vertex v) const;
 
  private:
-  CostToGo* togo_;
+  CostToGo* cost_to_go_;
   double slack_;
   std::int64_t width_ = 1;
   // Scratch of the one search that walks this graph; the graph itself has no state.

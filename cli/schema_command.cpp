@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/io/schema_text.hpp"
+
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+
+namespace swivel::cli {
+
+void add_schema(CLI::App& app, int& exit_code) {
+  static const std::map<std::string, std::function<std::string()>> kTexts{
+      {"problem", io::problem_json_schema}, {"result", io::result_json_schema}, {"tables", io::schema_tables}};
+  CLI::App* command = app.add_subcommand("schema", "Print what a problem file or a result may hold, as JSON Schema");
+  auto file = std::make_shared<std::string>();  // shared: lives as long as the callback that reads it
+  command->add_option("file", *file, "problem, result; or tables: all keys as tables in Markdown")
+      ->required()
+      ->check(CLI::IsMember({"problem", "result", "tables"}));
+  command->callback([file, &exit_code] {
+    std::fputs(kTexts.at(*file)().c_str(), stdout);
+    exit_code = kOk;
+  });
+}
+
+}  // namespace swivel::cli

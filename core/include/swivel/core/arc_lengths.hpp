@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "swivel/core/layer_solver.hpp"
+#include "swivel/core/tool_path.hpp"
+
+namespace swivel {
+
+class PoseNewton;
+
+/// The joints of each layer of a path along its curve of self-motion: the coordinate is the length of the curve from the joints
+/// given, rad, of either sign. Limits are not asked. Curves are followed as far as they are asked about, until the arm is singular;
+/// so not for several threads at once. Deterministic, and independent of what was asked before.
+class ArcLengths final : public LayerSolver {
+ public:
+  /// `origins`: by layer, at the layer's pose or near it. The path must outlive it.
+  ArcLengths(const Chain& chain, const ToolPath& path, std::vector<Config> origins);
+  ~ArcLengths() override;
+
+  [[nodiscard]] int layers() const override { return static_cast<int>(curves_.size()); }
+  [[nodiscard]] double travel(int layer) const override { return path_->layer(layer).travel; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double length) const override;
+  /// Of the joints half-way: nearest on the curve.
+  [[nodiscard]] double between(int layer, int before, double x, int after, double y) const override;
+
+ private:
+  struct Point {
+    Config q, tangent;  // away from the origin
+    double length = 0;
+  };
+  struct Curve {
+    std::array<std::vector<Point>, 2> side;  // points ahead and behind; the first of both is the origin
+    std::array<bool, 2> ended{};
+  };
+  [[nodiscard]] std::optional<Point> point(int layer, double length) const;
+  bool follow(Curve& curve, std::size_t side, const Pose& tool) const;
+
+  std::unique_ptr<const PoseNewton> newton_;
+  const ToolPath* path_;
+  mutable std::vector<Curve> curves_;
+};
+
+}  // namespace swivel

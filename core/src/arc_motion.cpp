@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arc_motion.hpp"
+
+#include <algorithm>
+
+#include "swivel/core/arc_lattice.hpp"
+
+namespace swivel {
+
+ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                     double apart, double off_limits)
+    : PathMotion(chain, path, rows, apart), lock_(lock), newton_(chain), alignments_(alignments_of(chain)) {
+  // The roll is aligned with nothing that would have to move fast.
+  if (chain.roll) std::erase_if(alignments_, [](const Alignment& a) { return a.joint + 2 == kDof; });
+  move_off_limits(off_limits);
+  for (Eigen::Index j = 0; j < kDof; ++j) {
+    std::vector<double> values;
+    for (const TrajectoryRow& row : rows_) values.push_back(row.q[j]);
+    spline_.emplace_back(travel_, std::move(values));
+  }
+  find_jumps();
+}
+
+void ArcMotion::move_off_limits(double by) {
+  constexpr double kFarthest = 0.1;  // rad, that other joints may move for it
+  for (std::size_t k = 1; k + 1 < rows_.size(); ++k)
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const JointLimit& limit = chain_->limit[j];
+      if (limit.continuous || limit.upper - limit.lower < 2 * by) continue;
+      const auto joint = static_cast<Eigen::Index>(j);
+      const double value = rows_[k].q[joint], inside = std::clamp(value, limit.lower + by, limit.upper - by);
+      if (inside == value) continue;
+      const auto moved = newton_.with_joint_at(rows_[k].q, path_->layer(layer_[k]).tool, static_cast<int>(j), inside);
+      if (moved && (moved->q - rows_[k].q).lpNorm<Eigen::Infinity>() < kFarthest) rows_[k].q = moved->q;
+    }
+}
+
+std::optional<Config> ArcMotion::joints(double travel) const {
+  constexpr int kSteps = 10;
+  const Pose tool = path_->at_travel(travel);
+  Config q;
+  for (std::size_t j = 0; j < kDof; ++j) q[static_cast<Eigen::Index>(j)] = spline_[j].at(travel);
+  const auto near = newton_.nearest(q, tool, Config::Ones(), kSteps);
+  if (!near) return std::nullopt;
+  // One step more, so that joints are as smooth as their digits go: jerks are differences over milliseconds.
+  const auto exact = newton_.nearest(near->q, tool, Config::Ones(), 1);
+  return exact ? exact->q : near->q;
+}
+
+/// Whether joints go on from x0 to x1: halves that are no shorter than the whole, down to nothing, tell of a jump.
+bool ArcMotion::leads_over(double x0, const Config& q0, double x1, const Config& q1) const {
+  constexpr double kSmall = 1e-3, kUneven = 0.75;  // rad, and of the whole
+  const double whole = (q1 - q0).norm();
+  if (whole < kSmall) return true;
+  const double middle = (x0 + x1) / 2;
+  if (!(x0 < middle && middle < x1)) return false;
+  const auto q = joints(middle);
+  if (!q) return false;
+  return ((*q - q0).norm() <= kUneven * whole || leads_over(x0, q0, middle, *q)) &&
+         ((q1 - *q).norm() <= kUneven * whole || leads_over(middle, *q, x1, q1));
+}
+
+void ArcMotion::find_jumps() {
+  constexpr int kParts = 4;
+  for (std::size_t k = 0; k + 1 < travel_.size(); ++k) {
+    double before = travel_[k];
+    auto q = joints(before);
+    for (int part = 1; part <= kParts; ++part) {
+      const double after = travel_[k] + part * (travel_[k + 1] - travel_[k]) / kParts;
+      const auto next = joints(after);
+      if (q && next && leads_over(before, *q, after, *next)) {
+        before = after;
+        q = next;
+        continue;
+      }
+      jumps_.push_back(
+          {rows_[k].s, q && next ? "the joints would have to jump to the next layer" : "the arm has no solution between layers"});
+      break;
+    }
+  }
+}
+
+TrajectoryRow ArcMotion::row(double travel, const Config& q) const {
+  return {place(travel).s, arc_angle(*chain_, q), arc_branch(*chain_, lock_, q), q};
+}
+
+std::optional<PathMotion::Singular> ArcMotion::nearest_singular(const Config& q) const {
+  std::optional<Singular> nearest;
+  for (const Alignment& a : alignments_)
+    if (const double away = a.away(q); !nearest || away < nearest->angle) nearest = {a.where(), away};
+  return nearest;
+}
+
+}  // namespace swivel

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "pose_newton.hpp"
+#include "swivel/core/alignment.hpp"
+#include "swivel/core/cubic_spline.hpp"
+#include "swivel/core/path_motion.hpp"
+
+namespace swivel {
+
+/// Of arms without an arm angle (path_motion.hpp): a spline of the joints, moved onto the path.
+class ArcMotion final : public PathMotion {
+ public:
+  ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+            double off_limits);
+  [[nodiscard]] std::optional<Config> joints(double travel) const override;
+  [[nodiscard]] TrajectoryRow row(double travel, const Config& q) const override;
+  [[nodiscard]] std::optional<Singular> nearest_singular(const Config& q) const override;
+
+ private:
+  void move_off_limits(double by);
+  void find_jumps();
+  [[nodiscard]] bool leads_over(double x0, const Config& q0, double x1, const Config& q1) const;
+
+  LockMethod lock_;
+  PoseNewton newton_;
+  std::vector<Alignment> alignments_;  // of the arm's own joints
+  std::vector<CubicSpline> spline_;    // by joint
+};
+
+}  // namespace swivel

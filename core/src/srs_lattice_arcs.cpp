@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The arcs of arm angles within the joint limits, and the cells that are moved onto them.
+#include <algorithm>
+#include <cmath>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kLimitTolerance = 1e-9;  // rad, as nodes have it
+constexpr double kHair = 1e-6;            // rad of arm angle that moved nodes keep from the ends of arcs
+
+}  // namespace
+
+int SrsLattice::triple_winding(int sheet, int triple) const {
+  const int wrist = triple_windings(1), elbow = images_[3].count, winding = sheet % windings_;
+  return triple == 0 ? winding / (wrist * elbow) : winding % wrist;
+}
+
+void SrsLattice::prepare_arcs() {
+  for (int triple = 0; triple < 2; ++triple) {
+    const std::size_t first = triple == 0 ? 0 : 4;
+    int count = 1;
+    for (std::size_t j = first; j < first + 3; ++j) count *= images_[j].count;
+    for (int winding = 0; winding < count; ++winding) {
+      std::array<std::array<double, 2>, 3> ranges;
+      int rest = winding;
+      for (std::size_t j = 3; j-- > 0;) {
+        const Images& images = images_[first + j];
+        const int image = rest % images.count;
+        rest /= images.count;
+        const JointLimit& limit = chain_->limit[first + j];
+        const double begin = images.base + image * kTwoPi, end = begin + kTwoPi;
+        if (continuous_[first + j]) {
+          ranges[j] = {begin, end};
+          continue;
+        }
+        // Of an arm that is not exact, images reach beyond the limits by the misfit; its rows are surely within them as far inside.
+        const double inside = limits_.joint_margin - kLimitTolerance + misfit()[static_cast<Eigen::Index>(first + j)];
+        ranges[j] = {std::max(begin, limit.lower + inside), std::min(end, limit.upper - inside)};
+      }
+      triple_limits_[static_cast<std::size_t>(triple)].emplace_back(ranges, triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift);
+    }
+  }
+}
+
+void SrsLattice::triple_arcs(int layer, int sheet, int triple, std::vector<AngleArc>& out) const {
+  const int branch = sheet / windings_;
+  const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][branch & kElbowBit ? 1 : 0];
+  const auto winding = static_cast<std::size_t>(triple_winding(sheet, triple));
+  const TripleLimits& limits = triple_limits_[static_cast<std::size_t>(triple)][winding];
+  limits.arcs(triple == 0 ? circle.shoulder : circle.wrist, (branch & (triple == 0 ? kShoulderBit : kWristBit)) != 0, out);
+}
+
+bool SrsLattice::elbow_within(int layer, int sheet) const {
+  const int elbow = family_of(sheet);
+  if (!elbow_alive(layer, elbow)) return false;
+  const Images& images = images_[3];
+  const double turns =
+      std::ceil((images.base - circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) / kTwoPi);
+  const double q4 = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4 +
+                    kTwoPi * (turns + winding_images(sheet % windings_, 3));
+  return q4 <= images.upper;
+}
+
+void SrsLattice::arcs(int layer, int sheet, std::vector<AngleArc>& out) const {
+  out.clear();
+  if (!elbow_within(layer, sheet)) return;
+  std::vector<AngleArc> shoulder, wrist;
+  triple_arcs(layer, sheet, 0, shoulder);
+  triple_arcs(layer, sheet, 1, wrist);
+  common_arcs(shoulder, wrist, out);
+}
+
+bool SrsLattice::proved_unreachable(int layer) const {
+  if (!arm_->exact || (layer == 0 && start_)) return false;
+  const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
+  if (reach != ReachStatus::kReachable) return reach == ReachStatus::kOutOfReach;
+  std::vector<AngleArc> found;
+  for (int sheet = 0; sheet < sheets(); ++sheet) {
+    arcs(layer, sheet, found);
+    if (!found.empty()) return false;
+  }
+  return true;
+}
+
+void SrsLattice::move_cells(const Budget& budget) {
+  const TraceSpan span("arcs");
+  moved_begin_.assign(1, 0);
+  moved_branches_.assign(static_cast<std::size_t>(layers()), 0);
+  // Branches and windings share what their triples allow.
+  std::array<std::vector<std::vector<AngleArc>>, 2> of_triple;  // [triple][sign, winding]
+  std::array<std::vector<char>, 2> known;
+  std::vector<AngleArc> arcs;
+  for (int layer = 0; layer < layers(); ++layer) {
+    if (layer % 64 == 0) budget.poll(Stage::kLattice, layer, layers());
+    for (int family = 0; family < kFamilies && !(layer == 0 && start_); ++family) {
+      for (std::size_t triple = 0; triple < 2; ++triple) {
+        of_triple[triple].resize(2 * triple_limits_[triple].size());
+        known[triple].assign(of_triple[triple].size(), 0);
+      }
+      const int half = sheets() / kFamilies;
+      for (int sheet = family * half; sheet < (family + 1) * half; ++sheet) {
+        if (!elbow_within(layer, sheet)) continue;
+        const auto found = [&](int triple) -> const std::vector<AngleArc>& {
+          const bool negative = (sheet / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;
+          const auto t = static_cast<std::size_t>(triple),
+                     k = 2 * static_cast<std::size_t>(triple_winding(sheet, triple)) + (negative ? 1 : 0);
+          if (!known[t][k]) triple_arcs(layer, sheet, triple, of_triple[t][k]);
+          known[t][k] = 1;
+          return of_triple[t][k];
+        };
+        if (found(0).empty() || found(1).empty()) continue;
+        common_arcs(found(0), found(1), arcs);
+        move_cells_of(layer, sheet, arcs);
+      }
+    }
+    moved_begin_.push_back(moved_.size());
+  }
+}
+
+void SrsLattice::move_cells_of(int layer, int sheet, const std::vector<AngleArc>& arcs) {
+  struct Move {
+    int cell;
+    double phi, away;  // away: from the cell's own angle
+  };
+  std::vector<Move> moves;
+  const double step = kTwoPi / angles_;
+  const auto cell_at = [&](double phi) { return std::llround((phi + kPi) / step); };
+  const auto angle_of_cell = [&](long long cell) { return -kPi + step * static_cast<double>(cell); };
+  const auto add = [&](long long cell, double phi) {
+    const int wrapped = static_cast<int>((cell % angles_ + angles_) % angles_);
+    const double away = std::abs(phi - angle_of_cell(cell));
+    const auto same = std::find_if(moves.begin(), moves.end(), [&](const Move& move) { return move.cell == wrapped; });
+    if (same == moves.end())
+      moves.push_back({wrapped, wrap_angle(phi), away});
+    else if (away < same->away)
+      *same = {wrapped, wrap_angle(phi), away};
+  };
+  for (const AngleArc& arc : arcs) {
+    const double begin = arc.begin + kHair, end = arc.end - kHair;
+    if (arc.whole() || end < begin) continue;
+    const long long first = cell_at(begin), last = cell_at(end);
+    const bool first_inside = angle_of_cell(first) >= begin && angle_of_cell(first) <= end;
+    const bool last_inside = angle_of_cell(last) >= begin && angle_of_cell(last) <= end;
+    if (first == last && !first_inside) add(first, (begin + end) / 2);
+    if (first == last) continue;
+    if (!first_inside) add(first, begin);
+    if (!last_inside) add(last, end);
+  }
+  std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.cell < b.cell; });
+  for (const Move& move : moves) {
+    const int slot = sheet * angles_ + move.cell;
+    const auto own = static_cast<std::size_t>(move.cell);
+    const double phi = angle_of_cell(move.cell);
+    const bool near = std::any_of(arcs.begin(), arcs.end(), [&](const AngleArc& arc) {
+      return std::abs(wrap_angle(phi - (arc.begin + arc.end) / 2)) <= (arc.end - arc.begin) / 2 + 10 * kHair;
+    });
+    // Another arc may lead through the cell's own angle, or one may end there: the node itself tells. Bounds of an arm that is not
+    // exact are wider than the arcs.
+    if ((near || !arm_->exact) && solved(layer, slot, sine_[own], cosine_[own])) continue;
+    const auto q = solved(layer, slot, std::sin(move.phi), std::cos(move.phi));
+    if (!q) continue;  // beside a singular pose
+    moved_.push_back({slot, move.phi, *q});
+    moved_branches_[static_cast<std::size_t>(layer)] |= static_cast<std::uint8_t>(1 << branch_of(slot));
+  }
+}
+
+const SrsLattice::Moved* SrsLattice::find_moved(int layer, int slot) const {
+  const std::span<const Moved> here = moved(layer);
+  const auto found =
+      std::lower_bound(here.begin(), here.end(), slot, [](const Moved& moved, int wanted) { return moved.slot < wanted; });
+  return found != here.end() && found->slot == slot ? &*found : nullptr;
+}
+
+}  // namespace swivel

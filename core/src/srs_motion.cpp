@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "srs_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Of the directions to the corners, edges and faces of a cube the one that lies furthest from all u and -u.
+Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
+  Vector3d best = Vector3d::UnitZ();
+  double most = -1;
+  for (int x = -1; x <= 1; ++x)
+    for (int y = -1; y <= 1; ++y)
+      for (int z = 0; z <= 1; ++z) {
+        if (x == 0 && y == 0 && z == 0) continue;
+        const Vector3d direction = Vector3d(x, y, z).normalized();
+        double least = 1;
+        for (const ArmPlane& plane : planes) least = std::min(least, plane.u.cross(direction).norm());
+        if (least > most + 1e-9) best = direction, most = least;
+      }
+  return best;
+}
+
+}  // namespace
+
+SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
+                     double apart)
+    : PathMotion(chain, path, rows, apart), arm_(&arm), planes_(carried_planes(arm, path)), still_(clearest_direction(planes_)) {
+  std::vector<double> angles;
+  for (std::size_t k = 0; k < rows_.size(); ++k) {
+    const double angle = still_plane(path.layer(layer_[k]).tool).angle_of(arm.elbow_axis(rows_[k].q));
+    angles.push_back(k == 0 ? angle : angles.back() + wrap_angle(angle - angles.back()));
+  }
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    if (rows[k].branch != rows[k - 1].branch)
+      jumps_.push_back({rows[k].s, "the solution changes from branch " + std::to_string(rows[k - 1].branch) + " to " +
+                                       std::to_string(rows[k].branch)});
+  angle_.emplace(travel_, std::move(angles));
+}
+
+ArmPlane SrsMotion::still_plane(const Pose& tool) const {
+  ArmPlane plane;
+  const Vector3d sw = wrist_centre(*arm_, tool) - arm_->S;
+  plane.reach = sw.norm();
+  plane.u = sw / plane.reach;
+  plane.r = plane.u.cross(still_).normalized();
+  return plane;
+}
+
+std::optional<Config> SrsMotion::joints(double travel) const {
+  const Pose tool = path_->at_travel(travel);
+  const ArmPlane plane = still_plane(tool);
+  if (reach_status(*arm_, plane.reach) != ReachStatus::kReachable) return std::nullopt;
+  const auto [k, t] = between(travel);
+  const TrajectoryRow &from = rows_[k], &to = rows_[k + 1];
+  const double angle = angle_->at(travel);
+  std::optional<Config> q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angle, t < 0.5 ? from.branch : to.branch);
+  if (!arm_->exact) q = polish(*chain_, *arm_, plane, tool, angle, *q);
+  if (!q) return std::nullopt;
+  const Config expected = from.q + t * (to.q - from.q);
+  for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = expected[j] + wrap_angle((*q)[j] - expected[j]);
+  return q;
+}
+
+TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
+  const auto [s, t, i] = place(travel);
+  const Pose tool = path_->at_travel(travel);
+  const auto layer = static_cast<std::size_t>(i);
+  const ArmPlane plane = t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], tool);
+  return {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q};
+}
+
+std::optional<PathMotion::Singular> SrsMotion::nearest_singular(const Config& q) const {
+  const std::pair<const char*, double> angles[] = {
+      {"shoulder", arm_->shoulder_angle(q)}, {"elbow", arm_->elbow_angle(q)}, {"wrist", arm_->wrist_angle(q)}};
+  std::optional<Singular> nearest;
+  for (const auto& [where, angle] : angles) {
+    const double away = std::abs(std::asin(std::clamp(std::sin(angle), -1.0, 1.0)));
+    if (!nearest || away < nearest->angle) nearest = {where, away};
+  }
+  return nearest;
+}
+
+}  // namespace swivel

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "swivel/core/cubic_spline.hpp"
+#include "swivel/core/path_motion.hpp"
+#include "swivel/core/srs.hpp"
+
+namespace swivel {
+
+/// Of S-R-S arms (path_motion.hpp): a spline of the arm angle.
+class SrsMotion final : public PathMotion {
+ public:
+  SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart);
+  [[nodiscard]] std::optional<Config> joints(double travel) const override;
+  [[nodiscard]] TrajectoryRow row(double travel, const Config& q) const override;
+  [[nodiscard]] std::optional<Singular> nearest_singular(const Config& q) const override;
+
+ private:
+  [[nodiscard]] ArmPlane still_plane(const Pose& tool) const;
+
+  const SrsArm* arm_;
+  std::vector<ArmPlane> planes_;      // carried, of layers
+  Vector3d still_;                    // the direction that stands still
+  std::optional<CubicSpline> angle_;  // from the direction that stands still
+};
+
+}  // namespace swivel

@@ -1,0 +1,65 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Builds the guide, all documents of the clone and the references of C++ and Python as pages that open without a server (their search
+wants one: python3 -m http.server -d OUT/site).
+
+site.py OUT      writes OUT/site; the Python package must be importable (PYTHONPATH) for its reference. Exit code 4: a tool is missing.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# What documents link: kept where it lies, so that the links hold.
+COPIED = ["*.md", "docs/*.md", "docs/guide/*.md", "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"]
+
+
+def missing():
+    """The Debian packages of what is not there."""
+    names = [package for program, package in (("mkdocs", "mkdocs-material"), ("doxygen", "doxygen")) if not shutil.which(program)]
+    if not names and "material" not in subprocess.run(["mkdocs", "build", "--help"], capture_output=True, text=True).stdout:
+        names.append("mkdocs-material")
+    return names
+
+
+def copy_documents(pages):
+    for pattern in COPIED:
+        for file in ROOT.glob(pattern):
+            if file.is_file():
+                target = pages / file.relative_to(ROOT)
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(file, target)
+    shutil.copyfile(ROOT / "docs/site.css", pages / "site.css")
+
+
+def python_reference():
+    done = subprocess.run([sys.executable, ROOT / "docs/python_reference.py", ROOT / "python/swivel/__init__.pyi"], capture_output=True, text=True)
+    if done.returncode == 0:
+        return done.stdout
+    print("docs: without the Python reference, since the package cannot be imported:", done.stderr.strip().split("\n")[-1], file=sys.stderr)
+    return "# Python reference\n\nThese pages were built without the Python package.\n"
+
+
+def main():
+    names = missing()
+    if names:
+        print(f"docs: missing {', '.join(names)}: on Debian apt-get install --no-install-recommends {' '.join(names)}", file=sys.stderr)
+        return 4
+    out = pathlib.Path(sys.argv[1]).resolve()
+    pages = out / "pages"
+    shutil.rmtree(pages, ignore_errors=True)
+    copy_documents(pages)
+    (pages / "python.md").write_text(python_reference())
+    settings = (ROOT / "docs/Doxyfile").read_text() + f'OUTPUT_DIRECTORY = "{pages}"\n'
+    subprocess.run(["doxygen", "-"], input=settings, cwd=ROOT, text=True, check=True)
+    shutil.copyfile(ROOT / "docs/mkdocs.yml", out / "mkdocs.yml")
+    # SOURCE_DATE_EPOCH: the same pages from the same clone.
+    subprocess.run(["mkdocs", "build", "--quiet", "--strict", "--clean", "-f", "mkdocs.yml", "-d", out / "site"], cwd=out, check=True,
+                   env={**os.environ, "SOURCE_DATE_EPOCH": os.environ.get("SOURCE_DATE_EPOCH", "0")})
+    print(f"docs: {out / 'site' / 'index.html'}")
+    return 0
+
+
+sys.exit(main())

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "coarse_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "kernels/relax.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr float kNever = std::numeric_limits<float>::infinity();
+constexpr int kRun = 16;  // angles relaxed at once
+
+/// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the arm angle may
+/// turn.
+int stride_of(const SrsLattice& lattice) {
+  constexpr double kTurn = 0.8;
+  const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
+  return turn_per_layer > 0 ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0)) : 4;
+}
+
+struct Interval {
+  float low = kNever, high = -kNever;
+  void add(const Interval& other) {
+    low = std::min(low, other.low);
+    high = std::max(high, other.high);
+  }
+  [[nodiscard]] float gap(const Interval& other) const { return std::max(low - other.high, other.low - high); }
+};
+
+constexpr auto kMiddle = SrsLattice::kMiddleJoints;
+
+using Lanes = Eigen::Array<float, kRun, 1>;
+using Track = Eigen::Map<const Eigen::ArrayXd>;
+
+/// What is known of some nodes of a sheet.
+struct Summary {
+  float least = kNever;                        // value
+  std::array<Interval, kMiddle.size()> joint;  // kMiddle
+  void add(const Summary& other) {
+    least = std::min(least, other.least);
+    for (std::size_t m = 0; m < joint.size(); ++m) joint[m].add(other.joint[m]);
+  }
+};
+
+/// One sheet of one layer, from -window to angles + window around the circle, and on to whole runs.
+struct Circle {
+  bool alive = false;
+  std::vector<float> q[kDof];
+  std::vector<float> value;   // bound; kNever where no node is
+  std::vector<Summary> near;  // of each run of angles: what lies in its windows
+
+  [[nodiscard]] Eigen::Map<const Lanes> lanes(const std::vector<float>& padded, int at) const {
+    return Eigen::Map<const Lanes>(padded.data() + at);
+  }
+  /// Of the kRun padded positions from `at`.
+  [[nodiscard]] Summary summary(int at) const {
+    const auto values = lanes(value, at);
+    Summary sum;
+    sum.least = values.minCoeff();
+    if (sum.least == kNever) return sum;
+    for (std::size_t m = 0; m < kMiddle.size(); ++m) {
+      const auto joint = lanes(q[kMiddle[m]], at);
+      sum.joint[m] = {(values < kNever).select(joint, kNever).minCoeff(), (values < kNever).select(joint, -kNever).maxCoeff()};
+    }
+    return sum;
+  }
+};
+
+class Chords {
+ public:
+  Chords(const SrsLattice& lattice, int stride, const Budget& budget)
+      : lattice_(lattice), budget_(budget), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
+    const Cost& cost = lattice.cost();
+    task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task_.wraps = false;
+    double scales = 0, largest = kPi;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const bool turns = lattice.continuous()[j];
+      task_.wraps |= turns;
+      task_.turn[j] = turns ? static_cast<float>(kTwoPi) : 0;
+      task_.scale[j] = static_cast<float>(lattice.cost_scale()[j]);
+      scales += lattice.cost_scale()[j];
+      const JointLimit& limit = lattice.chain().limit[j];
+      if (!turns) largest = std::max({largest, std::abs(limit.lower), std::abs(limit.upper)});
+    }
+    task_.unit = static_cast<float>(lattice.cost_unit());
+    // Rounding of joints, their difference, its norm, and of exact costs: a few units of 2^-24 of each.
+    lost_ = 0x1p-20 * scales * (largest + kTwoPi) + 1e-10 * lattice.cost_unit();
+    fits_ = scales * (largest + kTwoPi) * lattice.layers() < 1e30;
+    for (auto& layer : circles_) layer.resize(static_cast<std::size_t>(lattice.sheets()));
+  }
+
+  [[nodiscard]] bool fits() const { return fits_; }
+
+  /// The bounds of a layer's nodes from those of the layer given before; zeros in the first. False where none is reached.
+  bool advance(int layer, float* row) {
+    budget_.tell(Stage::kBounds, layer, lattice_.layers());
+    std::swap(circles_[0], circles_[1]);
+    load(layer);
+    const bool first = layer == 0;
+    std::fill_n(row, lattice_.width(), kNever);
+    bool any = false;
+    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet) {
+      Circle& here = circle(0, sheet);
+      if (!here.alive) continue;
+      budget_.poll();
+      float* best = row + static_cast<std::ptrdiff_t>(sheet) * n_;
+      if (first) std::fill_n(best, n_, 0.0F);
+      for (int run = 0; !first && run < runs(); ++run) {
+        const Lanes relaxed = relax(sheet, run);
+        std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
+      }
+      Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
+      if (!first) bounds = ((bounds - static_cast<float>(lost_)) * (1 - 0x1p-20F)).max(0);
+      bounds = values = (values == 0).select(bounds, kNever);
+      here.alive = bounds.minCoeff() < kNever;
+      any |= here.alive;
+      wrap(here.value);
+      look_around(here);
+    }
+    return any;
+  }
+
+ private:
+  Circle& circle(std::size_t which, int sheet) { return circles_[which][static_cast<std::size_t>(sheet)]; }
+  void wrap(std::vector<float>& padded) const {
+    std::copy_n(padded.begin() + n_, window_, padded.begin());
+    std::copy_n(padded.begin() + window_, window_, padded.begin() + window_ + n_);
+  }
+
+  /// Joints, and value 0 where a node is.
+  void load(int layer) {
+    lattice_.solve(layer, 0, n_, nodes_);
+    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet) {
+      Circle& to = circle(0, sheet);
+      to.alive = false;
+      if (!nodes_.alive(sheet)) continue;
+      const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
+      to.value.resize(length, kNever);
+      Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
+      value = (Track(nodes_.mask(sheet, 0), n_) + Track(nodes_.mask(sheet, 1), n_)).cast<float>();
+      to.alive = value.minCoeff() == 0;
+      if (!to.alive) continue;
+      for (int k = 0; k < kDof; ++k) {
+        std::vector<float>& q = to.q[k];
+        q.resize(length);
+        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes_.q(sheet, k), n_).cast<float>();
+        wrap(q);
+      }
+    }
+  }
+
+  [[nodiscard]] int runs() const { return (n_ + kRun - 1) / kRun; }
+  /// First angle of a run: whole vectors, so the last two may overlap.
+  [[nodiscard]] int begin(int run) const { return std::max(0, std::min(run * kRun, n_ - kRun)); }
+
+  /// What lies in the windows of every run, up to a run more on both sides.
+  void look_around(Circle& circle) {
+    const int length = n_ + 2 * window_;
+    parts_.clear();
+    for (int at = 0; at < length; at += kRun) parts_.push_back(circle.summary(at));
+    circle.near.assign(static_cast<std::size_t>(runs()), {});
+    for (int run = 0; run < runs(); ++run) {
+      const int last = std::min(length, begin(run) + kRun + 2 * window_) - 1;
+      for (int part = begin(run) / kRun; part <= last / kRun; ++part)
+        circle.near[static_cast<std::size_t>(run)].add(parts_[static_cast<std::size_t>(part)]);
+    }
+  }
+
+  /// The bounds of a run's nodes before rounding is taken off.
+  Lanes relax(int sheet, int run) {
+    const Circle& here = circle(0, sheet);
+    const int at = window_ + begin(run), count = std::min(kRun, n_);
+    Lanes best = Lanes::Constant(kNever);
+    const Summary own = here.summary(at);
+    if (own.least == kNever) return best;
+    const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
+    relax_with(here, begin(run), count, circle(1, sheet), best.data());
+    float worst = worst_of_all();
+    for (int other = 0; other < lattice_.sheets(); ++other) {
+      const Circle& before = circle(1, other);
+      if (other == sheet || !before.alive) continue;
+      const Summary& near = before.near[static_cast<std::size_t>(run)];
+      float norm = 0;
+      for (std::size_t m = 0; m < kMiddle.size(); ++m)
+        if (task_.turn[kMiddle[m]] == 0) norm = std::max(norm, task_.scale[kMiddle[m]] * own.joint[m].gap(near.joint[m]));
+      if (near.least == kNever || near.least + norm >= worst) continue;
+      relax_with(here, begin(run), count, before, best.data());
+      worst = worst_of_all();
+    }
+    return best;
+  }
+
+  void relax_with(const Circle& here, int begin, int count, const Circle& before, float* best) {
+    if (!before.alive) return;
+    int first = begin, last = begin + count - 1 + 2 * window_;  // positions in `before`
+    while (first <= last && before.value[static_cast<std::size_t>(first)] == kNever) ++first;
+    while (first <= last && before.value[static_cast<std::size_t>(last)] == kNever) --last;
+    if (first > last) return;
+    const int low = std::max(begin, first - count + 1), high = std::min(begin + 2 * window_, last);
+    task_.n = count;
+    task_.offsets = high - low + 1;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      task_.from[j] = here.q[j].data() + window_ + begin;
+      task_.to[j] = before.q[j].data() + low;
+    }
+    task_.value = before.value.data() + low;
+    task_.best = best;
+    relax_kernels().coarse(task_);
+  }
+
+  const SrsLattice& lattice_;
+  const Budget& budget_;
+  int n_, window_;
+  RelaxTask<float> task_;
+  double lost_ = 0;
+  bool fits_ = true;
+  std::array<std::vector<Circle>, 2> circles_;  // [here, before][sheet]
+  std::vector<Summary> parts_;                  // scratch of look_around
+  LayerNodes nodes_;
+};
+
+}  // namespace
+
+CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget)
+    : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
+  const TraceSpan span("coarse bound");
+  Chords chords(lattice, stride_, budget);
+  if (!chords.fits()) return;
+  const int coarse = (last_ + stride_ - 1) / stride_ + 1;
+  rows_.resize(static_cast<std::size_t>(coarse) * static_cast<std::size_t>(width_));
+  for (int c = 0; c < coarse; ++c) {
+    ik_nodes_ += width_;
+    if (!chords.advance(std::min(c * stride_, last_), rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
+      best_ = std::numeric_limits<double>::infinity();
+      return;
+    }
+  }
+  best_ = *std::min_element(rows_.end() - width_, rows_.end());
+}
+
+const float* CoarseBound::row(int layer) const {
+  if (rows_.empty() || (layer % stride_ != 0 && layer != last_)) return nullptr;
+  return rows_.data() + static_cast<std::ptrdiff_t>((layer + stride_ - 1) / stride_) * width_;
+}
+
+}  // namespace swivel

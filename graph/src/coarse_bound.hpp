@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+/// Lower bounds of the cost from layer 0 to the nodes of every stride-th layer and of the last. An edge's cost is a norm of the
+/// joints' move, so a path between two layers costs at least the norm of the chord between its ends: a dynamic program over chords
+/// alone, with the window of a stride's steps and any change of sheet, bounds every path's cost from below and asks for the joints
+/// of one layer a stride. In single precision, less what that may lose. Memory: one byte per lattice node or less.
+class CoarseBound {
+ public:
+  /// Throws Stopped.
+  explicit CoarseBound(const SrsLattice& lattice, const Budget& budget = {});
+
+  /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
+  [[nodiscard]] double best() const { return best_; }
+  /// [slot], or null where the layer has no bounds.
+  [[nodiscard]] const float* row(int layer) const;
+  [[nodiscard]] std::int64_t ik_nodes() const { return ik_nodes_; }
+
+ private:
+  int stride_ = 1, last_ = 0, width_ = 0;
+  double best_ = 0;
+  std::vector<float> rows_;  // [coarse layer][slot]
+  std::int64_t ik_nodes_ = 0;
+};
+
+}  // namespace swivel

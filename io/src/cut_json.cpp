@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "bad_input.hpp"
+#include "files.hpp"
+#include "swivel/io/io.hpp"
+
+namespace swivel::io {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Parsed = nlohmann::json;  // ordered_json looks for each key among all before it
+
+constexpr const char* kFormat = "swivel certificate 1";
+
+Json witness_json(const Cause& cause) {
+  Json json = {{"cause", to_string(cause.kind)}};
+  if (!cause.joint.empty()) json["joint"] = cause.joint;
+  if (cause.side != Cause::Side::kNone) json["side"] = to_string(cause.side);
+  if (!cause.bodies[0].empty()) json["bodies"] = cause.bodies;
+  if (!cause.check.empty()) json["check"] = cause.check;
+  return json;
+}
+
+Json layer_json(int number, const Cut::Layer& layer) {
+  Json reached = Json::array(), nodes = Json::array(), edges = Json::array();
+  for (const Cut::Range& range : layer.reached) reached.push_back({range.first, range.last});
+  for (const Cut::Nodes& removed : layer.removed) nodes.push_back({removed.slots.first, removed.slots.last, removed.witness});
+  for (const Cut::Edges& removed : layer.edges)
+    edges.push_back(
+        {removed.tails.first, removed.tails.last, removed.heads.first, removed.heads.last, removed.witness, removed.count});
+  return {{"layer", number}, {"slots", layer.slots}, {"reached", reached}, {"nodes", nodes}, {"edges", edges}};
+}
+
+/// Reads values of a certificate, and names the key of what is wrong.
+class Reader {
+ public:
+  explicit Reader(std::string file) : file_(std::move(file)) {}
+
+  [[noreturn]] void fail(const std::string& key, const std::string& what, const std::string& allowed) const {
+    bad_input(file_, key + ": " + what, allowed);
+  }
+  const Parsed& at(const Parsed& object, const char* key, const std::string& where) const {
+    if (!object.is_object()) fail(where, "is no object", "what plan --certificate writes");
+    const auto found = object.find(key);
+    if (found == object.end()) fail(where + key, "is missing", "what plan --certificate writes");
+    return *found;
+  }
+  std::int64_t whole(const Parsed& value, const std::string& key, std::int64_t most = std::numeric_limits<int>::max()) const {
+    if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() > static_cast<double>(most))
+      fail(key, "is no number of this kind", "whole numbers from 0 to " + std::to_string(most));
+    return value.get<std::int64_t>();
+  }
+  int small(const Parsed& value, const std::string& key) const { return static_cast<int>(whole(value, key)); }
+  double real(const Parsed& value, const std::string& key) const {
+    if (!value.is_number()) fail(key, "is no number", "a number");
+    return value.get<double>();
+  }
+  bool truth(const Parsed& value, const std::string& key) const {
+    if (!value.is_boolean()) fail(key, "is neither", "true or false");
+    return value.get<bool>();
+  }
+  std::string text(const Parsed& value, const std::string& key) const {
+    if (!value.is_string()) fail(key, "is no text", "a text");
+    return value.get<std::string>();
+  }
+  const Parsed& list(const Parsed& value, const std::string& key, std::optional<std::size_t> size = {}) const {
+    if (!value.is_array() || (size && value.size() != *size))
+      fail(key, "is no list" + (size ? " of " + std::to_string(*size) : ""), "what plan --certificate writes");
+    return value;
+  }
+
+ private:
+  std::string file_;
+};
+
+/// Of lists and objects in JSON. The parser's own callback could tell, but makes lists of objects take quadratic time.
+int depth_of(std::string_view text) {
+  int depth = 0, most = 0;
+  bool quoted = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '"') quoted = !quoted;
+    if (quoted) {
+      k += c == '\\' ? 1 : 0;
+      continue;
+    }
+    if (c == '[' || c == '{') most = std::max(most, ++depth);
+    if (c == ']' || c == '}') --depth;
+  }
+  return most;
+}
+
+Cause witness_of(const Reader& read, const Parsed& json, const std::string& key) {
+  Cause cause;
+  const std::string name = read.text(read.at(json, "cause", key), key + "cause");
+  for (int kind = 0; kind <= static_cast<int>(Cause::Kind::kCheck); ++kind)
+    if (name == to_string(static_cast<Cause::Kind>(kind))) cause.kind = static_cast<Cause::Kind>(kind);
+  if (cause.kind == Cause::Kind::kNone) read.fail(key + "cause", "'" + name + "' is unknown", "the causes of docs/formats.md");
+  if (json.contains("joint")) cause.joint = read.text(json["joint"], key + "joint");
+  if (json.contains("check")) cause.check = read.text(json["check"], key + "check");
+  if (json.contains("side")) {
+    const std::string side = read.text(json["side"], key + "side");
+    if (side != "lower" && side != "upper") read.fail(key + "side", "'" + side + "' is unknown", "lower or upper");
+    cause.side = side == "lower" ? Cause::Side::kLower : Cause::Side::kUpper;
+  }
+  if (json.contains("bodies")) {
+    const Parsed& bodies = read.list(json["bodies"], key + "bodies", 2);
+    cause.bodies = {read.text(bodies[0], key + "bodies"), read.text(bodies[1], key + "bodies")};
+  }
+  return cause;
+}
+
+Cut::Layer layer_of(const Reader& read, const Parsed& json, const std::string& key) {
+  Cut::Layer layer;
+  layer.slots = read.small(read.at(json, "slots", key), key + "slots");
+  const auto each = [&](const char* name, std::size_t size, const auto& take) {
+    const std::string where = key + name;
+    for (const Parsed& range : read.list(read.at(json, name, key), where)) {
+      read.list(range, where, size);
+      take([&](std::size_t k) { return read.small(range[k], where); });
+    }
+  };
+  each("reached", 2, [&](const auto& at) { layer.reached.push_back({at(0), at(1)}); });
+  each("nodes", 3, [&](const auto& at) { layer.removed.push_back({{at(0), at(1)}, at(2)}); });
+  each("edges", 6, [&](const auto& at) { layer.edges.push_back({{at(0), at(1)}, {at(2), at(3)}, at(4), at(5)}); });
+  return layer;
+}
+
+}  // namespace
+
+std::string to_json(const Cut& cut) {
+  Json windings = Json::array(), witnesses = Json::array();
+  for (const auto& joints : cut.windings) {
+    Json told = Json::array();
+    for (std::size_t j = 0; j < kDof; ++j)
+      if (joints[j]) told.push_back(j);
+    windings.push_back(std::move(told));
+  }
+  for (const Cause& cause : cut.witnesses) witnesses.push_back(witness_json(cause));
+  const Resolution& resolution = cut.resolution;
+  const Json head = {{"format", kFormat},
+                     {"resolution",
+                      {{"ds", resolution.ds},
+                       {"dphi", resolution.dphi},
+                       {"dalpha", resolution.dalpha},
+                       {"arc", resolution.arc},
+                       {"arcs", resolution.arcs}}},
+                     {"edges", cut.edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
+                     {"windings", std::move(windings)},
+                     {"path_layers", cut.layers},
+                     {"witnesses", std::move(witnesses)}};
+  const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  std::string text = line(head);
+  text.back() = ',';
+  text += "\n\"layers\":[";
+  for (std::size_t k = 0; k < cut.band.size(); ++k)
+    text += (k == 0 ? "\n" : ",\n") + line(layer_json(cut.first_layer + static_cast<int>(k), cut.band[k]));
+  return text + "\n]}\n";
+}
+
+Cut load_cut(const std::filesystem::path& file) {
+  const std::string text = read_file(file, "certificate (JSON)", kMostCertificateBytes);
+  const Reader read(file.string());
+  constexpr int kMostDepth = 8;
+  if (depth_of(text) > kMostDepth)
+    bad_input(file.string(), "is nested too deep", "at most " + std::to_string(kMostDepth) + " levels");
+  Parsed json;
+  try {
+    json = Parsed::parse(text);
+  } catch (const Parsed::exception& error) {
+    bad_input(file.string(), error.what(), "what plan --certificate writes");
+  }
+  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
+    read.fail("format", "is another", std::string("'") + kFormat + "'");
+  Cut cut;
+  const Parsed& resolution = read.at(json, "resolution", "");
+  cut.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
+  cut.resolution.dphi = read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
+  cut.resolution.dalpha = read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
+  cut.resolution.arc = read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
+  cut.resolution.arcs = read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
+  const std::string edges = read.text(read.at(json, "edges", ""), "edges");
+  if (edges != "continuous" && edges != "nodes") read.fail("edges", "'" + edges + "' is unknown", "continuous or nodes");
+  cut.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+  for (const Parsed& told : read.list(read.at(json, "windings", ""), "windings")) {
+    auto& joints = cut.windings.emplace_back();
+    for (const Parsed& joint : read.list(told, "windings"))
+      joints[static_cast<std::size_t>(read.whole(joint, "windings", kDof - 1))] = true;
+    if (cut.windings.size() > kDof) read.fail("windings", "has too many lists", "at most 7");
+  }
+  cut.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
+  for (const Parsed& witness : read.list(read.at(json, "witnesses", ""), "witnesses"))
+    cut.witnesses.push_back(witness_of(read, witness, "witnesses[" + std::to_string(cut.witnesses.size()) + "]."));
+  for (const Parsed& layer : read.list(read.at(json, "layers", ""), "layers")) {
+    const std::string key = "layers[" + std::to_string(cut.band.size()) + "].";
+    const int number = read.small(read.at(layer, "layer", key), key + "layer");
+    if (cut.band.empty()) cut.first_layer = number;
+    if (number != cut.first_layer + static_cast<int>(cut.band.size()))
+      read.fail(key + "layer", "is " + std::to_string(number), "layers one after the other");
+    cut.band.push_back(layer_of(read, layer, key));
+  }
+  return cut;
+}
+
+}  // namespace swivel::io

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/timeline.hpp"
+#include "swivel/core/validate.hpp"
+#include "swivel/planner/cut.hpp"
+#include "witnesses.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr std::size_t index(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+/// What is wrong with a certificate, in words.
+struct Refused {
+  std::string why;
+};
+
+std::string number(int k) {
+  return std::to_string(k);
+}
+
+class Verifier {
+ public:
+  Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule, bool started, const Cut& cut, CutCheck& result,
+           const std::shared_ptr<StateCheck>& check, const Budget& budget)
+      : lattice_(lattice),
+        cut_(cut),
+        started_(started),
+        result_(result),
+        budget_(budget),
+        witnesses_(lattice, world, rule, Certificates::kOff, check, budget) {}
+
+  void run() {
+    for (std::size_t k = 0; k < cut_.witnesses.size(); ++k)
+      if (!witnesses_.add(cut_.witnesses[k]))
+        throw Refused{"witness " + std::to_string(k) + ": " + words(cut_.witnesses[k]) + ": is nothing that this problem has"};
+    const int count = static_cast<int>(cut_.band.size());
+    if (count == 0 || cut_.first_layer < 0 || cut_.first_layer > lattice_.layers() - count)
+      throw Refused{"it has layers " + number(cut_.first_layer) + " to " + number(cut_.first_layer + count - 1) +
+                    ": the problem has 0 to " + number(lattice_.layers() - 1)};
+    for (int k = 0; k < count; ++k) {
+      here_ = read(cut_.first_layer + k, cut_.band[index(k)]);
+      if (k == 0)
+        every_node_is_told(here_);
+      else
+        nothing_leads_on(before_, here_, cut_.band[index(k)].edges);
+      std::swap(before_, here_);
+    }
+    if (!cut_.band.back().reached.empty())
+      throw Refused{"layer " + number(before_.layer) + ", the last: slot " + number(cut_.band.back().reached[0].first) +
+                    " is reached"};
+  }
+
+ private:
+  enum class State : char { kUntold, kReached, kRemoved };
+  struct Layer {
+    int layer = 0;
+    std::vector<Lattice::Node> nodes;
+    std::vector<const Lattice::Node*> at;  // by slot; null: no node
+    std::vector<State> state;              // by slot
+  };
+
+  [[noreturn]] static void refuse(int layer, int slot, const std::string& why) {
+    throw Refused{"layer " + number(layer) + ", slot " + number(slot) + ": " + why};
+  }
+
+  /// Nodes of a layer, and what is said of them; asks the witness of each that is said to be removed.
+  Layer read(int number_of, const Cut::Layer& said) {
+    budget_.poll();
+    Layer layer;
+    layer.layer = number_of;
+    lattice_.layer_nodes(number_of, layer.nodes);
+    const int slots = lattice_.slots(number_of);
+    if (said.slots != slots)
+      throw Refused{"layer " + number(number_of) + ": it has " + number(said.slots) + " slots: the problem has " + number(slots)};
+    layer.at.assign(index(slots), nullptr);
+    for (const Lattice::Node& node : layer.nodes) layer.at[index(node.slot)] = &node;
+    layer.state.assign(index(slots), State::kUntold);
+    const auto tell = [&](const Cut::Range& range, State state) {
+      if (range.first < 0 || range.last < range.first || range.last >= slots)
+        refuse(number_of, range.first, "a range to " + number(range.last) + ": allowed are slots up to " + number(slots - 1));
+      for (int slot = range.first; slot <= range.last; ++slot) {
+        if (layer.state[index(slot)] != State::kUntold) refuse(number_of, slot, "is listed twice");
+        layer.state[index(slot)] = state;
+      }
+    };
+    for (const Cut::Range& range : said.reached) {
+      tell(range, State::kReached);
+      for (int slot = range.first; slot <= range.last; ++slot)
+        if (layer.at[index(slot)] == nullptr) refuse(number_of, slot, "is said to be reached, and has no node");
+    }
+    for (const Cut::Nodes& removed : said.removed) {
+      tell(removed.slots, State::kRemoved);
+      const Cause& cause = witness(removed.witness, number_of);
+      for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot, ++result_.nodes)
+        if (!witnesses_.removes_node(removed.witness, number_of, slot))
+          refuse(number_of, slot, "is not removed by its witness, " + words(cause));
+    }
+    return layer;
+  }
+
+  const Cause& witness(int k, int layer) const {
+    if (k < 0 || k >= static_cast<int>(cut_.witnesses.size()))
+      throw Refused{"layer " + number(layer) + ": witness " + number(k) + " is not listed"};
+    return cut_.witnesses[index(k)];
+  }
+
+  void every_node_is_told(const Layer& layer) const {
+    for (std::size_t slot = 0; slot < layer.state.size(); ++slot)
+      if (layer.state[slot] == State::kUntold && !(started_ && layer.layer == 0 && layer.at[slot] == nullptr))
+        refuse(layer.layer, static_cast<int>(slot), "of the first layer is neither reached nor removed");
+  }
+
+  /// Every edge from a reached node leads to a reached one, or is removed, or its head is.
+  void nothing_leads_on(const Layer& from, const Layer& to, const std::vector<Cut::Edges>& removed) {
+    for (const Cut::Edges& edges : removed) {
+      witness(edges.witness, to.layer);
+      for (const int slot : {edges.tails.first, edges.tails.last})
+        if (slot < 0 || slot >= static_cast<int>(from.state.size()) || from.state[index(slot)] != State::kReached)
+          refuse(from.layer, slot, "ends a range of tails of removed edges, and is not reached");
+      for (const int slot : {edges.heads.first, edges.heads.last})
+        if (slot < 0 || slot >= static_cast<int>(to.state.size()) || to.state[index(slot)] != State::kUntold)
+          refuse(to.layer, slot, "ends a range of heads of removed edges, and is reached, removed, or no slot");
+      if (edges.tails.first > edges.tails.last || edges.heads.first > edges.heads.last)
+        refuse(to.layer, edges.heads.first, "a range of removed edges ends before it begins");
+    }
+    std::vector<std::int64_t> asked(removed.size(), 0);
+    std::vector<Lattice::SlotRun> runs;
+    for (const Lattice::Node& a : from.nodes) {
+      if (from.state[index(a.slot)] != State::kReached) continue;
+      budget_.poll();
+      lattice_.successors(from.layer, a.slot, runs);
+      for (const Lattice::SlotRun& run : runs)
+        for (int b = run.first; b < run.last; ++b) {
+          if (to.state[index(b)] != State::kUntold) continue;
+          if (to.at[index(b)] == nullptr) refuse(to.layer, b, "has no node, and no witness why");
+          if (lattice_.step_allowed(from.layer, lattice_.delta(a.q, to.at[index(b)]->q)))
+            edge_is_removed(from.layer, a.slot, b, removed, asked);
+        }
+    }
+    for (std::size_t k = 0; k < removed.size(); ++k)
+      if (asked[k] != removed[k].count)
+        refuse(to.layer, removed[k].heads.first,
+               "a range of removed edges holds " + std::to_string(asked[k]) + ", and is said to hold " +
+                   std::to_string(removed[k].count));
+  }
+
+  void edge_is_removed(int layer, int a, int b, const std::vector<Cut::Edges>& removed, std::vector<std::int64_t>& asked) {
+    bool told = false;
+    for (std::size_t k = 0; k < removed.size(); ++k) {
+      const Cut::Edges& edges = removed[k];
+      if (b < edges.heads.first || b > edges.heads.last || a < edges.tails.first || a > edges.tails.last) continue;
+      told = true;
+      ++asked[k];
+      ++result_.edges;
+      if (!witnesses_.removes_edge(edges.witness, layer, a, b))
+        refuse(layer, a,
+               "its edge to slot " + number(b) + " is not removed by its witness, " + words(cut_.witnesses[index(edges.witness)]));
+    }
+    if (!told) refuse(layer, a, "its edge to slot " + number(b) + " is neither removed nor leads to a reached node");
+  }
+
+  const Lattice& lattice_;
+  const Cut& cut_;
+  bool started_;
+  CutCheck& result_;
+  const Budget& budget_;
+  Witnesses witnesses_;
+  Layer before_, here_;
+};
+
+/// A certificate of another lattice says nothing about this one.
+void require_same_layout(const Problem& problem, const Cut& cut, int layers) {
+  const auto require = [&](bool holds, const char* what) {
+    if (!holds)
+      throw InputError(problem.source + ": " + what + " is another than the certificate's: allowed is what it was planned with");
+  };
+  const Resolution &own = problem.resolution, &other = cut.resolution;
+  require(own.ds == other.ds, "resolution.ds (--ds)");
+  require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
+  require(own.dalpha == other.dalpha, "resolution.dalpha");
+  require(own.arc == other.arc, "resolution.arc");
+  require(own.arcs == other.arcs, "resolution.arcs (--arcs, --no-arcs)");
+  require(problem.limits.edges == cut.edges, "limits.edges (--edges)");
+  require(layers == cut.layers, "the number of layers");
+}
+
+}  // namespace
+
+CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut& cut, const Budget& budget,
+                   const std::shared_ptr<StateCheck>& check) {
+  const TraceSpan span("check of a cut");
+  validate(problem);
+  robot.require_prepared_for(problem);
+  const Chain& chain = robot.arm().chain;
+  const ToolPath path = problem_path(problem, chain, budget);
+  require_same_layout(problem, cut, path.size());
+  std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+  CutCheck result;
+  result.complete = robot.arm_class().complete();
+  try {
+    for (const auto& joints : cut.windings) {
+      const auto* arcs = dynamic_cast<const ArcLattice*>(lattice.get());
+      if (arcs == nullptr) throw Refused{"windings: are of arms that are planned on arcs"};
+      lattice = std::make_unique<ArcLattice>(arcs->with_windings(joints));
+    }
+    const World world(robot.world(), problem, budget);
+    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), cut, result, check, budget).run();
+    result.s = {path.layer(cut.first_layer).s, path.layer(cut.first_layer + static_cast<int>(cut.band.size()) - 1).s};
+    result.passed = true;
+  } catch (const Refused& refused) {
+    result.failure = refused.why;
+  }
+  return result;
+}
+
+}  // namespace swivel

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include "collision_validity.hpp"
+#include "hooked_validity.hpp"
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/timeline.hpp"
+#include "swivel/graph/path_first.hpp"
+#include "swivel/planner/cut.hpp"
+#include "witnesses.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr std::size_t index(int k) {
+  return static_cast<std::size_t>(k);
+}
+
+void add(std::vector<Cut::Range>& ranges, int slot) {
+  if (!ranges.empty() && ranges.back().last + 1 == slot)
+    ranges.back().last = slot;
+  else
+    ranges.push_back({slot, slot});
+}
+
+class Finder {
+ public:
+  Finder(const PlanView& view, const Verdicts& verdicts, const std::shared_ptr<StateCheck>& check, const Budget& budget)
+      : lattice_(view.lattice),
+        verdicts_(verdicts),
+        budget_(budget),
+        started_(view.problem.start.has_value()),
+        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()), Certificates::kOn, check, budget) {}
+
+  Cut find() {
+    Cut cut;
+    cut.layers = lattice_.layers();
+    cut.first_layer = last_without_way_on();
+    Nodes nodes = nodes_of(cut.first_layer);
+    std::vector<char> all(nodes.at.size(), 1);
+    if (started_ && cut.first_layer == 0)  // the other slots have no node
+      for (std::size_t slot = 0; slot < all.size(); ++slot) all[slot] = nodes.at[slot] != nullptr;
+    std::vector<char> reached(nodes.at.size(), 0);
+    for (int slot = 0; slot < static_cast<int>(reached.size()); ++slot)
+      reached[index(slot)] = has_row(cut.first_layer, slot, nodes);
+    cut.band.push_back(layer_of(cut.first_layer, nodes, reached, all));
+    for (int layer = cut.first_layer; !cut.band.back().reached.empty(); ++layer) cut.band.push_back(next(layer, nodes, reached));
+    cut.witnesses = witnesses_.all();
+    return cut;
+  }
+
+ private:
+  /// Those of a layer that exist.
+  struct Nodes {
+    std::vector<Lattice::Node> list;
+    std::vector<const Lattice::Node*> at;  // by slot
+    std::vector<char> removed, asked;      // by slot; asked: whether there is a row
+    [[nodiscard]] bool open(std::size_t slot) const { return at[slot] != nullptr && !removed[slot]; }
+  };
+  [[nodiscard]] Nodes nodes_of(int layer) const {
+    budget_.poll();
+    Nodes nodes;
+    lattice_.layer_nodes(layer, nodes.list);
+    nodes.at.assign(index(lattice_.slots(layer)), nullptr);
+    nodes.removed.assign(nodes.at.size(), 0);
+    nodes.asked.assign(nodes.at.size(), 0);
+    for (const Lattice::Node& node : nodes.list) {
+      nodes.at[index(node.slot)] = &node;
+      nodes.removed[index(node.slot)] = verdicts_.node(layer, node.slot) == Verdict::kRemoved;
+    }
+    return nodes;
+  }
+
+  /// Whether a slot has a node that was not removed, and a row: the search need not have asked.
+  [[nodiscard]] bool has_row(int layer, int slot, Nodes& nodes) const {
+    if (!nodes.open(index(slot))) return false;
+    if (lattice_.has_own_rows() && !nodes.asked[index(slot)]) {
+      nodes.asked[index(slot)] = 1;
+      nodes.removed[index(slot)] = !lattice_.row(layer, slot, nodes.at[index(slot)]->q);
+    }
+    return nodes.open(index(slot));
+  }
+
+  /// Slots that edges from slot a of a layer led to before they were removed.
+  [[nodiscard]] const std::vector<Verdicts::HalfEdge>* removed_from(int layer, int a) const {
+    const auto* edges = verdicts_.removed_edges(layer);
+    if (edges == nullptr) return nullptr;
+    const auto found = edges->tails.find(a);
+    return found == edges->tails.end() ? nullptr : &found->second;
+  }
+  static bool lists(const std::vector<Verdicts::HalfEdge>* edges, int slot) {
+    return edges != nullptr &&
+           std::any_of(edges->begin(), edges->end(), [&](const Verdicts::HalfEdge& edge) { return edge.other == slot; });
+  }
+
+  /// The last layer that no node of leads on to the end of the path.
+  [[nodiscard]] int last_without_way_on() const {
+    int layer = lattice_.layers() - 1;
+    Nodes ahead = nodes_of(layer);
+    std::vector<char> leads_on(ahead.at.size(), 0);
+    for (std::size_t slot = 0; slot < leads_on.size(); ++slot) leads_on[slot] = ahead.open(slot);
+    std::vector<Lattice::SlotRun> runs;
+    while (std::find(leads_on.begin(), leads_on.end(), 1) != leads_on.end()) {
+      if (layer == 0) throw InvalidArgument("there is a path: allowed are plans that found none");
+      Nodes here = nodes_of(--layer);
+      std::vector<char> leads(here.at.size(), 0);
+      for (const Lattice::Node& a : here.list) {
+        if (here.removed[index(a.slot)]) continue;
+        const auto* removed = removed_from(layer, a.slot);
+        const auto leads_to = [&](int b) {
+          return leads_on[index(b)] && lattice_.step_allowed(layer, lattice_.delta(a.q, ahead.at[index(b)]->q)) &&
+                 !lists(removed, b);
+        };
+        if (const int b = lattice_.along(layer, a.slot, 1); b >= 0 && lattice_.in_window(layer, a.slot, b) && leads_to(b)) {
+          leads[index(a.slot)] = 1;
+          continue;
+        }
+        lattice_.successors(layer, a.slot, runs);
+        for (const Lattice::SlotRun& run : runs)
+          for (int b = run.first; b < run.last && !leads[index(a.slot)]; ++b) leads[index(a.slot)] = leads_to(b);
+      }
+      ahead = std::move(here);
+      leads_on.swap(leads);
+    }
+    return layer;
+  }
+
+  /// Nodes and witnesses of a layer: of the slots that are asked for and not reached.
+  [[nodiscard]] Cut::Layer layer_of(int layer, const Nodes& nodes, const std::vector<char>& reached,
+                                    const std::vector<char>& asked) {
+    Cut::Layer found;
+    found.slots = static_cast<int>(nodes.at.size());
+    int witness = -1;
+    for (int slot = 0; slot < found.slots; ++slot) {
+      if (reached[index(slot)]) {
+        add(found.reached, slot);
+      } else if (asked[index(slot)]) {
+        witness = witnesses_.of_node(layer, slot, witness);
+        require(witness >= 0, layer, "a node");
+        if (!found.removed.empty() && found.removed.back().witness == witness && found.removed.back().slots.last + 1 == slot)
+          found.removed.back().slots.last = slot;
+        else
+          found.removed.push_back({{slot, slot}, witness});
+      }
+    }
+    return found;
+  }
+
+  /// The layer after one whose reached nodes are known, which both are replaced by those of.
+  [[nodiscard]] Cut::Layer next(int layer, Nodes& nodes, std::vector<char>& reached) {
+    Nodes ahead = nodes_of(layer + 1);
+    std::vector<char> reached_ahead(ahead.at.size(), 0), met(ahead.at.size(), 0);
+    std::map<int, std::vector<int>> removed;  // edges: tails by head
+    std::vector<Lattice::SlotRun> runs;
+    for (const Lattice::Node& a : nodes.list) {
+      if (!reached[index(a.slot)]) continue;
+      budget_.poll();
+      const auto* removed_here = removed_from(layer, a.slot);
+      lattice_.successors(layer, a.slot, runs);
+      for (const Lattice::SlotRun& run : runs)
+        for (int b = run.first; b < run.last; ++b) {
+          const Lattice::Node* const head = ahead.at[index(b)];
+          if (met[index(b)] || reached_ahead[index(b)]) continue;
+          if (head != nullptr && !lattice_.step_allowed(layer, lattice_.delta(a.q, head->q))) continue;
+          if (!has_row(layer + 1, b, ahead))
+            met[index(b)] = 1;
+          else if (lists(removed_here, b))
+            removed[b].push_back(a.slot);
+          else
+            reached_ahead[index(b)] = 1;
+        }
+    }
+    Cut::Layer found = layer_of(layer + 1, ahead, reached_ahead, met);
+    std::vector<Cut::Edges> last;  // of the head before
+    int witness = -1;
+    for (const auto& [b, tails] : removed) {
+      if (reached_ahead[index(b)]) continue;
+      std::vector<Cut::Edges> here;
+      for (const int a : tails) {
+        witness = witnesses_.of_edge(layer, a, b, witness);
+        require(witness >= 0, layer, "an edge");
+        if (here.empty() || here.back().witness != witness) here.push_back({{a, a}, {b, b}, witness, 0});
+        here.back().tails.last = a;
+        ++here.back().count;
+      }
+      for (Cut::Edges& edges : here) {
+        const auto same = std::find_if(last.begin(), last.end(), [&](const Cut::Edges& other) {
+          return other.tails == edges.tails && other.witness == edges.witness;
+        });
+        if (same == last.end()) continue;
+        edges.heads.first = same->heads.first;
+        edges.count += same->count;
+        std::erase(found.edges, Cut::Edges(*same));
+      }
+      found.edges.insert(found.edges.end(), here.begin(), here.end());
+      last.swap(here);
+    }
+    std::sort(found.edges.begin(), found.edges.end(), [](const Cut::Edges& x, const Cut::Edges& y) {
+      return std::tuple(x.heads.first, x.tails.first) < std::tuple(y.heads.first, y.tails.first);
+    });
+    nodes = std::move(ahead);
+    reached.swap(reached_ahead);
+    return found;
+  }
+
+  static void require(bool holds, int layer, const char* what) {
+    if (!holds) throw std::logic_error("layer " + std::to_string(layer) + ": nothing removes " + what + " that the search removed");
+  }
+
+  const Lattice& lattice_;
+  const Verdicts& verdicts_;
+  const Budget& budget_;
+  bool started_;
+  Witnesses witnesses_;
+};
+
+}  // namespace
+
+Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<StateCheck>& check) {
+  const TraceSpan span("cut");
+  std::unique_ptr<CostToGo> own;  // the eager planners keep no verdicts
+  if (view.verdicts == nullptr) {
+    own = make_cost_to_go(view.lattice, Extent::kWhole, budget);
+    own->sweep(view.lattice.layers() - 1);
+    Executor executor(1);
+    CollisionValidity validity(view.lattice, view.world, view.world.edge_rule(view.robot.radii()), view.problem.limits.edges,
+                               Certificates::kOn, executor, 1, budget);
+    HookedValidity hooked(view.lattice, validity, {check, nullptr}, budget);
+    SearchCounters counters;
+    static_cast<void>(path_first(*own, hooked, {}, counters));
+  }
+  Cut cut = Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
+  cut.resolution = view.problem.resolution;
+  cut.edges = view.problem.limits.edges;
+  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&view.lattice)) cut.windings = arcs->windings();
+  return cut;
+}
+
+}  // namespace swivel

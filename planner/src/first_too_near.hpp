@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/budget.hpp"
+#include "swivel/core/problem.hpp"
+
+namespace swivel {
+
+struct TooNear {
+  std::size_t row = 0;
+  BodyPair pair;
+  bool between = false;  ///< on the way from the row before
+};
+
+/// The first of these rows at which a pair comes too near (PairKeeps::node), or on the way to which one does
+/// (PairKeeps::motion, with `edges: continuous`; joints move straight from row to row). Certificates answer where they can, and
+/// many rows at once: all from one row to another are free where the middle one is clear by as much as anything moves from there.
+/// `rule` and `limits` are those of the world. Throws Stopped.
+[[nodiscard]] std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
+                                                    const std::vector<Config>& rows, const Budget& budget);
+
+}  // namespace swivel

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "nearest_approach.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace swivel {
+
+std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
+                                                const Budget& budget, const std::optional<NearestApproach>& so_far) {
+  constexpr int kStride = 8;  // rows far apart come first, so that one of them is near the nearest
+  const int count = static_cast<int>(rows.size());
+  World::Query query(world, Certificates::kOn);
+  std::optional<NearestApproach> nearest = so_far;
+  const auto is_further = [&](const Config& q) {
+    return nearest->clearance.distance > 0 &&
+           !query.next_below(q, Level(Keep::kNode, nearest->clearance.margin() + 2 * kVerdictBand)) &&
+           (seek == Seek::kMargin || !query.next_below(q, Level(nearest->least + 2 * kVerdictBand)));
+  };
+  int looked_at = 0;
+  const auto look_at = [&](int row) {
+    budget.poll(Stage::kMeasuring, looked_at++, count);
+    const Config& q = rows[static_cast<std::size_t>(row)].q;
+    if (nearest && is_further(q)) return;
+    const auto here = query.clearance(q);
+    if (!here) return;
+    const double least = nearest ? std::min(nearest->least, here->least) : here->least;
+    if (!nearest || std::tuple(here->margin(), row) <= std::tuple(nearest->clearance.margin(), nearest->row))
+      nearest = {*here, row, least};
+    else
+      nearest->least = least;
+  };
+  for (int first = 0; first < kStride; ++first)
+    for (int row = first; row < count; row += kStride) look_at(row);
+  return nearest;
+}
+
+}  // namespace swivel

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/planner/place.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <map>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "nearest_approach.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/invalid_argument.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// The nearest approach of paths, by their margin; where one object alone moves, of pairs without it once for each path.
+class LeastMargins {
+ public:
+  /// `moved`: its number in the scene.
+  explicit LeastMargins(std::optional<int> moved) : moved_(moved) {}
+  std::optional<NearestApproach> of(const PlanView& view, const std::vector<TrajectoryRow>& rows, const Budget& budget) {
+    if (!moved_) return nearest_approach(view.world, rows, Seek::kMargin, budget);
+    const std::vector<int> moved{*moved_};
+    std::vector<double> joints;
+    for (const TrajectoryRow& row : rows) joints.insert(joints.end(), row.q.begin(), row.q.end());
+    constexpr std::size_t kMost = 1000;
+    if (known_.size() == kMost) known_.clear();
+    auto known = known_.find(joints);
+    if (known == known_.end()) {
+      const auto still = nearest_approach(World(view.world, moved, World::Pairs::kBut), rows, Seek::kMargin, budget);
+      known = known_.emplace(std::move(joints), still).first;
+    }
+    return nearest_approach(World(view.world, moved), rows, Seek::kMargin, budget, known->second);
+  }
+
+ private:
+  std::optional<int> moved_;
+  std::map<std::vector<double>, std::optional<NearestApproach>> known_;  // by the joints of all rows
+};
+
+/// The number of the object that is moved, where the path stays.
+std::optional<int> alone_moved(const Problem& problem, const Movable& thing) {
+  if (thing.kind != Movable::Kind::kObject || thing.object == problem.path_frame) return std::nullopt;
+  const auto found =
+      std::find_if(problem.scene.begin(), problem.scene.end(), [&](const auto& o) { return o.name == thing.object; });
+  return static_cast<int>(found - problem.scene.begin());
+}
+
+}  // namespace
+
+struct PlacementPlanner::Impl {
+  Problem problem;
+  Movable thing;
+  PlanOptions single;
+  Executor executor;
+  struct Worker {
+    Planner planner;
+    LeastMargins margins;
+  };
+  std::vector<Worker> workers;
+  std::optional<std::chrono::steady_clock::time_point> deadline;
+  std::atomic<bool> stopped{false};
+
+  [[nodiscard]] PlanOptions options_now() const {
+    PlanOptions options = single;
+    if (deadline)
+      options.timeout_s = std::max(1e-9, std::chrono::duration<double>(*deadline - std::chrono::steady_clock::now()).count());
+    return options;
+  }
+  /// None where it was stopped.
+  std::optional<PlacementRow> plan(const PlacementCell& cell, Worker& worker) const {
+    Planner& planner = worker.planner;
+    PlacementRow row;
+    row.cell = cell.cell;
+    row.offset = cell.offset;
+    try {
+      planner.set_problem(placed_problem(problem, thing, cell.offset));
+      const PlanOptions options = options_now();
+      const Budget budget = options.budget();
+      const PlanResult result = planner.plan(options);
+      row.status = result.status;
+      if (result.status == PlanStatus::kSolved) {
+        row.cost = result.cost;
+        if (result.nearest_limit) row.joint_margin = result.nearest_limit->margin;
+        if (result.top_tool_speed) row.tool_speed = result.top_tool_speed->speed;
+        if (const auto least = worker.margins.of(planner.view(), result.trajectory, budget)) {
+          row.clearance = least->clearance.distance;
+          row.clearance_margin = least->clearance.margin();
+        }
+        return row;
+      }
+      if (result.status != PlanStatus::kInfeasible || (!result.diagnosis.complete && budget.spent())) return std::nullopt;
+      const Cause& cause = result.diagnosis.cause;
+      row.failed_s = result.diagnosis.reached_s;
+      if (cause.kind != Cause::Kind::kNone) row.cause = to_string(cause.kind);
+      row.by = subject_of(cause, problem);
+      row.reason = words(cause);
+    } catch (const Stopped&) {
+      return std::nullopt;
+    } catch (const InputError&) {
+      throw;
+    } catch (const InvalidArgument& error) {  // of the placed problem: the one before it was a valid one
+      throw InputError(error.what());
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {  // must not take the other cells with it
+      row.status = PlanStatus::kError;
+      row.reason = error.what();
+    }
+    return row;
+  }
+};
+
+PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing, PlanOptions options)
+    : impl_(new Impl{std::move(problem), std::move(thing), options, Executor(options.threads, options.backend), {}, {}}) {
+  static_cast<void>(placed_problem(impl_->problem, impl_->thing, {}));
+  for (int worker = 0; worker < impl_->executor.threads(); ++worker)
+    impl_->workers.push_back({Planner(robot, impl_->problem), LeastMargins(alone_moved(impl_->problem, impl_->thing))});
+  PlanOptions& single = impl_->single;
+  single.threads = 1;
+  single.evidence = {};
+  single.hooks = {};
+  single.progress = nullptr;
+  constexpr double kFar = 1e9;  // s; what no clock can measure never passes
+  if (single.timeout_s && *single.timeout_s < kFar)
+    impl_->deadline = std::chrono::steady_clock::now() + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                                             std::chrono::duration<double>(*single.timeout_s));
+}
+PlacementPlanner::~PlacementPlanner() = default;
+
+bool PlacementPlanner::stopped() const {
+  return impl_->stopped;
+}
+
+std::vector<PlacedPlan> PlacementPlanner::trajectories(const std::vector<PlacementCell>& cells) {
+  std::vector<PlacedPlan> plans;
+  Planner& planner = impl_->workers.front().planner;
+  for (const PlacementCell& cell : cells) {
+    planner.set_problem(placed_problem(impl_->problem, impl_->thing, cell.offset));
+    PlanResult result = planner.plan(impl_->options_now());
+    if (result.status == PlanStatus::kSolved) plans.push_back({cell, planner.problem().scene, std::move(result.trajectory)});
+  }
+  return plans;
+}
+
+std::vector<PlacementRow> PlacementPlanner::plan(const std::vector<PlacementCell>& cells,
+                                                 const std::function<void(const PlacementRow&)>& done) {
+  std::vector<std::optional<PlacementRow>> rows(cells.size());
+  // Taken from a counter and not from the executor's index, which starts threads far apart: neighbours are alike.
+  std::atomic<std::size_t> next{0};
+  std::mutex one_at_a_time;
+  impl_->executor.for_each(static_cast<int>(cells.size()), [&](int, int worker) {
+    if (impl_->stopped || impl_->options_now().budget().spent()) {
+      impl_->stopped = true;
+      return;
+    }
+    const std::size_t k = next++;
+    try {
+      rows[k] = impl_->plan(cells[k], impl_->workers[static_cast<std::size_t>(worker)]);
+      if (!rows[k]) impl_->stopped = true;
+      if (!rows[k] || !done) return;
+      const std::lock_guard lock(one_at_a_time);
+      done(*rows[k]);
+    } catch (const InputError& error) {
+      impl_->stopped = true;
+      std::string place;
+      for (std::size_t c = 0; c < kCoordinates.size(); ++c)
+        if (cells[k].offset[c] != 0)
+          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + std::to_string(cells[k].offset[c]);
+      throw InputError(std::string(error.what()) + " (moved by " + (place.empty() ? "nothing" : place) + ")");
+    } catch (...) {
+      impl_->stopped = true;
+      throw;
+    }
+  });
+  std::vector<PlacementRow> known;
+  for (std::optional<PlacementRow>& row : rows)
+    if (row) known.push_back(std::move(*row));
+  return known;
+}
+
+}  // namespace swivel

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "row_margin.hpp"
+
+#include <algorithm>
+
+namespace swivel {
+
+RowMargin::RowMargin(const Lattice& lattice, const World& world) : lattice_(&lattice) {
+  if (!lattice.has_own_rows()) return;
+  for (const RobotBody& body : world.bodies()) {
+    Body& mine = bodies_.emplace_back(Body{body.group, 0});
+    if (body.group == 0) continue;
+    const Vector3d about = lattice.row_shift(0, body.group, Config::Zero()).about;
+    for (const Ball& ball : bounding_balls(body.shape))
+      mine.radius = std::max(mine.radius, (body.pose * ball.center - about).norm() + ball.radius);
+  }
+}
+
+template <class Shift>
+double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
+  double sum = 0;
+  for (const int body : {pair.a, pair.b}) {
+    if (body >= static_cast<int>(bodies_.size())) continue;
+    const Body& moving = bodies_[static_cast<std::size_t>(body)];
+    if (moving.group > 0) sum += shift(moving.group).of(moving.radius);
+  }
+  return sum;
+}
+
+double RowMargin::from_node(int layer, const Config& q, const BodyPair& pair) const {
+  return sum(pair, [&](int group) { return lattice_->row_shift(layer, group, q); });
+}
+
+double RowMargin::between_rows(int layer, const Config& q, const BodyPair& pair) const {
+  return sum(pair, [&](int group) { return lattice_->rows_apart(layer, group, q); });
+}
+
+}  // namespace swivel

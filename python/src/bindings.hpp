@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the files of the Python module share: poses, waypoints, arrays and enums as Python has them.
+#pragma once
+#include <pybind11/eigen.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/problem.hpp"
+
+// A scene is changed in place: never a copy in a list.
+PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)
+
+namespace swivel::python {
+
+namespace py = pybind11;
+
+/// A mesh is shared by all who use it.
+struct Mesh {
+  MeshPtr mesh;
+};
+
+/// Throws ValueError unless it is one of: 4x4, [x y z qw qx qy qz], and where `position_alone` [x y z].
+[[nodiscard]] Waypoint to_waypoint(py::handle source, bool position_alone);
+[[nodiscard]] Pose to_pose(py::handle source);
+[[nodiscard]] std::vector<Waypoint> to_waypoints(py::handle source);
+[[nodiscard]] py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints);
+/// (n, 7) float64, contiguous; (7,) reads as one row. Throws ValueError.
+[[nodiscard]] py::array_t<double> to_joints(py::handle source, const char* what);
+
+/// Read-only numpy array of one member of all rows, without a copy: `first` lies in the first row. Shape (n,), or (n, width).
+template <class Row, class Number>
+py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Number* first, py::ssize_t width = 0) {
+  using Owner = std::shared_ptr<const std::vector<Row>>;
+  const auto count = static_cast<py::ssize_t>(rows->size());
+  std::vector<py::ssize_t> shape{count}, strides{static_cast<py::ssize_t>(sizeof(Row))};
+  if (width > 0) shape.push_back(width), strides.push_back(sizeof(Number));
+  const py::capsule owner(new Owner(rows), [](void* kept) { delete static_cast<Owner*>(kept); });
+  py::array array(py::dtype::of<Number>(), shape, strides, first, owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+/// A Python enum whose members may be given by name wherever the module takes one: Status.SOLVED, "solved".
+template <class E>
+struct EnumNames {
+  static inline std::vector<std::pair<std::string, E>> names;
+  static inline std::string type;
+};
+template <class E>
+void bind_enum(py::module_& m, const char* type, const char* doc, std::vector<std::pair<std::string, E>> names) {
+  py::enum_<E> bound(m, type, doc);
+  for (const auto& [name, value] : names) {
+    std::string upper = name;
+    for (char& letter : upper) letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
+    bound.value(upper.c_str(), value);
+  }
+  bound.def(
+      "__str__",
+      [](E value) {
+        for (const auto& [name, known] : EnumNames<E>::names)
+          if (known == value) return name;
+        return std::string();
+      },
+      py::prepend());
+  EnumNames<E>::names = std::move(names);
+  EnumNames<E>::type = type;
+}
+template <class E>
+E to_enum(py::handle source) {
+  if (py::isinstance<E>(source)) return source.cast<E>();
+  std::string allowed;
+  for (const auto& [name, value] : EnumNames<E>::names) {
+    if (py::isinstance<py::str>(source) && source.cast<std::string>() == name) return value;
+    allowed += (allowed.empty() ? "" : ", ") + name;
+  }
+  throw py::value_error(EnumNames<E>::type + ": " + py::repr(source).cast<std::string>() + ": allowed are " + allowed);
+}
+
+template <class T>
+auto pickling();  // archive.hpp
+
+/// For Python's module copy. Meshes and robot models stay shared: they do not change.
+template <class T, class... Bases>
+void make_copyable(py::class_<T, Bases...>& type) {
+  type.def("__copy__", [](const T& self) { return T(self); });
+  type.def(
+      "__deepcopy__", [](const T& self, const py::dict&) { return T(self); }, py::arg("memo"));
+}
+
+/// A plain struct: made from keywords, its members are attributes, and its repr names those that are not the default.
+template <class T>
+class PlainStruct {
+ public:
+  PlainStruct(py::module_& m, const char* type, const char* doc) : class_(m, type, doc), type_(type) {}
+  template <class Member>
+  PlainStruct& member(const char* name, Member T::*member, const char* doc) {
+    class_.def_readwrite(name, member, doc);
+    names_->push_back(name);
+    return *this;
+  }
+  template <class E>
+  PlainStruct& choice(const char* name, E T::*member, const char* doc) {
+    class_.def_property(
+        name, [member](const T& self) { return self.*member; },
+        [member](T& self, py::handle value) { self.*member = to_enum<E>(value); }, doc);
+    names_->push_back(name);
+    return *this;
+  }
+  void finish() {
+    const auto names = names_;
+    const std::string type = type_;
+    class_.def(py::init([names, type](const py::kwargs& values) {
+      T made;
+      const py::object self = py::cast(&made, py::return_value_policy::reference);
+      for (const std::pair<py::handle, py::handle> value : values) {
+        const std::string name = py::str(value.first);
+        if (std::find(names->begin(), names->end(), name) == names->end())
+          throw py::type_error(type + ": unknown keyword '" + name + "', nearest is '" + nearest_name(name, *names) + "'");
+        self.attr(value.first) = value.second;
+      }
+      return made;
+    }));
+    class_.def("__repr__", [names, type](const T& self) {
+      const py::object own = py::cast(self), plain = py::cast(T());
+      std::string text;
+      for (const std::string& name : *names) {
+        const py::object value = own.attr(name.c_str());
+        if (!value.equal(plain.attr(name.c_str())))
+          text += (text.empty() ? "" : ", ") + name + "=" + py::repr(value).cast<std::string>();
+      }
+      return type + "(" + text + ")";
+    });
+    class_.def(
+        "__eq__", [](const T& a, const T& b) { return a == b; }, py::is_operator());
+    class_.attr("__hash__") = py::none();
+    class_.def(pickling<T>());
+    make_copyable(class_);
+  }
+
+ private:
+  py::class_<T> class_;
+  std::string type_;
+  std::shared_ptr<std::vector<std::string>> names_ = std::make_shared<std::vector<std::string>>();  // shared: with the functions
+};
+
+void bind_problem(py::module_& m);
+void bind_results(py::module_& m);
+void bind_planner(py::module_& m);
+void bind_runs(py::module_& m);
+
+}  // namespace swivel::python
+
+namespace pybind11::detail {
+
+template <>
+struct type_caster<swivel::Pose> {
+  PYBIND11_TYPE_CASTER(swivel::Pose, const_name("PoseLike"));
+  bool load(handle source, bool) {
+    value = swivel::python::to_pose(source);
+    return true;
+  }
+  static handle cast(const swivel::Pose& pose, return_value_policy, handle) {
+    return type_caster<Eigen::Matrix4d>::cast(pose.matrix(), return_value_policy::copy, {});
+  }
+};
+
+template <>
+struct type_caster<std::vector<swivel::Waypoint>> {
+  PYBIND11_TYPE_CASTER(std::vector<swivel::Waypoint>, const_name("WaypointsLike"));
+  bool load(handle source, bool) {
+    value = swivel::python::to_waypoints(source);
+    return true;
+  }
+  static handle cast(const std::vector<swivel::Waypoint>& waypoints, return_value_policy, handle) {
+    return swivel::python::from_waypoints(waypoints).release();
+  }
+};
+
+}  // namespace pybind11::detail

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <list>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <thread>
+#include <type_traits>
+
+#include "bindings.hpp"
+#include "swivel/core/budget.hpp"
+
+namespace swivel::python {
+
+/// Work under way. Threads that Python leaves behind at its end could not take up an answer, so that work is stopped and waited for
+/// before; then there is no more.
+class UnderWay {
+ public:
+  /// Throws RuntimeError at Python's end.
+  explicit UnderWay(std::stop_source stop) {
+    All& all = UnderWay::all();
+    const std::lock_guard lock(all.mutex);
+    if (all.closed) throw std::runtime_error("Python ends: nothing more is planned");
+    place_ = all.stops.insert(all.stops.end(), std::move(stop));
+  }
+  ~UnderWay() {
+    All& all = UnderWay::all();
+    const std::lock_guard lock(all.mutex);
+    all.stops.erase(place_);
+    all.ended.notify_all();
+  }
+  UnderWay(const UnderWay&) = delete;
+  UnderWay& operator=(const UnderWay&) = delete;
+
+  static void end_all() {
+    const py::gil_scoped_release released;
+    All& all = UnderWay::all();
+    std::unique_lock lock(all.mutex);
+    all.closed = true;
+    for (std::stop_source& stop : all.stops) stop.request_stop();
+    all.ended.wait(lock, [&] { return all.stops.empty(); });
+  }
+
+ private:
+  struct All {
+    std::mutex mutex;
+    std::condition_variable ended;
+    std::list<std::stop_source> stops;
+    bool closed = false;
+  };
+  static All& all() {
+    static auto* const all = new All;  // for threads that are there till the last moment
+    return *all;
+  }
+  std::list<std::stop_source>::iterator place_;
+};
+
+/// work(stop) on a thread of its own, without the interpreter's lock. Meanwhile this thread lets Python handle its signals: where a
+/// handler raises, as that of Ctrl-C does, the work is asked to stop, and what was raised goes on once it has. What the work throws
+/// is thrown here; Stopped as TimeoutError, since nothing else stops it.
+template <class Work>
+auto interruptible(const Work& work) {
+  using Result = std::invoke_result_t<Work, std::stop_token>;
+  constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
+  std::optional<Result> result;
+  std::exception_ptr error;
+  std::optional<py::error_already_set> interrupt;
+  bool ended = false;
+  std::mutex mutex;
+  std::condition_variable end;
+  std::stop_source stop;
+  const UnderWay under_way(stop);
+  std::optional<py::gil_scoped_release> released(std::in_place);
+  std::jthread worker([&] {
+    try {
+      result.emplace(work(stop.get_token()));
+    } catch (...) {
+      error = std::current_exception();
+    }
+    const std::lock_guard lock(mutex);
+    ended = true;
+    end.notify_one();
+  });
+  for (std::unique_lock lock(mutex); !end.wait_for(lock, kBetweenLooks, [&] { return ended; });) {
+    if (interrupt) continue;
+    lock.unlock();
+    released.reset();
+    if (PyErr_CheckSignals() != 0) {
+      interrupt.emplace();  // takes what was raised
+      stop.request_stop();
+    }
+    released.emplace();
+    lock.lock();
+  }
+  worker.join();
+  released.reset();
+  if (interrupt) throw py::error_already_set(std::move(*interrupt));
+  if (!error) return std::move(*result);
+  try {
+    std::rethrow_exception(std::exchange(error, nullptr));
+  } catch (const Stopped&) {
+    PyErr_SetString(PyExc_TimeoutError, "stopped by its timeout");
+    throw py::error_already_set();
+  }
+}
+
+}  // namespace swivel::python

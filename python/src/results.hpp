@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Answers as Python holds them: shared, so that arrays are views which outlive the object that they were read from.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "swivel/core/advice.hpp"
+#include "swivel/io/motion.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/motion.hpp"
+
+namespace swivel::python {
+
+struct Trajectory {
+  std::shared_ptr<const std::vector<TrajectoryRow>> rows;  // shared: with arrays and other answers
+  io::JointNames joint_names;
+};
+
+struct Motion {
+  std::shared_ptr<const TimingResult> timing;
+  io::JointNames joint_names;
+  std::string frame;  ///< base link
+  [[nodiscard]] std::shared_ptr<const std::vector<TimedRow>> rows() const;
+  [[nodiscard]] const TimedPath& path() const;  ///< Throws ValueError where it is not executable.
+};
+
+struct RefinedPath {
+  std::shared_ptr<const Refined> refined;
+  io::JointNames joint_names;
+};
+
+struct Plan {
+  std::shared_ptr<const MotionPlan> plan;
+  std::optional<TimingOptions> timing;
+  std::string frame;
+  [[nodiscard]] const PlanResult& result() const { return plan->result; }
+};
+
+struct Check {
+  CheckResult result;
+  io::JointNames joint_names;
+};
+
+}  // namespace swivel::python

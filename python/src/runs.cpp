@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "runs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <variant>
+
+#include "archive.hpp"
+#include "interruptible.hpp"
+#include "swivel/core/grid_refinement.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/io/placement.hpp"
+#include "swivel/planner/campaign.hpp"
+#include "swivel/planner/place.hpp"
+
+namespace swivel::python {
+
+namespace {
+
+std::uint64_t number_of(const PlacementRow& row) {
+  return row.cell;
+}
+std::uint64_t number_of(const EpisodeRow& row) {
+  return row.episode;
+}
+
+template <class Row>
+Table<Row> to_table(std::vector<Row> rows, std::vector<std::string> coordinates = {}) {
+  return {std::make_shared<const std::vector<Row>>(std::move(rows)), std::move(coordinates)};
+}
+
+std::string to_csv(const Placements& table) {
+  return io::to_csv(*table.rows);
+}
+std::string to_csv(const Episodes& table) {
+  return io::to_csv(*table.rows, table.coordinates);
+}
+
+/// One number a row, NaN where there is none.
+template <class Row>
+py::array_t<double> numbers(const Table<Row>& table, std::optional<double> Row::*member) {
+  py::array_t<double> array(static_cast<py::ssize_t>(table.rows->size()));
+  double* out = array.mutable_data();
+  for (const Row& row : *table.rows) *out++ = (row.*member).value_or(std::numeric_limits<double>::quiet_NaN());
+  return array;
+}
+template <class Row, class Number>
+py::array plain(const Table<Row>& table, Number Row::*member) {
+  return column(table.rows, table.rows->empty() ? nullptr : &(table.rows->front().*member));
+}
+template <class Row>
+std::vector<std::string> texts(const Table<Row>& table, std::string Row::*member) {
+  std::vector<std::string> all;
+  for (const Row& row : *table.rows) all.push_back(row.*member);
+  return all;
+}
+
+template <class Row>
+Table<Row> joined(const std::vector<Table<Row>>& parts) {
+  std::vector<Row> rows;
+  for (const Table<Row>& part : parts) rows.insert(rows.end(), part.rows->begin(), part.rows->end());
+  std::sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return number_of(a) < number_of(b); });
+  return to_table(std::move(rows), parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
+}
+
+template <class... Values>
+std::string format(const char* words, Values... values) {
+  char text[128];
+  std::snprintf(text, sizeof text, words, values...);
+  return text;
+}
+
+/// "12, of which 7 have a path; cost 1.9 to 2.4"
+template <class Row>
+std::string table_words(const Table<Row>& table) {
+  std::size_t solved = 0;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (const Row& row : *table.rows) {
+    if (row.status != PlanStatus::kSolved || !row.cost) continue;
+    ++solved;
+    least = std::min(least, *row.cost);
+    most = std::max(most, *row.cost);
+  }
+  std::string text = format("%zu, of which %zu have a path", table.rows->size(), solved);
+  if (solved > 0) text += format("; cost %.6g to %.6g", least, most);
+  return text;
+}
+
+/// What every table has.
+template <class Row>
+py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* doc) {
+  using Rows = Table<Row>;
+  py::class_<Rows> table(m, type, doc);
+  table.def(pickling<Rows>())
+      .def("__len__", [](const Rows& t) { return t.rows->size(); })
+      .def(
+          "__getitem__",
+          [](const Rows& t, py::ssize_t k) {
+            const auto size = static_cast<py::ssize_t>(t.rows->size());
+            if (k < -size || k >= size) throw py::index_error("row " + std::to_string(k) + " of " + std::to_string(size));
+            return (*t.rows)[static_cast<std::size_t>(k < 0 ? k + size : k)];
+          },
+          py::arg("k"), "The k-th row.")
+      .def_property_readonly(
+          "status",
+          [](const Rows& t) {
+            std::vector<PlanStatus> all;
+            for (const Row& row : *t.rows) all.push_back(row.status);
+            return all;
+          },
+          "Status of each row.")
+      .def_property_readonly(
+          "solved",
+          [](const Rows& t) {
+            py::array_t<bool> array(static_cast<py::ssize_t>(t.rows->size()));
+            bool* out = array.mutable_data();
+            for (const Row& row : *t.rows) *out++ = row.status == PlanStatus::kSolved;
+            return array;
+          },
+          "(n,) bool.")
+      .def_property_readonly(
+          "cost", [](const Rows& t) { return numbers(t, &Row::cost); }, "(n,); NaN where there is no path.")
+      .def_property_readonly(
+          "failed_s", [](const Rows& t) { return numbers(t, &Row::failed_s); },
+          "(n,), m, where every path ends; NaN where there is one, and where not even the first layer has a node.")
+      .def_property_readonly(
+          "reason", [](const Rows& t) { return texts(t, &Row::reason); }, "What ends them, in words; '' where there is a path.")
+      .def(
+          "save", [](const Rows& t, const std::filesystem::path& file) { io::write_file(file, to_csv(t)); }, py::arg("file"),
+          "As CSV, docs/formats.md: what the program writes.")
+      .def_static("_joined", &joined<Row>)  // for place() and campaign() of the package
+      .def("__repr__", [name = std::string(type)](const Rows& t) { return "<" + name + ": " + table_words(t) + ">"; });
+  return table;
+}
+
+std::string placement_words(const PlacementRow& row) {
+  std::string text = format("%llu", static_cast<unsigned long long>(row.cell));
+  for (std::size_t k = 0; k < kCoordinates.size(); ++k)
+    if (row.offset[k] != 0) text += format(", %s %.6g", kCoordinates[k], row.offset[k]);
+  if (row.status != PlanStatus::kSolved) return text + ": " + (row.reason.empty() ? "no path" : "no path, " + row.reason);
+  text += format(": cost %.6g", *row.cost);
+  if (row.clearance) text += format(", clearance %.1f mm", 1e3 * *row.clearance);
+  if (row.joint_margin) text += format(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
+  if (row.tool_speed) text += format(", tool speed up to %.3g m/s", *row.tool_speed);
+  return text;
+}
+
+std::vector<PlacementCriterion> to_criteria(const std::vector<std::string>& names) {
+  if (names.empty()) throw InvalidArgument("best: no criterion: allowed are clearance, cost, margin, speed");
+  std::vector<PlacementCriterion> criteria;
+  for (const std::string& name : names) criteria.push_back(placement_criterion_from_string(name));
+  return criteria;
+}
+
+void bind_tables(py::module_& m) {
+  py::class_<PlacementRow>(m, "Placement", "What became of one placement. None: does not apply.")
+      .def(pickling<PlacementRow>())
+      .def_readonly("cell", &PlacementRow::cell, "Its number.")
+      .def_property_readonly(
+          "offset", [](const PlacementRow& r) { return py::array_t<double>(py::ssize_t{6}, r.offset.data()); },
+          "(6,): x y z (m) roll pitch yaw (rad), by how much the thing is moved.")
+      .def_readonly("status", &PlacementRow::status, "Status.")
+      .def_property_readonly("solved", [](const PlacementRow& r) { return r.status == PlanStatus::kSolved; })
+      .def_readonly("cost", &PlacementRow::cost)
+      .def_readonly("clearance", &PlacementRow::clearance, "m, of the pair that comes nearest to what it must keep.")
+      .def_readonly("clearance_margin", &PlacementRow::clearance_margin, "m, that less what the pair must keep.")
+      .def_readonly("joint_margin", &PlacementRow::joint_margin, "rad, to the nearest limit.")
+      .def_readonly("tool_speed", &PlacementRow::tool_speed, "m/s, highest constant speed of the tool.")
+      .def_readonly("failed_s", &PlacementRow::failed_s, "m, where every path ends.")
+      .def_readonly("cause", &PlacementRow::cause, "Of that: the name of a CauseKind, or ''.")
+      .def_readonly("by", &PlacementRow::by, "The scene object in the way, else the joint or the two bodies.")
+      .def_readonly("reason", &PlacementRow::reason, "The same in words.")
+      .def("__repr__", [](const PlacementRow& r) { return "<Placement " + placement_words(r) + ">"; });
+  bind_table<PlacementRow>(m, "Placements", "Placements in the order of their numbers: Placement by Placement, or as arrays.")
+      .def_property_readonly(
+          "cell", [](const Placements& t) { return plain(t, &PlacementRow::cell); }, "(n,) uint64, numbers.")
+      .def_property_readonly(
+          "offset",
+          [](const Placements& t) {
+            return column(t.rows, t.rows->empty() ? static_cast<const double*>(nullptr) : t.rows->front().offset.data(), 6);
+          },
+          "(n, 6): x y z (m) roll pitch yaw (rad).")
+      .def_property_readonly(
+          "clearance", [](const Placements& t) { return numbers(t, &PlacementRow::clearance); }, "(n,), m; as cost.")
+      .def_property_readonly(
+          "clearance_margin", [](const Placements& t) { return numbers(t, &PlacementRow::clearance_margin); }, "(n,), m; as cost.")
+      .def_property_readonly(
+          "joint_margin", [](const Placements& t) { return numbers(t, &PlacementRow::joint_margin); }, "(n,), rad; as cost.")
+      .def_property_readonly(
+          "tool_speed", [](const Placements& t) { return numbers(t, &PlacementRow::tool_speed); }, "(n,), m/s; as cost.")
+      .def_property_readonly(
+          "cause", [](const Placements& t) { return texts(t, &PlacementRow::cause); }, "Names of CauseKinds.")
+      .def_property_readonly(
+          "by", [](const Placements& t) { return texts(t, &PlacementRow::by); }, "The object, joint or bodies in the way.")
+      .def(
+          "best",
+          [](const Placements& t, const std::variant<std::string, std::vector<std::string>>& by, std::size_t count) {
+            const auto* const one = std::get_if<std::string>(&by);
+            return best_placements(*t.rows, to_criteria(one != nullptr ? std::vector{*one} : std::get<1>(by)), count);
+          },
+          py::arg("by") = "cost", py::arg("count") = 10,
+          "Those that have a path, the best first. by: 'clearance', 'cost', 'margin' or 'speed', or several, each of which "
+          "settles\n"
+          "the ties of those before.");
+
+  py::class_<EpisodeRow>(m, "Episode", "What became of one episode of a campaign. None: does not apply.")
+      .def(pickling<EpisodeRow>())
+      .def_readonly("episode", &EpisodeRow::episode, "Its number.")
+      .def_readonly("status", &EpisodeRow::status, "Status.")
+      .def_property_readonly("solved", [](const EpisodeRow& r) { return r.status == PlanStatus::kSolved; })
+      .def_readonly("cost", &EpisodeRow::cost)
+      .def_readonly("plan_ms", &EpisodeRow::plan_ms)
+      .def_readonly("nodes_checked", &EpisodeRow::nodes_checked)
+      .def_readonly("fcl_calls", &EpisodeRow::fcl_calls)
+      .def_readonly("tool_path_error_mm_mean", &EpisodeRow::tool_path_error_mm_mean)
+      .def_readonly("tool_path_error_mm_max", &EpisodeRow::tool_path_error_mm_max)
+      .def_readonly("failed_s", &EpisodeRow::failed_s, "m, where every path ends.")
+      .def_readonly("cause", &EpisodeRow::cause, "What ends them: the cause's kind.")
+      .def_readonly("by", &EpisodeRow::by, "The object or joint that ends them.")
+      .def_readonly("reason", &EpisodeRow::reason, "What ends them, in words.")
+      .def_readonly("offsets", &EpisodeRow::offsets, "Of the coordinates that vary, m and rad.")
+      .def("__repr__", [](const EpisodeRow& r) {
+        return format("<Episode %llu: ", static_cast<unsigned long long>(r.episode)) +
+               (r.cost ? format("cost %.6g", *r.cost) : "no path, " + r.reason) + format(", %.1f ms>", r.plan_ms);
+      });
+  bind_table<EpisodeRow>(m, "Episodes", "Episodes of a campaign in the order of their numbers: Episode by Episode, or as arrays.")
+      .def_property_readonly(
+          "episode", [](const Episodes& t) { return plain(t, &EpisodeRow::episode); }, "(n,) uint64, numbers.")
+      .def_property_readonly(
+          "plan_ms", [](const Episodes& t) { return plain(t, &EpisodeRow::plan_ms); }, "(n,)")
+      .def_property_readonly(
+          "nodes_checked", [](const Episodes& t) { return plain(t, &EpisodeRow::nodes_checked); }, "(n,) int64")
+      .def_property_readonly(
+          "fcl_calls", [](const Episodes& t) { return plain(t, &EpisodeRow::fcl_calls); }, "(n,) int64")
+      .def_property_readonly(
+          "tool_path_error_mm_mean", [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_mean); },
+          "(n,), mm; as cost.")
+      .def_property_readonly(
+          "tool_path_error_mm_max", [](const Episodes& t) { return numbers(t, &EpisodeRow::tool_path_error_mm_max); },
+          "(n,), mm; as cost.");
+}
+
+// --- what place() and campaign() of the package are made of
+
+/// A coordinate as Python says it: a number, (from, to) of samples, or (from, to, step).
+using Range = std::variant<double, std::array<double, 2>, std::array<double, 3>>;
+
+/// The cells that are asked for: a grid, or a sample of places between the ends of its axes.
+class Cells {
+ public:
+  Cells(const std::array<std::optional<Range>, 6>& ranges, std::optional<std::uint64_t> sample, std::uint64_t seed)
+      : grid_(axes_of(ranges, sample.has_value())), sample_(sample), seed_(seed) {
+    constexpr std::uint64_t kMost = 1'000'000;
+    if (size() < 1 || size() > kMost)
+      throw InvalidArgument((sample ? "sample: " : "the grid: ") + std::to_string(size()) + " placements: allowed are 1 to " +
+                            std::to_string(kMost));
+  }
+  [[nodiscard]] std::uint64_t size() const { return sample_ ? *sample_ : grid_.size(); }
+  [[nodiscard]] py::array_t<double> offsets(const std::vector<std::uint64_t>& numbers) const {
+    py::array_t<double> array({static_cast<py::ssize_t>(numbers.size()), py::ssize_t{6}});
+    double* out = array.mutable_data();
+    for (const std::uint64_t cell : numbers) {
+      const Offset offset = sample_ ? sampled_offset(grid_.axes(), seed_, cell) : grid_.offset(cell);
+      out = std::copy(offset.begin(), offset.end(), out);
+    }
+    return array;
+  }
+  [[nodiscard]] GridRefinement refinement(const std::vector<std::string>& best) const {
+    if (sample_) throw InvalidArgument("refine_grid: a sample has no neighbours: allowed without sample");
+    return {grid_, to_criteria(best)};
+  }
+
+ private:
+  static std::vector<PlacementAxis> axes_of(const std::array<std::optional<Range>, 6>& ranges, bool sample) {
+    std::vector<PlacementAxis> axes;
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
+      if (!ranges[k]) continue;
+      const auto refuse = [&](const char* allowed) {
+        throw InvalidArgument(std::string(kCoordinates[k]) + ": allowed is " + allowed);
+      };
+      const int coordinate = static_cast<int>(k);
+      if (const auto* const one = std::get_if<double>(&*ranges[k])) {
+        axes.push_back(placement_axis(coordinate, *one, *one, 0));
+      } else if (const auto* const two = std::get_if<std::array<double, 2>>(&*ranges[k])) {
+        if (!sample) refuse("a number, or (from, to, step), without sample");
+        axes.push_back(placement_axis(coordinate, (*two)[0], (*two)[1], 0));
+      } else {
+        const auto& [from, to, step] = std::get<2>(*ranges[k]);
+        if (!(step > 0)) refuse("a step > 0");
+        axes.push_back(placement_axis(coordinate, from, to, sample ? 0 : step));
+      }
+    }
+    if (axes.empty()) throw InvalidArgument("x, y, z, roll, pitch, yaw: none is given: allowed are one to six of them");
+    return axes;
+  }
+
+  PlacementGrid grid_;
+  std::optional<std::uint64_t> sample_;
+  std::uint64_t seed_;
+};
+
+PlanOptions plan_options(const py::object& planner, int threads, std::optional<double> timeout) {
+  PlanOptions options;
+  options.planner = to_enum<PlannerKind>(planner);
+  constexpr int kMostThreads = 1024;
+  if (threads < 0 || threads > kMostThreads)
+    throw py::value_error("threads: " + std::to_string(threads) + ": allowed are 0 (all cores) to " + std::to_string(kMostThreads));
+  options.threads = threads;
+  if (timeout && !(*timeout > 0)) throw py::value_error("timeout: not a positive number: allowed are values above 0, or None");
+  options.timeout_s = timeout;
+  return options;
+}
+
+/// Placements of one thing, planned by planners that remember those before.
+class Placer {
+ public:
+  Placer(Problem problem, Movable thing, const py::object& planner, int threads, std::optional<double> timeout)
+      : problem_(std::move(problem)), thing_(std::move(thing)), options_(plan_options(planner, threads, timeout)) {
+    static_cast<void>(placed_problem(problem_, thing_, {}));
+  }
+  Placements plan(const std::vector<std::uint64_t>& cells, const py::array_t<double, py::array::c_style>& offsets,
+                  const py::object& each) {
+    if (offsets.ndim() != 2 || offsets.shape(0) != static_cast<py::ssize_t>(cells.size()) || offsets.shape(1) != 6)
+      throw py::value_error("offsets: allowed is (n, 6)");
+    std::vector<PlacementCell> wanted(cells.size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      wanted[k].cell = cells[k];
+      std::copy_n(offsets.data(static_cast<py::ssize_t>(k), 0), 6, wanted[k].offset.begin());
+    }
+    std::function<void(const PlacementRow&)> done;
+    if (!each.is_none())
+      done = [tell = each.ptr()](const PlacementRow& row) {
+        const py::gil_scoped_acquire gil;
+        py::reinterpret_borrow<py::object>(tell)(to_table(std::vector{row}));
+      };
+    return to_table(interruptible([&](const std::stop_token& stop) {
+      if (!planner_) {
+        PlanOptions options = options_;
+        options.stop = stop_.get_token();
+        planner_.emplace(std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop)), problem_, thing_, options);
+      }
+      const std::stop_callback pass_on(stop, [&] { stop_.request_stop(); });
+      return planner_->plan(wanted, done);
+    }));
+  }
+  [[nodiscard]] bool stopped() const { return planner_ && planner_->stopped(); }
+
+ private:
+  Problem problem_;
+  Movable thing_;
+  PlanOptions options_;
+  std::stop_source stop_;  // of all its plans: the planner keeps the options that it was made with
+  std::optional<PlacementPlanner> planner_;
+};
+
+/// Episodes of one campaign.
+class Campaigner {
+ public:
+  Campaigner(Problem problem, std::uint64_t episodes, std::uint64_t seed, const py::object& planner, int threads)
+      : problem_(std::move(problem)) {
+    constexpr std::uint64_t kMost = 10'000'000;
+    if (episodes < 1 || episodes > kMost)
+      throw InvalidArgument("episodes: " + std::to_string(episodes) + ": allowed are 1 to " + std::to_string(kMost));
+    options_.episodes = episodes;
+    options_.seed = seed;
+    options_.plan = plan_options(planner, threads, {});
+  }
+  Episodes plan(const Shard& shard, const py::object& each) {
+    return to_table(interruptible([&](const std::stop_token& stop) {
+                      if (!robot_) robot_ = std::make_shared<const PreparedRobot>(problem_, Budget({}, nullptr, stop));
+                      CampaignOptions options = options_;
+                      options.shard = shard;
+                      options.plan.stop = stop;
+                      std::vector<EpisodeRow> rows;
+                      run_campaign(*robot_, problem_, options, [&](const EpisodeRow& row) {
+                        rows.push_back(row);
+                        if (each.ptr() == Py_None) return;
+                        const py::gil_scoped_acquire gil;
+                        each(to_table(std::vector{row}, varied_coordinates(problem_.vary)));
+                      });
+                      return rows;
+                    }),
+                    varied_coordinates(problem_.vary));
+  }
+
+ private:
+  Problem problem_;
+  CampaignOptions options_;
+  std::shared_ptr<const PreparedRobot> robot_;
+};
+
+void bind_parts(py::module_& m) {
+  py::class_<GridRefinement>(m, "_Refinement")
+      .def("next", &GridRefinement::next)
+      .def("learn", [](GridRefinement& self, const Placements& rows) {
+        for (const PlacementRow& row : *rows.rows) self.learn(row);
+      });
+  py::class_<Cells>(m, "_Cells")
+      .def(py::init<const std::array<std::optional<Range>, 6>&, std::optional<std::uint64_t>, std::uint64_t>())
+      .def("__len__", &Cells::size)
+      .def("offsets", &Cells::offsets)
+      .def("refinement", &Cells::refinement);
+  py::class_<Placer>(m, "_Placer")
+      .def(py::init([](const Problem& problem, const std::optional<std::string>& object, bool path, bool base,
+                       const py::object& planner, int threads, std::optional<double> timeout) {
+        return std::make_unique<Placer>(problem, to_movable(object, path, base), planner, threads, timeout);
+      }))
+      .def("plan", &Placer::plan)
+      .def_property_readonly("stopped", &Placer::stopped);
+  py::class_<Campaigner>(m, "_Campaigner")
+      .def(py::init<Problem, std::uint64_t, std::uint64_t, const py::object&, int>())
+      .def("plan", [](Campaigner& self, std::uint64_t index, std::uint64_t count, const py::object& each) {
+        return self.plan({index, count}, each);
+      });
+}
+
+}  // namespace
+
+Movable to_movable(const std::optional<std::string>& object, bool path, bool base) {
+  if (static_cast<int>(object.has_value()) + static_cast<int>(path) + static_cast<int>(base) != 1)
+    throw InvalidArgument("object, path, base: what is to be moved: allowed is exactly one of the three");
+  if (object) return {Movable::Kind::kObject, *object};
+  return {path ? Movable::Kind::kPath : Movable::Kind::kBase, {}};
+}
+
+void bind_runs(py::module_& m) {
+  bind_tables(m);
+  bind_parts(m);
+}
+
+}  // namespace swivel::python

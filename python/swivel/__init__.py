@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Plans joint trajectories of arms with a degree of freedom to spare along tool paths.
+
+Metres, radians, seconds. Poses go in as (4, 4) arrays or as [x y z qw qx qy qz], w first, and come out as (4, 4) arrays; joints
+as (n, 7) float64, base to tip. Arrays that come out are read-only views, which keep alive what they show.
+
+    problem = swivel.load_problem("problem.yaml")
+    plan = swivel.plan(problem)
+    if plan.solved:
+        print(plan.joints)
+    else:
+        print(plan.diagnosis.cause)
+"""
+import os as _os
+
+import numpy as _np
+
+from . import _swivel
+from ._swivel import *  # noqa: F401,F403
+from ._swivel import __version__  # noqa: F401
+from .runs import campaign, place  # noqa: F401
+
+__all__ = [name for name in vars(_swivel) if not name.startswith("_")]
+for _name in __all__:
+    getattr(_swivel, _name).__module__ = __name__
+campaign.__module__ = place.__module__ = __name__
+__all__ += ["advise", "campaign", "check", "compute_cartesian_path", "measure", "place", "plan", "refine", "time"]
+
+
+def _planner(problem):
+    if isinstance(problem, (str, _os.PathLike)):
+        problem = load_problem(problem)  # noqa: F405
+    return Planner(problem)  # noqa: F405
+
+
+def plan(problem, **options):
+    """Plans one problem, once. problem: a Problem, or the name of its file. options: those of Planner.plan()."""
+    return _planner(problem).plan(**options)
+
+
+def check(problem, trajectory):
+    """Proves a Trajectory or a Motion from the problem alone: Planner.check()."""
+    return _planner(problem).check(trajectory)
+
+
+def measure(problem, trajectory):
+    """What a trajectory comes near to, and how well it follows its path: Planner.measure()."""
+    return _planner(problem).measure(trajectory)
+
+
+def refine(problem, trajectory, *, timeout=None):
+    """Moves the arm angles of a trajectory off the grid: Planner.refine()."""
+    return _planner(problem).refine(trajectory, timeout=timeout)
+
+
+def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, timeout=None):
+    """Makes a trajectory a motion in time: Planner.time()."""
+    return _planner(problem).time(trajectory, speed=speed, turn_speed=turn_speed, rate=rate, timeout=timeout)
+
+
+def advise(problem, plan, *, timeout=1.0):
+    """What would help a problem that has no path: Planner.advise()."""
+    return _planner(problem).advise(plan, timeout=timeout)
+
+
+def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, limits=None, **options):
+    """Follows straight lines through waypoints from a given posture, as far as that can be done.
+
+    robot: Robot. scene: Scene, or any sequence of SceneObjects. waypoints: poses of the tool in the base frame, after that of the
+    start: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of either. start: (7,) joints, rad; None: the path begins at the
+    first waypoint, in the posture that suits it best. max_step: m between rows. limits: Limits. options: those of Planner.plan().
+
+    Returns (fraction, trajectory): 1.0 and the whole Trajectory, or the share of the rows that can be reached, and those.
+    Raises InputError and InvalidArgument for what no problem may have; a start that is in collision gives 0.0.
+    """
+    task = Task(  # noqa: F405
+        waypoints,
+        limits=limits if limits is not None else Limits(),  # noqa: F405
+        resolution=Resolution(ds=max_step),  # noqa: F405
+        start=start,
+    )
+    if start is not None:
+        here = _np.array([robot.tool_pose(start)])
+        task.waypoints = here
+        first = task.waypoints[0]
+        ahead = Task(waypoints).waypoints  # noqa: F405
+        if len(ahead) and _np.abs(ahead[0][:3] - first[:3]).max() < 1e-6 and 1 - abs(ahead[0][3:] @ first[3:]) < 5e-13:
+            ahead = ahead[1:]  # the start itself
+        task.waypoints = _np.vstack([first[None], ahead])
+    result = Planner(robot, task, scene).plan(**options)  # noqa: F405
+    if result.solved:
+        return 1.0, result.trajectory
+    reached = result.partial
+    return max(0, len(reached) - 1) / max(1, result.lattice.layers - 1), reached

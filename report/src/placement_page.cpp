@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <map>
+#include <optional>
+#include <tuple>
+
+#include "page_template.hpp"
+#include "scene_json.hpp"
+#include "swivel/core/rpy.hpp"
+#include "swivel/report/placement_map.hpp"
+
+namespace swivel {
+
+using namespace detail;
+
+namespace {
+
+/// Six significant digits: a page draws them.
+Json rounded(const std::optional<double>& value) {
+  if (!value) return nullptr;
+  if (*value == 0) return 0;
+  const double scale = std::pow(10, 5 - std::floor(std::log10(std::abs(*value))));
+  const double result = std::round(*value * scale) / scale;
+  return std::isfinite(result) ? result : *value;
+}
+
+/// Where offsets are counted from: the origin of what is moved, before it is.
+Vector3d origin_of(const Problem& problem, const Movable& thing) {
+  const std::string& name = thing.kind == Movable::Kind::kObject ? thing.object : problem.path_frame;
+  if (thing.kind != Movable::Kind::kBase)
+    for (const SceneObject& object : problem.scene)
+      if (object.name == name) return object.pose.translation();
+  return Vector3d::Zero();
+}
+
+/// The base frame with nothing moved, as seen from where the base stands now.
+Pose still_frame(const Movable& thing, const Offset& offset) {
+  Pose moved = Pose::Identity();
+  if (thing.kind != Movable::Kind::kBase) return moved;
+  moved.linear() = from_rpy({offset[3], offset[4], offset[5]}).toRotationMatrix();
+  moved.translation() = Vector3d(offset[0], offset[1], offset[2]);
+  return moved.inverse();
+}
+
+Json scene_json(const PlacementScene& scene) {
+  if (scene.plans.empty()) return nullptr;
+  Bodies bodies(scene.robot->world(), scene.problem->scene);
+  Json plans = Json::array();
+  for (const PlacedPlan& plan : scene.plans) {
+    std::vector<float> s, joints;  // for drawing
+    for (const TrajectoryRow& row : plan.trajectory) {
+      s.push_back(static_cast<float>(row.s));
+      for (const double q : row.q) joints.push_back(static_cast<float>(q));
+    }
+    Json poses = Json::array();
+    for (const SceneObject& object : plan.scene) poses.push_back(pose_json(object.pose));
+    plans.push_back({{"cell", plan.cell.cell},
+                     {"s", base64(s)},
+                     {"joints", base64(joints)},
+                     {"poses", std::move(poses)},
+                     {"still_frame", pose_json(still_frame(scene.thing, plan.cell.offset))}});
+  }
+  return {{"chain", chain_json(scene.robot->arm().chain)},
+          {"bodies", std::move(bodies.bodies)},
+          {"meshes", std::move(bodies.meshes)},
+          {"origin", vector_json(origin_of(*scene.problem, scene.thing))},
+          {"plans", std::move(plans)}};
+}
+
+}  // namespace
+
+std::string to_placement_page(const std::vector<PlacementRow>& rows, const PlacementFacts& facts, const PlacementScene& scene) {
+  // By columns: the names of the keys would be most of a page of 10,000 rows.
+  Json columns = {{"cell", Json::array()}, {"end", Json::array()}};
+  const std::pair<const char*, std::optional<double> PlacementRow::*> numbers[] = {
+      {"cost", &PlacementRow::cost},
+      {"clearance", &PlacementRow::clearance},
+      {"clearance_margin", &PlacementRow::clearance_margin},
+      {"joint_margin", &PlacementRow::joint_margin},
+      {"tool_speed", &PlacementRow::tool_speed},
+      {"failed_s", &PlacementRow::failed_s}};
+  for (const auto& [name, member] : numbers) columns[name] = Json::array();
+  if (facts.sample) columns["offsets"] = Json::array();
+  std::map<std::tuple<std::string, std::string, std::string>, int> known;
+  Json ends = Json::array();
+  for (const PlacementRow& row : rows) {
+    columns["cell"].push_back(row.cell);
+    int end = -1;
+    if (row.status != PlanStatus::kSolved) {
+      const auto [place, is_new] = known.try_emplace({row.cause, ended_by(row), row.reason}, static_cast<int>(known.size()));
+      end = place->second;
+      if (is_new)
+        ends.push_back({{"cause", row.cause}, {"by", ended_by(row)}, {"reason", row.reason.empty() ? "not known" : row.reason}});
+    }
+    columns["end"].push_back(end);
+    for (const auto& [name, member] : numbers) columns[name].push_back(rounded(row.*member));
+    if (!facts.sample) continue;
+    Json offsets = Json::array();
+    for (const PlacementAxis& axis : facts.axes) offsets.push_back(row.offset[static_cast<std::size_t>(axis.coordinate)]);
+    columns["offsets"].push_back(std::move(offsets));
+  }
+  Json axes = Json::array();
+  for (const PlacementAxis& axis : facts.axes) {
+    Json values = Json::array();
+    for (int k = 0; k < axis.count; ++k) values.push_back(axis.at(k));
+    if (facts.sample && axis.to > axis.from) values.push_back(axis.to);
+    axes.push_back({{"name", kCoordinates[static_cast<std::size_t>(axis.coordinate)]}, {"values", std::move(values)}});
+  }
+  const Json data = {{"problem", facts.problem},  {"thing", facts.thing},
+                     {"axes", std::move(axes)},   {"sample", facts.sample},
+                     {"asked", facts.asked},      {"criterion", to_string(facts.criteria.front())},
+                     {"planner", facts.planner},  {"plan_command", facts.plan_command},
+                     {"ends", std::move(ends)},   {"columns", std::move(columns)},
+                     {"scene", scene_json(scene)}};
+  return fill(placement_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
+}  // namespace swivel

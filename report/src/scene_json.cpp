@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_json.hpp"
+
+#include <algorithm>
+#include <variant>
+
+namespace swivel::detail {
+
+std::string base64(const unsigned char* bytes, std::size_t count) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve(4 * (count / 3 + 1));
+  for (std::size_t k = 0; k < count; k += 3) {
+    const std::size_t rest = std::min<std::size_t>(3, count - k);
+    unsigned word = 0;
+    for (std::size_t j = 0; j < 3; ++j) word = word << 8 | (j < rest ? bytes[k + j] : 0u);
+    for (std::size_t j = 0; j < 4; ++j) text += j <= rest ? kDigits[word >> (18 - 6 * j) & 63] : '=';
+  }
+  return text;
+}
+
+Json vector_json(const Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json pose_json(const Pose& pose) {
+  Json json = Json::array();
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 4; ++c) json.push_back(pose.matrix()(r, c));
+  return json;
+}
+
+Json chain_json(const Chain& chain) {
+  Json joints = Json::array();
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[j];
+    joints.push_back({{"name", chain.joint_names[j]},
+                      {"axis", vector_json(chain.axis[j])},
+                      {"point", vector_json(chain.point[j])},
+                      {"lower", limit.continuous ? Json(nullptr) : Json(limit.lower)},
+                      {"upper", limit.continuous ? Json(nullptr) : Json(limit.upper)}});
+  }
+  return {{"joints", std::move(joints)}, {"home", pose_json(chain.home)}};
+}
+
+Bodies::Bodies(const World& world, const std::vector<SceneObject>& scene) {
+  for (const RobotBody& body : world.bodies()) add(body.name, body.attached ? "tool" : "robot", body.group, body.shape, body.pose);
+  for (const SceneObject& object : scene) add(object.name, "scene", 0, object.shape, object.pose);
+}
+
+void Bodies::add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose) {
+  Json body = {{"name", name}, {"kind", kind}, {"group", group}, {"pose", pose_json(pose)}};
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) body["sphere"] = sphere->radius;
+  if (const auto* box = std::get_if<Box>(&shape)) body["box"] = vector_json(box->size);
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) body["cylinder"] = {cylinder->radius, cylinder->length};
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) body["capsule"] = {capsule->radius, capsule->length};
+  if (const auto* mesh = std::get_if<MeshPtr>(&shape)) body["mesh"] = index_of(**mesh);
+  bodies.push_back(std::move(body));
+}
+
+std::size_t Bodies::index_of(const TriangleMesh& mesh) {
+  const auto [at, fresh] = index_.emplace(&mesh, index_.size());
+  if (fresh) {
+    std::vector<float> points;
+    for (const Vector3d& v : mesh.vertices)
+      for (int k = 0; k < 3; ++k) points.push_back(static_cast<float>(v[k]));
+    std::vector<std::uint32_t> corners;
+    for (const auto& triangle : mesh.triangles)
+      for (const int corner : triangle) corners.push_back(static_cast<std::uint32_t>(corner));
+    meshes.push_back({{"vertices", base64(points)}, {"triangles", base64(corners)}});
+  }
+  return at->second;
+}
+
+}  // namespace swivel::detail

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// An arm among its scene as the pages' view in three dimensions reads it (report/web/scene.js).
+#pragma once
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/arm.hpp"
+#include "swivel/core/problem.hpp"
+
+namespace swivel::detail {
+
+using Json = nlohmann::ordered_json;
+
+/// RFC 4648.
+[[nodiscard]] std::string base64(const unsigned char* bytes, std::size_t count);
+/// The bytes of an array in the machine's order; the page reads little-endian.
+template <class T>
+[[nodiscard]] std::string base64(const std::vector<T>& values) {
+  std::vector<unsigned char> bytes(values.size() * sizeof(T));
+  if (!bytes.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return base64(bytes.data(), bytes.size());
+}
+
+[[nodiscard]] Json vector_json(const Vector3d& v);
+/// The upper three rows, row by row.
+[[nodiscard]] Json pose_json(const Pose& pose);
+/// The chain as the page's forward kinematics needs it (core/arm.hpp).
+[[nodiscard]] Json chain_json(const Chain& chain);
+
+/// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once, however many bodies share one.
+class Bodies {
+ public:
+  Bodies(const World& world, const std::vector<SceneObject>& scene);
+  Json bodies = Json::array(), meshes = Json::array();
+
+ private:
+  void add(const std::string& name, const char* kind, int group, const Shape& shape, const Pose& pose);
+  std::size_t index_of(const TriangleMesh& mesh);
+  std::map<const TriangleMesh*, std::size_t> index_;
+};
+
+}  // namespace swivel::detail

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Arcs of arm angles within the joint limits against sampling, and the cells that are moved onto them.
+#include "swivel/core/limit_arcs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "robots.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// The robot with limits so narrow that arcs are short and many; joints of more than a turn keep more than one image.
+TestRobot narrowed(const TestRobot& robot, Random& random) {
+  return with_limits(robot, [&](int, Joint& joint) {
+    if (joint.type == Joint::Type::kContinuous) {
+      if (random.coin()) return;
+      joint.type = Joint::Type::kRevolute;
+      joint.lower = -kPi;
+      joint.upper = kPi;
+    }
+    const double width = joint.upper - joint.lower, kept = width > kTwoPi ? random.uniform(0.9, 1) : random.uniform(0.3, 1);
+    joint.lower += random.uniform(0, 1 - kept) * width;
+    joint.upper = joint.lower + kept * width;
+  });
+}
+
+/// A pose of the robot and one nearby, and the lattice between them.
+struct Small {
+  Problem problem;
+  ArmModel arm;
+  SrsArm srs;
+  std::unique_ptr<ToolPath> path;
+  Small(const TestRobot& robot, const Resolution& resolution, Random& random) : problem(problem_for(robot)), arm(arm_of(robot)) {
+    srs = fit_srs(arm.chain, robot.name);
+    const Config q0 = random_config(arm.chain, random);
+    Config q1 = q0;
+    for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+    problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+    problem.resolution = resolution;
+    if (random.coin(0.3)) problem.limits.joint_margin = random.uniform(0, 0.05);
+    path = std::make_unique<ToolPath>(waypoints_in_base(problem), problem.resolution, "test");
+  }
+  [[nodiscard]] SrsLattice lattice(bool arcs) const {
+    Problem asked = problem;
+    asked.resolution.arcs = arcs;
+    return SrsLattice(arm.chain, srs, *path, asked);
+  }
+};
+
+bool holds(const std::vector<AngleArc>& arcs, double phi, double margin = 0) {
+  return std::any_of(arcs.begin(), arcs.end(), [&](const AngleArc& arc) {
+    for (const double turn : {-kTwoPi, 0.0, kTwoPi})
+      if (phi + turn >= arc.begin - margin && phi + turn <= arc.end + margin) return true;
+    return false;
+  });
+}
+
+/// By the definition: the images of a sheet's winding exist, one joint after the other. `near`: some joint is so near to an end of
+/// its range, or some angle so near to singular, that rounding decides.
+bool within(const Small& small, const std::array<ElbowCircle, 2>& circles, const SrsLattice& lattice, int sheet, double phi,
+            bool& near) {
+  const int branch = sheet / lattice.windings();
+  const Config q = srs_ik(small.srs, circles, phi, branch);
+  int winding = sheet % lattice.windings();
+  near = std::abs(std::sin(small.srs.shoulder_angle(q))) < 1e-4 || std::abs(std::sin(small.srs.wrist_angle(q))) < 1e-4;
+  bool inside = true;
+  for (int j = kDof - 1; j >= 0; --j) {
+    const JointLimit& limit = small.arm.chain.limit[static_cast<std::size_t>(j)];
+    if (limit.continuous) continue;
+    const double lower = limit.lower + small.problem.limits.joint_margin, upper = limit.upper - small.problem.limits.joint_margin;
+    const int images = std::max(1, static_cast<int>(std::ceil((upper - lower - 1e-3) / kTwoPi)));
+    const double first = lower + std::fmod(std::fmod(q[j] - lower, kTwoPi) + kTwoPi, kTwoPi);
+    const double value = first + kTwoPi * (winding % images);
+    winding /= images;
+    inside = inside && value <= upper;
+    near = near || std::abs(std::remainder(q[j] - lower, kTwoPi)) < 1e-7 || std::abs(std::remainder(q[j] - upper, kTwoPi)) < 1e-7;
+  }
+  return inside;
+}
+
+TEST(LimitArcs, AreThoseOfDenseSampling) {
+  Random random(seed("LimitArcs.AreThoseOfDenseSampling"));
+  std::int64_t sampled = 0, inside = 0, arcs_found = 0, narrow = 0, whole = 0, several = 0, skipped = 0, images = 0;
+  std::vector<AngleArc> arcs;
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(100); ++trial) {
+      const Small small(narrowed(robot, random), {.ds = 10, .dphi = 1, .dalpha = 10}, random);
+      const SrsLattice lattice = small.lattice(false);
+      for (int layer = 0; layer < 2; ++layer) {
+        const Pose& tool = small.path->layer(layer).tool;
+        if (reach_status(small.srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
+        const auto circles = elbow_circles(small.srs, lattice.plane(layer), tool);
+        for (int sheet = 0; sheet < lattice.sheets(); ++sheet) {
+          lattice.arcs(layer, sheet, arcs);
+          const auto agrees = [&](double phi) {
+            bool near = false;
+            const bool expected = within(small, circles, lattice, sheet, phi, near);
+            ++(near ? skipped : sampled);
+            inside += expected;
+            ASSERT_TRUE(near || holds(arcs, phi) == expected)
+                << robot.name << " trial " << trial << " sheet " << sheet << " phi " << phi << " expected " << expected;
+          };
+          const int samples = lattice.windings() > 1 ? 40 : 400;
+          for (int k = 0; k < samples; ++k) agrees(random.uniform(-kPi, kPi));
+          if (HasFatalFailure()) return;
+          for (std::size_t k = 0; k < arcs.size(); ++k) {  // also what samples miss: the middles of arcs, and of gaps between them
+            ASSERT_LE(arcs[k].begin, arcs[k].end);
+            agrees((arcs[k].begin + arcs[k].end) / 2);
+            const double next = k + 1 < arcs.size() ? arcs[k + 1].begin : arcs[0].begin + kTwoPi;
+            ASSERT_GE(next, arcs[k].end - 1e-12);
+            if (!arcs[k].whole()) agrees((arcs[k].end + next) / 2);
+            narrow += arcs[k].end - arcs[k].begin < 0.01;
+            whole += arcs[k].whole();
+          }
+          arcs_found += static_cast<std::int64_t>(arcs.size());
+          several += arcs.size() > 1;
+          images += sheet % lattice.windings() > 0 && !arcs.empty();
+        }
+      }
+    }
+  std::printf(
+      "%lld angles, %lld of them within the limits, %lld too near to tell; %lld arcs: %lld of them narrower than 0.01 rad, %lld "
+      "whole circles; %lld sheets with several, %lld of a second image\n",
+      static_cast<long long>(sampled), static_cast<long long>(inside), static_cast<long long>(skipped),
+      static_cast<long long>(arcs_found), static_cast<long long>(narrow), static_cast<long long>(whole),
+      static_cast<long long>(several), static_cast<long long>(images));
+  EXPECT_GE(sampled, at_least(1000000));
+  EXPECT_GE(inside, at_least(50000));
+  EXPECT_GE(arcs_found, at_least(2000));
+  EXPECT_GE(narrow, at_least(20));
+  EXPECT_GE(whole, at_least(50));
+  EXPECT_GE(several, at_least(100));
+  EXPECT_GE(images, at_least(100));
+  EXPECT_LT(skipped, sampled / 1000 + 10);
+}
+
+/// Every cell that an arc meets has a node, which stands in the cell, within the arc, and where the grid has a node that one stays.
+TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
+  Random random(seed("LimitArcs.MovedCells"));
+  std::int64_t cells = 0, moved = 0, kept = 0, middles = 0, shared = 0, missed = 0;
+  std::vector<AngleArc> arcs;
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(40); ++trial) {
+      const Small small(narrowed(robot, random), {.ds = 0.05, .dphi = random.uniform(0.1, 0.5), .dalpha = 0.5}, random);
+      const SrsLattice grid = small.lattice(false), lattice = small.lattice(true);
+      const int n = lattice.angles();
+      const double step = kTwoPi / n;
+      ASSERT_EQ(grid.moved(0).size(), 0u);
+      LayerNodes nodes, run;
+      for (int layer = 0; layer < lattice.layers(); ++layer) {
+        lattice.solve(layer, nodes);
+        // The same bits in any run, around the circle as well.
+        const int first = random.below(n), count = 1 + random.below(2 * n);
+        lattice.solve(layer, first, count, run);
+        std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);
+        for (const SrsLattice::Moved& cell : lattice.moved(layer)) stands[static_cast<std::size_t>(cell.slot)] = 1;
+        for (int slot = 0; slot < lattice.width(); ++slot) {
+          const int sheet = lattice.sheet_of(slot), j = lattice.angle_of(slot);
+          const auto alone = lattice.node(layer, slot), plain = grid.node(layer, slot);
+          ASSERT_EQ(nodes.valid(sheet, j), alone.has_value());
+          ASSERT_EQ(lattice.fault(layer, slot).status == NodeStatus::kValid, alone.has_value());
+          for (int k = (j - first + n) % n; k < count; k += n) {
+            ASSERT_EQ(run.valid(sheet, k), alone.has_value());
+            if (alone) {
+              ASSERT_EQ(run.config(sheet, k), *alone);
+            }
+          }
+          if (alone) {
+            ASSERT_EQ(nodes.config(sheet, j), *alone);
+          }
+          if (plain) {
+            ASSERT_EQ(*alone, *plain);  // nothing that the grid has is lost
+            ASSERT_EQ(lattice.phi(layer, slot), grid.phi(layer, slot));
+            ++kept;
+          } else {
+            ASSERT_EQ(alone.has_value(), stands[static_cast<std::size_t>(slot)] != 0);
+          }
+        }
+        for (const SrsLattice::Moved& cell : lattice.moved(layer)) {
+          const double own = grid.phi(layer, cell.slot);
+          ASSERT_LE(std::abs(std::remainder(cell.phi - own, kTwoPi)), step / 2 + 1e-12);
+          lattice.arcs(layer, lattice.sheet_of(cell.slot), arcs);
+          ASSERT_TRUE(holds(arcs, cell.phi));
+          ASSERT_FALSE(holds(arcs, own, -1e-5));
+          ASSERT_EQ(lattice.phi(layer, cell.slot), cell.phi);
+          ASSERT_EQ(*lattice.node(layer, cell.slot), cell.q);
+          if (small.srs.exact) {
+            const Pose reached = small.arm.chain.tool(cell.q), &wanted = small.path->layer(layer).tool;
+            ASSERT_LT((reached.translation() - wanted.translation()).norm() + (reached.linear() - wanted.linear()).norm(), 1e-9);
+            ASSERT_LT(std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(cell.q)) - cell.phi, kTwoPi)),
+                      1e-7);
+          }
+          ASSERT_EQ(small.srs.branch(cell.q), lattice.branch_of(cell.slot));
+          for (int j = 0; j < kDof; ++j) {
+            const JointLimit& limit = small.arm.chain.limit[static_cast<std::size_t>(j)];
+            const double margin = small.problem.limits.joint_margin;
+            ASSERT_TRUE(limit.continuous || (cell.q[j] >= limit.lower + margin - 2e-9 && cell.q[j] <= limit.upper - margin + 2e-9));
+          }
+          // Sheets whose bodies are said to stand alike have the same arm angle.
+          std::vector<int> alike;
+          lattice.alike(layer, cell.slot, 0b0011000, alike);
+          ASSERT_NE(std::find(alike.begin(), alike.end(), cell.slot), alike.end());
+          for (const int other : alike) {
+            ASSERT_EQ(lattice.phi(layer, other), cell.phi);
+            shared += other != cell.slot;
+          }
+          ++moved;
+        }
+        for (int sheet = 0; sheet < lattice.sheets(); ++sheet) {
+          lattice.arcs(layer, sheet, arcs);
+          for (const AngleArc& arc : arcs) {
+            if (arc.whole() || arc.end - arc.begin < 1e-5) continue;
+            bool found = false;
+            for (long long cell = std::llround((arc.begin + 1e-5 + kPi) / step);
+                 cell <= std::llround((arc.end - 1e-5 + kPi) / step); ++cell) {
+              const int slot = sheet * n + static_cast<int>((cell % n + n) % n);
+              if (!lattice.node(layer, slot)) {
+                ++missed;
+                continue;
+              }
+              ++cells;
+              found = found || holds({arc}, lattice.phi(layer, slot));
+              middles += std::abs(std::remainder(lattice.phi(layer, slot) - (arc.begin + arc.end) / 2, kTwoPi)) < 1e-12;
+            }
+            missed += !found && arcs.size() == 1;
+          }
+        }
+      }
+    }
+  std::printf(
+      "%lld cells that arcs meet, %lld moved (%lld to the middle of an arc), %lld of the grid kept, %lld pairs alike, %lld "
+      "missed\n",
+      static_cast<long long>(cells), static_cast<long long>(moved), static_cast<long long>(middles), static_cast<long long>(kept),
+      static_cast<long long>(shared), static_cast<long long>(missed));
+  EXPECT_EQ(missed, 0);
+  EXPECT_GE(moved, at_least(2000));
+  EXPECT_GE(middles, at_least(100));
+  EXPECT_GE(shared, at_least(100));
+  EXPECT_GE(kept, at_least(20000));
+}
+
+}  // namespace
+}  // namespace swivel

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bounds on how far rows of arms that are not exactly S-R-S place links from where their nodes place them, against the rows.
+#include "swivel/core/row_shift.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "inexact_robots.hpp"
+#include "seed.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+Vector3d direction(Random& random) {
+  return Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+}
+
+/// Rows of all branches that share an elbow stand within the bound of every node at which the link stands alike.
+TEST(RowShift, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
+  const std::uint64_t base = seed("RowShift");
+  Random random(base);
+  for (const TestRobot& robot : inexact_robots(random)) {
+    const Chain chain = arm_of(robot).chain;
+    const SrsArm arm = fit_srs(chain, robot.name);
+    const RowShift bounds(chain, arm);
+    struct Known {
+      int branch;
+      Config node, row;
+    };
+    int rows = 0, known = 0, unknown = 0;
+    std::array<double, kDof + 1> closest{};  // [group] share of a bound that was reached
+    const int count = trials(4000);
+    for (int trial = 0; trial < count; ++trial) {
+      const std::string what = robot.name + ", SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+      const Pose tool = chain.tool(random_config(chain, random));
+      const ArmPlane plane = first_plane(arm, tool);
+      if (reach_status(arm, plane.reach) != ReachStatus::kReachable) continue;
+      const auto circles = elbow_circles(arm, plane, tool);
+      const double phi = random.uniform(-kPi, kPi);
+      const int elbow = random.coin() ? kElbowBit : 0;
+      std::vector<Known> all;
+      for (const int branch : {elbow, elbow | kShoulderBit, elbow | kWristBit, elbow | kShoulderBit | kWristBit}) {
+        const Config node = srs_ik(arm, circles, phi, branch);
+        if (const auto row = polish(chain, arm, plane, tool, phi, node)) all.push_back({branch, node, *row});
+      }
+      rows += static_cast<int>(all.size());
+      for (int group = 1; group <= kDof; ++group) {
+        const auto at = static_cast<std::size_t>(group);
+        const int signs = group < 3 ? kShoulderBit : group == 5 || group == 6 ? kWristBit : 0;
+        const double radius = random.uniform(0, 1);
+        for (const Known& here : all) {
+          const PoseShift bound = bounds.from_node(group, plane.reach, here.node);
+          const PoseShift apart = bounds.between_rows(group, plane.reach, here.node);
+          ++(std::isfinite(bound.shift) ? known : unknown);
+          if (!std::isfinite(bound.shift)) continue;
+          for (const double r : {0.0, radius}) {
+            const Vector3d x = bound.about + r * direction(random);
+            const auto place = [&](const Config& q) { return Vector3d(chain.displacements(q)[at] * x); };
+            for (const Known& there : all) {
+              if ((here.branch ^ there.branch) & signs) continue;
+              const double moved = (place(there.row) - place(here.node)).norm();
+              ASSERT_LE(moved, bound.of(r) + 1e-9) << what << " group " << group;
+              closest[at] = std::max(closest[at], moved / bound.of(r));
+              ASSERT_LE((place(there.row) - place(here.row)).norm(), apart.of(r) + 1e-9) << what << " group " << group;
+            }
+          }
+        }
+      }
+    }
+    Config middle;
+    middle.setOnes();
+    const PoseShift forearm = bounds.from_node(4, 0.8 * (arm.upper + arm.fore), middle);
+    std::printf("%s: %d rows, %d bounds known, %d not; forearm at 0.8 of the reach %.2g mm + %.2g mrad; reached, by links:",
+                robot.name.c_str(), rows, known, unknown, 1e3 * forearm.shift, 1e3 * forearm.turn);
+    for (std::size_t group = 1; group <= kDof; ++group) std::printf(" %.2f", closest[group]);
+    std::printf("\n");
+    EXPECT_GT(rows, at_least(8000)) << robot.name;
+    EXPECT_GT(known, at_least(20000)) << robot.name;
+    for (std::size_t group = 1; group <= kDof && count >= 4000; ++group)  // not so wide that they say nothing
+      EXPECT_GT(closest[group], 0.02) << robot.name << " group " << group;
+  }
+}
+
+}  // namespace
+}  // namespace swivel

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The problem files in data/ are what the schema of problems allows, and results of real plans what that of results says: all of its
+keys, and no others. Needs SWIVEL (the program) and SWIVEL_SOURCE (the clone).
+
+Types and values are judged by python3-jsonschema; without it the keys are compared alone."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+try:
+    import jsonschema
+except ImportError:
+    jsonschema = None
+try:
+    import yaml
+except ImportError:
+    yaml = None
+
+PROGRAM, PROBLEMS = os.environ["SWIVEL"], pathlib.Path(os.environ["SWIVEL_SOURCE"]) / "data" / "problems"
+
+
+def swivel(*arguments):
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+
+
+def schema(name):
+    return json.loads(swivel("schema", name).stdout)
+
+
+def validator(of):
+    jsonschema.Draft7Validator.check_schema(of)
+    return jsonschema.Draft7Validator(of)
+
+
+def keys_of_schema(one, at=""):
+    """The names of all keys, "motion.slow[].s"; of maps with free keys "diagnosis.removed.*"."""
+    for option in one.get("anyOf", [one]):
+        for key, value in option.get("properties", {}).items():
+            yield f"{at}.{key}"
+            yield from keys_of_schema(value, f"{at}.{key}")
+        if option.get("type") == "array":
+            yield from keys_of_schema(option["items"], at + "[]")
+
+
+def keys_of(value, free, at=""):
+    """The same of a document; `free`: where keys are free."""
+    if isinstance(value, list):
+        for item in value:
+            yield from keys_of(item, free, at + "[]")
+    elif isinstance(value, dict) and at not in free:
+        for key, item in value.items():
+            yield f"{at}.{key}"
+            yield from keys_of(item, free, f"{at}.{key}")
+
+
+@unittest.skipUnless(jsonschema and yaml, "python3-jsonschema or python3-yaml is missing")
+class Problems(unittest.TestCase):
+    def setUp(self):
+        self.judge = validator(schema("problem"))
+
+    def test_files_of_data_are_allowed(self):
+        files = sorted(PROBLEMS.glob("*.yaml"))
+        for file in files:
+            with self.subTest(file.name):
+                self.assertEqual([error.message for error in self.judge.iter_errors(yaml.safe_load(file.read_text()))], [])
+        self.assertGreaterEqual(len(files), 11)
+
+    def test_what_the_reader_refuses_is_not(self):
+        good = made_problem(walls=["wall"]) | {"limits": {}, "resolution": {}}
+        self.assertTrue(self.judge.is_valid(good))
+        changes = {
+            "an unknown key": lambda p: p["limits"].update(clearence=1),
+            "no robot": lambda p: p.pop("robot"),
+            "a word for a number": lambda p: p["limits"].update(clearance="wide"),
+            "a number that is too small": lambda p: p["resolution"].update(ds=0),
+            "two shapes": lambda p: p["scene"][0].update(sphere=1),
+            "no shape": lambda p: p["scene"].append({"name": "nothing"}),
+            "both rotations": lambda p: p["scene"][0].update(rpy=[0, 0, 0], quat=[1, 0, 0, 0]),
+            "waypoints and a file": lambda p: p["path"].update(file="path.csv"),
+            "six weights": lambda p: p.update(cost={"weights": [1] * 6}),
+            "another metric": lambda p: p.update(cost={"metric": "l1"}),
+        }
+        with tempfile.TemporaryDirectory() as folder:
+            for name, change in changes.items():
+                with self.subTest(name):
+                    problem = json.loads(json.dumps(good))
+                    change(problem)
+                    self.assertFalse(self.judge.is_valid(problem))
+                    file = pathlib.Path(folder) / "problem.yaml"
+                    file.write_text(json.dumps(problem))
+                    done = swivel("plan", file)
+                    self.assertEqual(done.returncode, 2, done.stdout)
+                    self.assertRegex(done.stderr, "problem.yaml:1: .*allowed")
+
+
+def made_problem(attached=(), walls=(), **path):
+    """An iiwa 14 along two lines at right angles."""
+    down = [0, 3.14159265358979, 0]
+    corners = [[0.5, -0.2, 0.4], [0.5, 0.2, 0.4], [0.6, 0.2, 0.4]]
+    robot = {"urdf": str(PROBLEMS.parent / "robots" / "iiwa14.urdf"), "base_link": "base_link", "tip_link": "tool0", "attached": list(attached)}
+    scene = [{"name": name, "box": [0.3, 0.02, 1], "xyz": [0.5, 0, 0.5]} for name in walls]
+    if path.get("frame") == "far":  # out of reach
+        scene.append({"name": "far", "box": [0.1, 0.1, 0.1], "xyz": [2, 0, 0]})
+    return {"robot": robot, "path": {"waypoints": [{"xyz": corner, "rpy": down} for corner in corners], **path}, "scene": scene}
+
+
+class Results(unittest.TestCase):
+    # Every key appears: an answer, none, motions with slow stretches and stops, advice, proofs, robots that touch themselves.
+    RUNS = [
+        ("experiment_c.yaml", "--refine", "--speed", "0.4", "--turn-speed", "2"),
+        ("experiment_c.yaml", "--no-check"),
+        ("experiment_c.yaml", "--timeout", "1e-6"),
+        ("experiment_a_start.yaml", "--advise", "1", "--certificate", "cut.json"),
+        ("kr6_weld_pipe.yaml", "--speed", "0.2"),
+        (made_problem(smooth=None), "--speed", "0.1"),
+        (made_problem(walls=["one", "two"]),),
+        (made_problem(frame="far"),),
+        # The ball touches link_5 in every posture, and is always 4 mm from link_4.
+        (made_problem(attached=[{"name": "ball", "sphere": 0.211, "xyz": [0, 0, -0.126]}]),),
+    ]
+
+    def setUp(self):
+        self.schema = schema("result")
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def results(self):
+        folder = pathlib.Path(self.folder.name)
+        for problem, *more in self.RUNS:
+            name = problem if isinstance(problem, str) else "made.yaml"
+            if isinstance(problem, dict):
+                (folder / name).write_text(json.dumps(problem))
+            more = [folder / word if word == "cut.json" else word for word in more]
+            place = PROBLEMS / name if isinstance(problem, str) else folder / name
+            done = swivel("plan", place, "--planner", "lazy", *more, "--quiet", "--json", folder / "result.json")
+            self.assertIn(done.returncode, (0, 1, 3), done.stderr)
+            yield f"{name} {more}", json.loads((folder / "result.json").read_text())
+
+    def test_results_have_the_keys_of_the_schema_and_no_others(self):
+        free = {".diagnosis.removed", ".time_ms.stages"}
+        known, seen, statuses = set(keys_of_schema(self.schema)), {".message"}, set()
+        for problem, result in self.results():
+            with self.subTest(problem):
+                self.assertEqual(result["schema_version"], 1)
+                statuses.add(result["status"])
+                seen |= set(keys_of(result, free))
+                if jsonschema:
+                    errors = [f"{list(error.absolute_path)}: {error.message}" for error in validator(self.schema).iter_errors(result)]
+                    self.assertEqual(errors, [])
+        self.assertEqual(seen - known, set())
+        self.assertEqual(known - seen, set())
+        self.assertGreaterEqual(len(known), 150)
+        self.assertGreaterEqual(statuses, {"solved", "infeasible", "timeout"})
+        print(len(known), "keys of results seen" + ("" if jsonschema else "; values not judged: python3-jsonschema is missing"), file=sys.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Certificates that a problem has no path: verified by check_cut() and by plain loops; forged ones are refused.
+#include "swivel/planner/cut.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "inexact_robots.hpp"
+#include "plain_edge_rule.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/make_lattice.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// Nodes and edges by their definition, one by one.
+class Plain {
+ public:
+  Plain(const Problem& problem, const PreparedRobot& robot, const Cut& cut)
+      : path_(problem_path(problem, robot.arm().chain)),
+        lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
+        world_(robot.world(), problem),
+        rule_(world_.edge_rule(robot.radii())),
+        query_(world_) {
+    for (const auto& joints : cut.windings)
+      lattice_ = std::make_unique<ArcLattice>(dynamic_cast<const ArcLattice&>(*lattice_).with_windings(joints));
+  }
+  [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
+
+  [[nodiscard]] bool valid(int layer, int slot) {
+    const auto [at, is_new] = valid_.try_emplace({layer, slot}, false);
+    if (is_new) {
+      const auto q = lattice_->row(layer, slot);
+      at->second =
+          q && lattice_->chain().manipulability(*q) >= lattice_->limits().manipulability && !query_.first_below(*q, Keep::kNode);
+    }
+    return at->second;
+  }
+  /// Between valid nodes.
+  [[nodiscard]] bool joined(int layer, int a, int b) {
+    if (!lattice_->in_window(layer, a, b)) return false;
+    const Limits& limits = lattice_->limits();
+    const Config na = *lattice_->node(layer, a), nb = *lattice_->node(layer + 1, b);
+    const Config qa = *lattice_->row(layer, a, na), qb = *lattice_->row(layer + 1, b, nb);
+    Config nodes = nb - na, rows = qb - qa;
+    for (int j = 0; j < kDof; ++j) {
+      for (Config* move : {&nodes, &rows})
+        if (lattice_->continuous()[static_cast<std::size_t>(j)]) (*move)[j] = std::remainder((*move)[j], kTwoPi);
+      const double most = lattice_->row_step_bound(layer)[j];  // joint_step and speeds
+      if (std::abs(nodes[j]) > most + 2 * lattice_->misfit()[j] || std::abs(rows[j]) > most) return false;
+    }
+    if (!lattice_->follows_path(layer, a, qa, b, qb)) return false;
+    return limits.edges == EdgeMode::kNodes || !edge_blocked_plain(query_, rule_, qa, qa + rows);
+  }
+
+  /// What is wrong with a certificate, "" where nothing is. Every valid node of its first layer is reached, every valid edge from a
+  /// reached node leads to a reached one, none of its last layer is; no node that it takes out is valid.
+  [[nodiscard]] std::string fault(const Cut& cut) {
+    std::vector<char> before;
+    for (std::size_t k = 0; k < cut.band.size(); ++k) {
+      const int layer = cut.first_layer + static_cast<int>(k), slots = lattice_->slots(layer);
+      const std::string where = "layer " + std::to_string(layer) + " slot ";
+      std::vector<char> reached(static_cast<std::size_t>(slots), 0);
+      for (const Cut::Range& range : cut.band[k].reached)
+        for (int slot = range.first; slot <= range.last; ++slot) reached[static_cast<std::size_t>(slot)] = 1;
+      for (const Cut::Nodes& removed : cut.band[k].removed)
+        for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot)
+          if (valid(layer, slot)) return where + std::to_string(slot) + " is removed and valid";
+      for (int b = 0; b < slots; ++b) {
+        if (reached[static_cast<std::size_t>(b)]) {
+          if (k + 1 == cut.band.size()) return where + std::to_string(b) + " is reached in the last layer";
+          continue;
+        }
+        if (!valid(layer, b)) continue;
+        if (k == 0) return where + std::to_string(b) + " is valid and not told";
+        for (int a = 0; a < static_cast<int>(before.size()); ++a)
+          if (before[static_cast<std::size_t>(a)] && valid(layer - 1, a) && joined(layer - 1, a, b))
+            return where + std::to_string(b) + " is reached from " + std::to_string(a);
+      }
+      before.swap(reached);
+    }
+    return cut.band.empty() ? "empty" : "";
+  }
+
+ private:
+  ToolPath path_;
+  std::unique_ptr<Lattice> lattice_;
+  World world_;
+  EdgeRule rule_;
+  World::Query query_;
+  std::map<std::pair<int, int>, bool> valid_;
+};
+
+/// One change that leaves no proof; none where there is nothing to change in this way.
+using Forgery = std::function<bool(Cut&, Random&)>;
+
+template <class Items>
+auto some(Items& items, Random& random) {
+  return items.begin() + random.below(static_cast<int>(items.size()));
+}
+
+/// A layer of those that have what is asked for; null where none has.
+template <class Has>
+Cut::Layer* some_layer(Cut& cut, Random& random, const Has& has) {
+  std::vector<Cut::Layer*> found;
+  for (Cut::Layer& layer : cut.band)
+    if (has(layer)) found.push_back(&layer);
+  return found.empty() ? nullptr : *some(found, random);
+}
+
+const std::vector<std::pair<std::string, Forgery>>& forgeries() {
+  const auto has_removed = [](const Cut::Layer& layer) { return !layer.removed.empty(); };
+  const auto has_edges = [](const Cut::Layer& layer) { return !layer.edges.empty(); };
+  const auto has_reached = [](const Cut::Layer& layer) { return !layer.reached.empty(); };
+  static const std::vector<std::pair<std::string, Forgery>> all = {
+      {"witness of nodes taken out",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_removed);
+         if (layer) layer->removed.erase(some(layer->removed, random));
+         return layer != nullptr;
+       }},
+      {"range of nodes shorter",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, [](const Cut::Layer& l) {
+           return std::any_of(l.removed.begin(), l.removed.end(), [](const Cut::Nodes& n) { return n.slots.first < n.slots.last; });
+         });
+         if (!layer) return false;
+         auto range = some(layer->removed, random);
+         while (range->slots.first == range->slots.last) range = some(layer->removed, random);
+         random.coin() ? ++range->slots.first : --range->slots.last;
+         return true;
+       }},
+      {"range of nodes wider, into one reached",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, [&](const Cut::Layer& l) { return has_removed(l) && has_reached(l); });
+         if (layer) layer->removed.back().slots.last = std::max(layer->reached.back().last, layer->removed.back().slots.last + 1);
+         return layer != nullptr;
+       }},
+      {"reached nodes become removed ones",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_reached);
+         if (!layer || cut.witnesses.empty()) return false;
+         const auto range = some(layer->reached, random);
+         layer->removed.push_back({*range, random.below(static_cast<int>(cut.witnesses.size()))});
+         layer->reached.erase(range);
+         return true;
+       }},
+      {"reached node taken out",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_reached);
+         if (!layer) return false;
+         const auto range = some(layer->reached, random);
+         if (range->first == range->last)
+           layer->reached.erase(range);
+         else
+           random.coin() ? ++range->first : --range->last;
+         return true;
+       }},
+      {"witness of edges taken out",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_edges);
+         if (layer) layer->edges.erase(some(layer->edges, random));
+         return layer != nullptr;
+       }},
+      {"count of edges",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_edges);
+         if (layer) some(layer->edges, random)->count += random.coin() ? 1 : -1;
+         return layer != nullptr;
+       }},
+      {"last layer taken out",
+       [](Cut& cut, Random&) {
+         cut.band.pop_back();
+         return true;
+       }},
+      {"shifted along the path",
+       [](Cut& cut, Random&) {
+         cut.first_layer = cut.layers - static_cast<int>(cut.band.size()) + 1;
+         return true;
+       }},
+      {"witness that the problem does not have",
+       [](Cut& cut, Random& random) {
+         if (cut.witnesses.empty()) return false;
+         Cause& cause = *some(cut.witnesses, random);
+         cause.kind = Cause::Kind::kPair;
+         cause.bodies = {"nothing", "nowhere"};
+         return true;
+       }},
+      {"witness that is not listed",
+       [=](Cut& cut, Random& random) {
+         Cut::Layer* const layer = some_layer(cut, random, has_removed);
+         if (layer) layer->removed[0].witness = random.coin() ? -1 : static_cast<int>(cut.witnesses.size());
+         return layer != nullptr;
+       }},
+  };
+  return all;
+}
+
+TestRobot arm_of_data(const std::string& name) {
+  TestRobot robot = data_robot(name);
+  robot.tip_link = "flange";
+  return robot;
+}
+
+/// Random problems; on arms planned on arcs as small ones as brute force can do. In every second one it is moves that end paths.
+Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
+  Problem problem = random_problem(robot, random);
+  Limits& limits = problem.limits;
+  if (random.coin()) {
+    problem.scene.resize(std::min<std::size_t>(problem.scene.size(), 2));
+    if (random.coin()) limits.tool_path_error = std::pow(10, random.uniform(-6, -3));
+    if (random.coin(0.3)) limits.tool_angle_error = std::pow(10, random.uniform(-5, -2));
+    if (random.coin()) limits.edges = EdgeMode::kContinuous, limits.edge_clearance = limits.clearance + random.uniform(0, 0.05);
+    if (random.coin(0.3)) limits.tool_speed = random.uniform(0.1, 1);
+  }
+  if (!arcs) return problem;
+  limits.step_error.reset();
+  problem.resolution.arc = random.uniform(0.3, 0.6);
+  problem.waypoints.resize(2);
+  problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() / (2 + random.below(3));
+  problem.resolution.dalpha = 0.5;
+  return problem;
+}
+
+/// An arm whose last joint alone has a range of more than a turn: it is taken as a circle.
+TestRobot wound_robot() {
+  TestRobot robot = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
+    if (number % 2 == 0) joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
+  });
+  robot.name = "xarm7_like, one joint of more than a turn";
+  return robot;
+}
+
+/// From a start at the upper limit of that joint the tool turns on, so that a path over the circle leaves the limits.
+Problem beyond_a_turn(const TestRobot& robot, Random& random) {
+  Problem problem = problem_for(robot);
+  const Chain chain = arm_of(robot).chain;
+  Config q = random_config(chain, random);
+  q[6] = 3.25;
+  problem.start = q;
+  problem.waypoints = {waypoint_of(chain.tool(q))};
+  q[6] += random.uniform(0.1, 0.6);
+  problem.waypoints.push_back(waypoint_of(chain.tool(q)));
+  problem.resolution.dalpha = 0.2;
+  problem.resolution.arc = 0.5;
+  problem.limits.edges = EdgeMode::kNodes;
+  problem.limits.tool_path_error.reset();
+  return problem;
+}
+
+TEST(Cut, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
+  const std::uint64_t base = seed("Cut");
+  std::vector<TestRobot> robots = all_robots();
+  Random of_robots(base);
+  for (const TestRobot& robot : inexact_robots(of_robots)) robots.push_back(robot);
+  const std::size_t grids = robots.size();
+  const TestRobot wound = wound_robot();
+  for (const TestRobot& robot : {arm_of_data("panda_like"), arm_of_data("gen3_like"), wound}) robots.push_back(robot);
+  const auto file = std::filesystem::temp_directory_path() / ("swivel_cut_test_" + std::to_string(getpid()) + ".json");
+
+  const int wanted = trials(120);
+  int infeasible = 0, started = 0, continuous = 0, by_nodes = 0, by_edges = 0, arcs = 0, windings = 0, bytes = 0, still_proofs = 0;
+  std::map<std::string, int> forged, kinds;
+  for (int trial = 0; infeasible < wanted; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const std::size_t number = static_cast<std::size_t>(trial) % robots.size();
+    const Problem problem = number + 1 == robots.size() && random.coin() ? beyond_a_turn(wound, random)
+                                                                         : random_task(robots[number], number >= grids, random);
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + problem.source;
+    const auto robot = std::make_shared<const PreparedRobot>(problem);
+    Planner planner(robot, problem);
+    PlanOptions options;
+    options.planner = trial % 7 == 0 ? PlannerKind::kEagerDp : PlannerKind::kLazy;
+    const PlanResult result = planner.plan(options);
+    if (result.status == PlanStatus::kSolved) {
+      if (trial % 10 == 0) {
+        EXPECT_THROW(static_cast<void>(find_cut(planner.view())), InvalidArgument) << what;
+      }
+      continue;
+    }
+    ++infeasible;
+    const Cut cut = find_cut(planner.view());
+    Plain plain(problem, *robot, cut);
+    ASSERT_EQ(plain.fault(cut), "") << what;
+    const CutCheck check = check_cut(*robot, problem, cut);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failure;
+    const std::string text = io::to_json(cut);
+    io::write_file(file, text);
+    ASSERT_EQ(io::load_cut(file), cut) << what;
+
+    const CutCounts counts = count(cut);
+    bool nodes = false, edges = false;
+    for (std::size_t k = 0; k < cut.witnesses.size(); ++k) {
+      nodes |= counts.by_witness[k].nodes > 0;
+      edges |= counts.by_witness[k].edges > 0;
+      ++kinds[to_string(cut.witnesses[k].kind)];
+    }
+    started += problem.start.has_value();
+    continuous += problem.limits.edges == EdgeMode::kContinuous;
+    by_nodes += nodes;
+    by_edges += edges;
+    arcs += number >= grids;
+    windings += !cut.windings.empty();
+    bytes = std::max(bytes, static_cast<int>(text.size()));
+
+    for (const auto& [name, forge] : forgeries()) {
+      Cut bad = cut;
+      if (!forge(bad, random)) continue;
+      if (check_cut(*robot, problem, bad).passed) {  // by chance it may be a proof as well
+        ASSERT_EQ(plain.fault(bad), "") << what << ": " << name;
+        ++still_proofs;
+      } else {
+        ++forged[name];
+      }
+    }
+  }
+  std::filesystem::remove(file);
+  std::printf(
+      "%d certificates of %d verified twice: %d with a start, %d with motions, %d on arcs (%d with windings); by nodes %d, by "
+      "edges %d; at most %d bytes\n",
+      infeasible, wanted, started, continuous, arcs, windings, by_nodes, by_edges, bytes);
+  for (const auto& [kind, times] : kinds) std::printf("  %s in %d\n", kind.c_str(), times);
+  int refused = 0;
+  for (const auto& [name, times] : forged) std::printf("  forged: %s: %d refused\n", name.c_str(), times), refused += times;
+  std::printf("  %d forged ones prove the same\n", still_proofs);
+  EXPECT_LE(still_proofs, refused / 50 + 1);
+  EXPECT_GE(started, at_least(30));
+  EXPECT_GE(arcs, at_least(12));
+  EXPECT_GE(by_edges, at_least(20));
+  EXPECT_GE(windings, at_least(1));
+  EXPECT_GE(kinds.size(), static_cast<std::size_t>(at_least(7)));
+  EXPECT_GE(forged.size(), static_cast<std::size_t>(at_least(10)));
+  EXPECT_GE(refused, at_least(500));
+}
+
+/// A check of the caller's is a witness that only those can verify who have it.
+class RefusesHalf final : public StateCheck {
+ public:
+  [[nodiscard]] std::string name() const override { return "half"; }
+  void states(std::span<const Config> states, std::span<bool> allowed) override {
+    for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = tool_x(states[k]) < most;
+  }
+  std::function<double(const Config&)> tool_x;
+  double most = 0;
+};
+
+TEST(Cut, ACallersCheckIsAWitness) {
+  const Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
+  Problem coarse = problem;
+  coarse.resolution = {.ds = 0.02, .dphi = 0.2};
+  const auto robot = std::make_shared<const PreparedRobot>(coarse);
+  const auto waypoints = waypoints_in_base(coarse);
+  const auto half = std::make_shared<RefusesHalf>();
+  half->tool_x = [&](const Config& q) { return (robot->arm().chain.tool(q).translation() - waypoints[0].position).norm(); };
+  half->most = (waypoints[1].position - waypoints[0].position).norm() / 2;
+  Planner planner(robot, coarse);
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.hooks.check = half;
+  ASSERT_EQ(planner.plan(options).status, PlanStatus::kInfeasible);
+  const Cut cut = find_cut(planner.view(), {}, half);
+  EXPECT_TRUE(std::any_of(cut.witnesses.begin(), cut.witnesses.end(),
+                          [](const Cause& c) { return c.kind == Cause::Kind::kCheck && c.check == "half"; }));
+  EXPECT_TRUE(check_cut(*robot, coarse, cut, {}, half).passed);
+  const CutCheck without = check_cut(*robot, coarse, cut);
+  EXPECT_FALSE(without.passed);
+  EXPECT_NE(without.failure.find("half"), std::string::npos) << without.failure;
+  half->most = 1e3;
+  EXPECT_FALSE(check_cut(*robot, coarse, cut, {}, half).passed);
+}
+
+/// A certificate says nothing about a lattice that is laid out otherwise.
+TEST(Cut, OfAnotherLayoutIsBadInput) {
+  const Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
+  const auto robot = std::make_shared<const PreparedRobot>(problem);
+  Planner planner(robot, problem);
+  ASSERT_EQ(planner.plan().status, PlanStatus::kInfeasible);
+  const Cut cut = find_cut(planner.view());
+  EXPECT_TRUE(check_cut(*robot, problem, cut).passed);
+  Problem other = problem;
+  other.resolution.ds *= 2;
+  EXPECT_THROW(static_cast<void>(check_cut(*robot, other, cut)), InputError);
+  other = problem;
+  other.limits.edges = EdgeMode::kNodes;
+  EXPECT_THROW(static_cast<void>(check_cut(*robot, other, cut)), InputError);
+  // Of the same layout, but with a path: it proves nothing there.
+  other = problem;
+  other.start.reset();
+  EXPECT_FALSE(check_cut(*robot, other, cut).passed);
+}
+
+}  // namespace
+}  // namespace swivel

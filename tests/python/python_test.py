@@ -1,0 +1,1004 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The Python package as a user has it. Usage: python_test.py CASE; SWIVEL is the program, SWIVEL_DATA the data folder.
+import ast
+import base64
+import copy
+import gc
+import hashlib
+import os
+import pickle
+import re
+import shutil
+import signal
+import statistics
+import subprocess
+import sys
+import tarfile
+import tempfile
+import threading
+import time
+import unittest
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+import swivel
+
+PROGRAM, DATA = os.environ["SWIVEL"], Path(os.environ["SWIVEL_DATA"])
+PROBLEMS, ROBOTS = DATA / "problems", DATA / "robots"
+DOWN = [0, 1, 0, 0]
+
+
+def experiment(letter, **resolution):
+    problem = swivel.load_problem(PROBLEMS / f"experiment_{letter}.yaml")
+    for name, value in resolution.items():
+        setattr(problem.resolution, name, value)
+    return problem
+
+
+def endless():
+    """So fine that an answer of LONG takes minutes."""
+    return experiment("c", ds=0.001, dphi=0.002)
+
+
+LONG = "eager_dp"
+
+
+def arm(**keywords):
+    return swivel.Robot(ROBOTS / "iiwa14.urdf", ROBOTS / "iiwa14.srdf", **keywords)
+
+
+def square(**keywords):
+    corners = [(0.45, -0.1), (0.45, 0.1), (0.65, 0.1), (0.65, -0.1)]
+    return swivel.Task([[x, y, 0.4, *DOWN] for x, y in corners], resolution=swivel.Resolution(ds=0.02, dphi=0.1), **keywords)
+
+
+class Plans(unittest.TestCase):
+    def program(self, command, problem, *arguments):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.csv"
+            subprocess.run([PROGRAM, command, problem, *arguments, "--out", out, "--quiet"], check=True)
+            return out.read_bytes()
+
+    def saved(self, what):
+        with tempfile.TemporaryDirectory() as folder:
+            what.save(Path(folder) / "out.csv")
+            return (Path(folder) / "out.csv").read_bytes()
+
+    def test_the_program_gives_the_same_bits(self):
+        for name in ("experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "ur5e_deburr_edge"):
+            file = PROBLEMS / f"{name}.yaml"
+            for planner in ("lazy", "parallel"):
+                plan = swivel.plan(file, planner=planner, threads=2)
+                self.assertTrue(plan.solved)
+                self.assertEqual(self.saved(plan.trajectory), self.program("plan", file, "--planner", planner), name)
+
+    def test_motions_are_those_of_the_program(self):
+        file = PROBLEMS / "experiment_c.yaml"
+        for options, keywords in ((["--speed", "0.1"], {}), (["--speed", "0.1", "--refine"], {"refine": True})):
+            motion = swivel.plan(file, speed=0.1, **keywords).motion
+            self.assertEqual(self.saved(motion), self.program("plan", file, *options))
+
+    def test_plans_after_changes_are_those_of_fresh_planners(self):
+        problem = experiment("c", ds=0.02, dphi=0.1)
+        planner, statuses = swivel.Planner(problem), set()
+        rail = problem.scene["rail"].pose
+        for k in range(12):
+            rail[0, 3] += 0.004
+            planner.move("rail", rail)
+            problem.scene.move("rail", rail)
+            # Between them plans of another kind, after which the planner holds its own task again.
+            planner.plan(refine=k % 3 == 0, speed=0.2 if k % 4 == 0 else None)
+            one, other = planner.plan(), swivel.plan(problem)
+            self.assertEqual(one.status, other.status)
+            np.testing.assert_array_equal(one.joints, other.joints)
+            self.assertEqual(planner.problem.limits, problem.limits)
+            statuses.add(str(one.status))
+        print("verdicts:", statuses)
+
+    def test_refine_time_measure_check_advise(self):
+        problem = experiment("c", ds=0.01)
+        planner = swivel.Planner(problem)
+        plan = planner.plan(evidence=True)
+        self.assertTrue(planner.check(plan.trajectory))
+        measures = planner.measure(plan.trajectory)
+        self.assertEqual(measures.min_clearance, plan.measures.min_clearance)
+        self.assertGreaterEqual(measures.min_margin.margin, 0)
+        self.assertEqual(measures.arm_angle.shape, (len(plan.trajectory),))
+        refined = swivel.refine(problem, plan.trajectory)
+        self.assertTrue(refined.refined)
+        self.assertLess(refined.cost, plan.cost)
+        self.assertTrue(swivel.check(problem, refined.trajectory))
+        motion = swivel.time(problem, plan.trajectory, speed=0.1, rate=125)
+        self.assertTrue(motion.executable)
+        check = planner.check(motion)
+        self.assertTrue(check.passed, check)
+        self.assertLessEqual(max(check.peaks.values()), 1 + 1e-6)
+        self.assertAlmostEqual(motion.t[1] - motion.t[0], 1 / 125)
+        self.assertEqual(motion.joints.shape, motion.velocities.shape)
+        wrong = swivel.Trajectory(np.roll(plan.joints, 1, axis=1), plan.trajectory.s, plan.trajectory.phi, plan.trajectory.branch)
+        self.assertFalse(swivel.check(problem, wrong))
+        barred = swivel.plan(PROBLEMS / "experiment_a_start.yaml")
+        self.assertEqual(barred.status, swivel.Status.INFEASIBLE)
+        self.assertEqual(barred.diagnosis.cause.kind, swivel.CauseKind.LIMIT)
+        advice = swivel.advise(PROBLEMS / "experiment_a_start.yaml", barred)
+        self.assertEqual((advice[0].change, advice[0].outcome), (swivel.Change.FREE_START, swivel.Outcome.SOLVED))
+
+    def test_answers_say_what_they_are(self):
+        plan = swivel.plan(experiment("c"), evidence=True)
+        for text in (repr(plan), str(plan)):
+            for part in ("solved", "cost 2.27", "least clearance 9.9 mm"):
+                self.assertIn(part, text)
+            self.assertLessEqual(text.count("\n"), 1)
+        self.assertIn("samples", repr(swivel.plan(experiment("c"), speed=0.1)))
+        self.assertIn("arm_left_joint_5_r", repr(swivel.plan(PROBLEMS / "experiment_a_start.yaml")))
+        self.assertIn("seven joints", repr(arm()))
+        self.assertEqual(repr(swivel.Limits(clearance=0.01, edges="nodes")), "Limits(clearance=0.01, edges=<EdgeMode.NODES: 1>)")
+        count = 0
+        for name in swivel.__all__:
+            thing = getattr(swivel, name)
+            self.assertTrue(thing.__doc__, name)
+            self.assertEqual(thing.__module__, "swivel", name)
+            count += 1
+        self.assertGreater(count, 40)
+
+
+    def test_the_readme(self):
+        text = re.search(r"```python\n(.*?)```", (DATA.parent / "README.md").read_text(), re.DOTALL).group(1)
+        before = os.getcwd()
+        os.chdir(DATA.parent)
+        try:
+            names = {}
+            exec(text, names)
+        finally:
+            os.chdir(before)
+        self.assertTrue(names["motion"].executable)
+        self.assertTrue(names["planner"].plan().solved)
+
+
+class Memory(unittest.TestCase):
+    def test_results_outlive_the_planner(self):
+        planner = swivel.Planner(experiment("c"))
+        plan = planner.plan(refine=True, speed=0.1, evidence=True)
+        kept = [plan.joints, plan.trajectory.s, plan.motion.joints, plan.motion.velocities, plan.lattice_path.joints,
+                plan.refinement.trajectory.phi, plan.measures.arm_angle]
+        copies = [array.copy() for array in kept]
+        measures, limits = plan.measures.min_margin, planner.problem.limits
+        words = repr(measures), repr(limits)
+        del planner, plan
+        gc.collect()
+        swivel.plan(experiment("b"))  # takes the memory that was given back
+        for array, copied in zip(kept, copies):
+            np.testing.assert_array_equal(array, copied)
+        self.assertEqual((repr(measures), repr(limits)), words)
+
+    def test_arrays_are_views_that_cannot_be_written(self):
+        plan = swivel.plan(experiment("c"))
+        self.assertEqual(plan.joints.dtype, np.float64)
+        self.assertEqual(plan.joints.shape, (109, 7))
+        self.assertTrue(np.shares_memory(plan.joints, plan.trajectory.joints))
+        with self.assertRaises(ValueError):
+            plan.joints[0, 0] = 1
+        self.assertEqual(swivel.plan(PROBLEMS / "experiment_a_start.yaml").joints.shape, (0, 7))
+
+    def test_no_leak(self):
+        planner = swivel.Planner(experiment("c", ds=0.02, dphi=0.1))
+
+        def pages():
+            return int(Path("/proc/self/statm").read_text().split()[1])
+
+        def ask():
+            plan = planner.plan(check=lambda joints: np.ones(len(joints), bool), threads=1)
+            return plan.joints, plan.diagnosis
+
+        for _ in range(50):
+            ask()
+        before = pages()
+        for _ in range(300):
+            ask()
+        grown = (pages() - before) * os.sysconf("SC_PAGE_SIZE")
+        print(f"300 plans more: {grown / 1e6:.2f} MB")
+        self.assertLess(grown, 8e6)
+
+    def test_numbers_go_in_and_out_unchanged(self):
+        rng = np.random.default_rng(20261122)
+        q = rng.normal(size=(50, 4))
+        q /= np.linalg.norm(q, axis=1, keepdims=True)
+        waypoints = np.hstack([rng.uniform(-1, 1, (50, 3)), q])
+        np.testing.assert_array_equal(swivel.Task(waypoints).waypoints, waypoints)
+        np.testing.assert_array_equal(swivel.Task(waypoints.tolist()).waypoints, waypoints)
+        poses = np.array([swivel.pose(row[:3], quat=row[3:]) for row in waypoints])
+        through = swivel.Task(poses).waypoints
+        np.testing.assert_array_equal(through[:, :3], waypoints[:, :3])
+        np.testing.assert_allclose(np.abs((through[:, 3:] * q).sum(axis=1)), 1, atol=1e-12)
+        scene = swivel.Scene([swivel.SceneObject("box", swivel.Box([1, 2, 3]), poses[0])])
+        np.testing.assert_array_equal(scene["box"].pose, poses[0])
+        plan = swivel.plan(experiment("b"))
+        rows = plan.trajectory
+        again = swivel.Trajectory(rows.joints, rows.s, rows.phi, rows.branch, rows.joint_names)
+        for member in ("joints", "s", "phi", "branch"):
+            np.testing.assert_array_equal(getattr(again, member), getattr(rows, member))
+        with tempfile.TemporaryDirectory() as folder:
+            rows.save(Path(folder) / "t.csv")
+            read = swivel.load_trajectory(Path(folder) / "t.csv", rows.joint_names)
+            np.testing.assert_array_equal(read.joints, rows.joints)
+            motion = swivel.time(experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1)
+            for ending in ("csv", "json", "yaml", "mcap"):
+                motion.save(Path(folder) / f"m.{ending}")
+                self.assertGreater((Path(folder) / f"m.{ending}").stat().st_size, 1000)
+            read = swivel.load_trajectory(Path(folder) / "m.csv", motion.joint_names)
+            np.testing.assert_array_equal(read.velocities, motion.velocities)
+
+    def test_parts_of_a_problem_change_in_place(self):
+        problem = experiment("c")
+        problem.limits.clearance = 0.007
+        problem.resolution = swivel.Resolution(ds=0.02)
+        problem.cost.metric = "time"
+        problem.scene.remove("post")
+        self.assertEqual(problem.limits.clearance, 0.007)
+        self.assertEqual(problem.resolution, swivel.Resolution(ds=0.02))
+        self.assertEqual(problem.cost.metric, swivel.CostMetric.TIME)
+        self.assertNotIn("post", problem.scene)
+        self.assertEqual([o.name for o in problem.scene], ["door", "rail"])
+        task = problem.task
+        task.limits.clearance = 1
+        self.assertEqual(problem.limits.clearance, 0.007)
+        for other in (copy.copy(problem), copy.deepcopy(problem)):
+            other.scene.remove("door")
+            other.limits.clearance = 9
+            other.tool = swivel.pose([0, 0, 1])
+        self.assertIn("door", problem.scene)
+        self.assertEqual(problem.limits.clearance, 0.007)
+        self.assertEqual(problem.tool[2, 3], experiment("c").tool[2, 3])
+        self.assertEqual(copy.deepcopy(problem.task), problem.task)
+        problem.start = np.arange(7)
+        start = problem.start
+        start[0] = 5
+        np.testing.assert_array_equal(problem.start, np.arange(7.0))
+        problem.start = None
+        limits = copy.copy(problem.limits)
+        limits.clearance = 3
+        self.assertEqual(problem.limits.clearance, 0.007)
+        self.assertTrue(swivel.plan(problem).solved)
+
+
+class Functions(unittest.TestCase):
+    def test_a_thousand_states_are_one_call(self):
+        problem, sizes = experiment("c", ds=0.05, dphi=0.015), []
+
+        def check(joints):
+            self.assertEqual(joints.shape, (len(joints), 7))
+            sizes.append(len(joints))
+            return np.ones(len(joints), bool)
+
+        plan = swivel.plan(problem, check=check, planner="eager_dp")
+        print("eager_dp:", len(sizes), "calls about", sum(sizes), "states, at most", max(sizes))
+        self.assertEqual(len(sizes), plan.lattice.layers)  # one for each layer
+        self.assertGreaterEqual(max(sizes), 1000)
+        for planner in ("lazy", "parallel"):
+            sizes.clear()
+            other = swivel.plan(problem, check=check, planner=planner)
+            np.testing.assert_array_equal(other.joints, plan.joints)
+            self.assertLessEqual(len(sizes), sum(sizes) / 4)
+
+    def test_rules_are_kept_by_all_planners(self):
+        problem = experiment("c", ds=0.02, dphi=0.1)
+        free = swivel.plan(problem)
+        twist = np.abs(free.joints[:, 4] + free.joints[:, 6]).max()
+        asked = []
+
+        def hose(joints):
+            asked.append(joints)
+            return np.abs(joints[:, 4] + joints[:, 6]) < 0.9 * twist
+
+        def moves(start, end):
+            return np.abs(end - start).max(axis=1) < 0.4
+
+        plans = [swivel.plan(problem, check=hose, check_motions=moves, planner=p) for p in ("eager", "eager_dp", "lazy", "parallel")]
+        states = np.vstack(asked)  # what was given may be kept
+        self.assertTrue(np.isfinite(states).all())
+        self.assertGreater(len(np.unique(states, axis=0)), 100)
+        for plan in plans:
+            np.testing.assert_array_equal(plan.joints, plans[0].joints)
+        self.assertTrue(plans[0].solved)
+        self.assertLess(np.abs(plans[0].joints[:, 4] + plans[0].joints[:, 6]).max(), 0.9 * twist)
+        self.assertLess(np.abs(np.diff(plans[0].joints, axis=0)).max(), 0.4)
+        none = swivel.plan(problem, check=lambda joints: np.zeros(len(joints), bool))
+        self.assertEqual(none.diagnosis.cause.check, "<lambda>")
+
+    def test_costs_are_added(self):
+        problem = experiment("a", ds=0.02, dphi=0.1)
+        plans = [swivel.plan(problem, cost=lambda q: 0.02 * (q**2).sum(axis=1), planner=p) for p in ("eager_dp", "lazy", "parallel")]
+        for plan in plans:
+            np.testing.assert_array_equal(plan.joints, plans[0].joints)
+        steps = np.linalg.norm(np.diff(plans[0].joints, axis=0), axis=1).sum()
+        self.assertAlmostEqual(plans[0].cost, steps + 0.02 * (plans[0].joints ** 2).sum(), places=6)
+        self.assertGreater(plans[0].cost, swivel.plan(problem).cost)
+
+    def test_what_a_function_raises_comes_out(self):
+        planner = swivel.Planner(experiment("c", ds=0.02, dphi=0.1))
+        before = planner.plan()
+
+        def broken(*_):
+            raise KeyError("mine")
+
+        for keyword in ("check", "check_motions", "cost", "progress"):
+            with self.assertRaisesRegex(KeyError, "mine"):
+                planner.plan(**{keyword: broken})
+        for answer, wanted in ((lambda q: np.ones(len(q)), "float64 of shape"), (lambda q: np.ones((1, 1), bool), r"shape \(1, 1\)"),
+                               (lambda q: None, "allowed is bool of shape"), (lambda q: "yes", "allowed is bool of shape")):
+            with self.assertRaisesRegex(ValueError, wanted):
+                planner.plan(check=answer)
+        with self.assertRaisesRegex(ValueError, "allowed is a number from 0"):
+            planner.plan(cost=lambda q: -np.ones(len(q)))
+        with self.assertRaisesRegex(TypeError, "check: not callable"):
+            planner.plan(check=3)
+        with self.assertRaisesRegex(RuntimeError, "clone"):
+            planner.plan(check=lambda q: planner.plan())
+        np.testing.assert_array_equal(planner.plan().joints, before.joints)
+
+    def test_progress(self):
+        seen = []
+        swivel.plan(endless(), planner=LONG, timeout=0.5, progress=lambda stage, done, of: seen.append((stage, done, of)))
+        print("progress:", len(seen), "times, stages", sorted({stage for stage, _, _ in seen}))
+        self.assertGreaterEqual(len(seen), 2)
+        self.assertTrue(all(isinstance(stage, str) and done >= 0 for stage, done, _ in seen))
+
+
+class Interrupts(unittest.TestCase):
+    def test_ctrl_c_stops_a_plan(self):
+        waits = []
+        for after in (0.03, 0.1, 0.2, 0.4, 0.8, 1.2):
+            planner = swivel.Planner(endless())
+            sent = []
+
+            def interrupt():
+                sent.append(time.perf_counter())
+                os.kill(os.getpid(), signal.SIGINT)
+
+            timer = threading.Timer(after, interrupt)
+            timer.start()
+            with self.assertRaises(KeyboardInterrupt):
+                planner.plan(planner=LONG)
+                time.sleep(60)
+            waits.append(time.perf_counter() - sent[0])
+            timer.join()
+            planner.set_task(experiment("c", ds=0.02, dphi=0.1).task)
+            self.assertTrue(planner.plan().solved)  # it is none the worse for it
+        print("KeyboardInterrupt after", " ".join(f"{1e3 * wait:.0f}" for wait in waits), "ms")
+        self.assertLess(statistics.median(waits), 1)
+
+    def test_ctrl_c_in_a_check(self):
+        def slow(joints):
+            time.sleep(0.001)
+            return np.ones(len(joints), bool)
+
+        threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with self.assertRaises(KeyboardInterrupt):
+            for _ in range(1000):
+                swivel.plan(experiment("c", ds=0.002), check=slow, planner="eager_dp")
+
+    def test_a_handler_that_does_not_raise_does_not_stop(self):
+        rung = []
+        before = signal.signal(signal.SIGALRM, lambda *_: rung.append(time.perf_counter()))
+        signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
+        begin = time.perf_counter()
+        plan = swivel.plan(endless(), planner=LONG, timeout=0.6)
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+        self.assertEqual(plan.status, swivel.Status.TIMEOUT)
+        self.assertGreaterEqual(len([t for t in rung if t < begin + 0.55]), 2)  # while it planned
+
+    def test_python_ends_while_a_thread_plans(self):
+        program = f"""
+import sys, threading, time
+sys.path.insert(0, {str(Path(__file__).parent)!r})
+from python_test import LONG, endless, np, swivel
+def forever(**keywords):
+    try:
+        while True:
+            swivel.plan(endless(), **keywords)
+    except RuntimeError:
+        pass  # Python ends; what a daemon thread prints then may abort it
+def check(joints):
+    return np.ones(len(joints), bool)
+for keywords in ({{"planner": LONG}}, {{"planner": LONG, "check": check}}, {{"planner": "lazy"}}):
+    threading.Thread(target=forever, kwargs=keywords, daemon=True).start()
+time.sleep(0.3)
+print("at its end")
+"""
+        for _ in range(3):
+            run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+            self.assertEqual((run.returncode, run.stdout), (0, "at its end\n"), run.stderr)
+
+    def test_timeouts(self):
+        begin = time.perf_counter()
+        plan = swivel.plan(endless(), planner=LONG, timeout=0.2)
+        self.assertEqual(str(plan.status), "timeout")
+        self.assertIsNone(plan.diagnosis)
+        self.assertLess(time.perf_counter() - begin, 5)
+        problem = experiment("c")
+        rows = swivel.plan(problem).trajectory
+        with self.assertRaises(TimeoutError):
+            swivel.refine(problem, rows, timeout=1e-6)
+        with self.assertRaises(TimeoutError):
+            swivel.time(problem, rows, speed=0.1, timeout=1e-6)
+
+
+class Errors(unittest.TestCase):
+    def raises(self, error, message, function, *arguments, **keywords):
+        with self.assertRaisesRegex(error, message) as caught:
+            function(*arguments, **keywords)
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_files(self):
+        with tempfile.TemporaryDirectory() as folder:
+            bad = Path(folder) / "bad.yaml"
+            bad.write_text("robot: {urdf: x.urdf}\nfoo: 1\n")
+            self.raises(swivel.InputError, r"bad.yaml:2: .*foo", swivel.load_problem, bad)
+            self.raises(ValueError, r"bad.yaml:2", swivel.plan, bad)
+            broken = Path(folder) / "broken.urdf"
+            broken.write_text("<robot name='r'>\n<link/>\n</robot>")
+            self.raises(swivel.InputError, r"broken.urdf:2", swivel.Robot, broken)
+            self.raises(swivel.InputError, "absent.stl", swivel.Mesh, Path(folder) / "absent.stl")
+            rows = swivel.plan(experiment("b")).trajectory
+            self.raises(swivel.InputError, "nowhere", rows.save, Path(folder) / "nowhere" / "t.csv")
+            motion = swivel.time(experiment("c"), swivel.plan(experiment("c")).trajectory, speed=0.1)
+            self.raises(swivel.InputError, "unknown format", motion.save, Path(folder) / "m.txt")
+        self.raises(swivel.InputError, "URDF text:1", swivel.Robot.from_string, "<robot>")
+        self.raises(swivel.InputError, "tool00.*nearest|unknown link", swivel.Robot, ROBOTS / "iiwa14.urdf", tip="tool00")
+
+    def test_values(self):
+        self.raises(TypeError, "'clearence', nearest is 'clearance'", swivel.Limits, clearence=1)
+        self.raises(ValueError, "EdgeMode: 'some': allowed are continuous, nodes", swivel.Limits, edges="some")
+        self.raises(ValueError, "allowed are eager, eager_dp, lazy, parallel", swivel.plan, experiment("b"), planner="lasy")
+        for keywords in ({"threads": -1}, {"timeout": 0}, {"rate": 100}, {"speed": 0}, {"speed": 0.1, "rate": 0}, {"speed": float("nan")}):
+            self.raises(ValueError, next(iter(reversed(keywords))) + ".*allowed", swivel.plan, experiment("b"), **keywords)
+        self.raises(ValueError, r"pose of shape \(2,\)", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), [1, 2])
+        self.raises(ValueError, "no rigid transform", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), 2 * np.eye(4))
+        self.raises(ValueError, r"waypoints\[1\]: pose of shape \(3,\)", swivel.Task, [[0, 0, 0, 1, 0, 0, 0], [1, 2, 3]])
+        self.raises(ValueError, "not an array of numbers", swivel.Task, ["here", "there"])
+        self.raises(ValueError, "quaternion of length 2", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), [0, 0, 0, 2, 0, 0, 0])
+        self.raises(ValueError, r"joints of shape \(3,\)", arm().tool_pose, [1, 2, 3])
+        self.raises(ValueError, r"start of shape \(3,\): allowed is \(7,\)", square, start=[1, 2, 3])
+        self.raises(ValueError, "names vertex 3", swivel.Mesh.from_arrays, np.eye(3), [[0, 1, 3]])
+        self.raises(ValueError, "s: allowed is one number for each of the 2 rows", swivel.Trajectory, np.zeros((2, 7)), [1.0])
+        self.raises(ValueError, "branch", swivel.Trajectory, np.zeros((1, 7)), [0], [0], [9])
+
+    def test_what_no_problem_may_have(self):
+        planner = swivel.Planner(arm(), square())
+        self.raises(swivel.InvalidArgument, "radius", planner.add, swivel.SceneObject("ball", swivel.Sphere(-1)))
+        planner.add(swivel.SceneObject("ball", swivel.Sphere(0.1), [0, 0, 2]))
+        self.raises(swivel.InvalidArgument, "taken", planner.add, swivel.SceneObject("ball", swivel.Sphere(0.1)))
+        self.raises(swivel.InvalidArgument, "no such object", planner.move, "bull", np.eye(4))
+        self.raises(KeyError, "bull.*nearest is 'ball'", planner.problem.scene.move, "bull", np.eye(4))
+        task = square()
+        task.limits.clearance = float("nan")
+        self.raises(swivel.InvalidArgument, "limits.clearance", planner.set_task, task)
+        problem = planner.problem
+        problem.resolution.ds = 0
+        self.raises(swivel.InvalidArgument, "resolution.ds", problem.validate)
+        self.assertTrue(planner.plan().solved)
+        self.raises(swivel.InputError, "waypoint", swivel.Planner(arm()).plan)
+        with self.assertRaises(AttributeError):
+            planner.problem.scene["ball"].pose = np.eye(4)
+        with self.assertRaises(TypeError):
+            swivel.Planner(3)
+
+
+class Robots(unittest.TestCase):
+    def test_from_texts(self):
+        urdf, srdf = (ROBOTS / "iiwa14.urdf").read_text(), (ROBOTS / "iiwa14.srdf").read_text()
+        one, other = arm(), swivel.Robot.from_string(urdf, srdf)
+        self.assertEqual((one.base, one.tip, one.joint_names), (other.base, other.tip, other.joint_names))
+        np.testing.assert_array_equal(swivel.Planner(one, square()).plan().joints, swivel.Planner(other, square()).plan().joints)
+
+    def test_tool_poses(self):
+        robot = arm(tool=swivel.pose([0, 0, 0.1], rpy=[0, 0.3, 0]))
+        plan = swivel.Planner(robot, square()).plan()
+        poses = robot.tool_pose(plan.joints)
+        self.assertEqual(poses.shape, (len(plan.joints), 4, 4))
+        np.testing.assert_array_equal(robot.tool_pose(plan.joints[3]), poses[3])
+        np.testing.assert_allclose(poses[0][:3, 3], [0.45, -0.1, 0.4], atol=1e-9)
+        np.testing.assert_allclose(poses[:, :3, :3], np.broadcast_to(np.diag([1, -1, -1]), (len(poses), 3, 3)), atol=1e-9)
+        self.assertEqual(robot.joint_limits.shape, (7, 2))
+        self.assertTrue((robot.joint_limits[:, 0] < plan.joints.min(axis=0)).all())
+        self.assertTrue((robot.joint_limits[:, 1] > plan.joints.max(axis=0)).all())
+
+    def test_of_six_joints(self):
+        problem = swivel.load_problem(PROBLEMS / "ur5e_deburr_edge.yaml")
+        self.assertIsNotNone(problem.roll)
+        self.assertEqual(len(problem.joint_names), 7)
+        robot = swivel.Robot(ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll(lower=-1, upper=1))
+        self.assertEqual(robot.roll, swivel.Roll(lower=-1, upper=1))
+
+    def test_what_it_carries(self):
+        planner = swivel.Planner(arm(), square())
+        free = planner.plan(evidence=True)
+        planner.attach(swivel.AttachedBody("plate", swivel.Box([0.4, 0.4, 0.01]), "tool0", [0, 0, 0.02]))
+        planner.add(swivel.SceneObject("post", swivel.Cylinder(0.02, 1), [0.3, 0.0, 0.4]))
+        carrying = planner.plan(evidence=True)
+        self.assertNotEqual(carrying.measures.min_clearance if carrying.solved else None, free.measures.min_clearance)
+        planner.detach("plate")
+        planner.remove("post")
+        np.testing.assert_array_equal(planner.plan().joints, free.joints)
+
+    def test_meshes(self):
+        corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * 0.2 - 0.1
+        faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+        mesh = swivel.Mesh.from_arrays(corners, faces, "cube")
+        self.assertTrue(mesh.closed)
+        np.testing.assert_array_equal(mesh.vertices, corners)
+        plans = [swivel.Planner(arm(), square(), [swivel.SceneObject("cube", shape, [0.55, 0.0, 0.2])]).plan(evidence=True)
+                 for shape in (mesh, swivel.Box([0.2, 0.2, 0.2]))]
+        self.assertAlmostEqual(plans[0].measures.min_clearance, plans[1].measures.min_clearance, places=5)
+
+
+class Cartesian(unittest.TestCase):
+    def setUp(self):
+        self.robot = arm()
+        self.start = swivel.Planner(self.robot, square()).plan().joints[0]
+        self.there = self.robot.tool_pose(self.start)
+        self.there[1, 3] += 0.3
+
+    def test_whole_and_part(self):
+        fraction, whole = swivel.compute_cartesian_path(self.robot, [], [self.there], self.start)
+        self.assertEqual(fraction, 1.0)
+        np.testing.assert_array_equal(whole.joints[0], self.start)
+        np.testing.assert_allclose(self.robot.tool_pose(whole.joints[-1]), self.there, atol=1e-9)
+        self.assertEqual(len(whole), 61)
+        scene = swivel.Scene()
+        scene.add("wall", swivel.Box([0.05, 0.02, 0.05]), self.there[:3, 3] - [0, 0.05, 0])
+        fraction, part = swivel.compute_cartesian_path(self.robot, scene, [self.there], self.start)
+        self.assertTrue(0.1 < fraction < 0.75, fraction)
+        self.assertAlmostEqual(part.s[-1], 0.3 * fraction, places=9)
+        fraction, _ = swivel.compute_cartesian_path(self.robot, scene, [self.there], self.start, max_step=0.02, planner="lazy")
+        self.assertTrue(0.1 < fraction < 0.75, fraction)
+
+    def test_ways_to_say_it(self):
+        rows = swivel.Task([self.there]).waypoints
+        results = [swivel.compute_cartesian_path(self.robot, [], waypoints, self.start)
+                   for waypoints in ([self.there], np.array([self.there]), rows, rows.tolist(), [self.robot.tool_pose(self.start), self.there])]
+        for fraction, trajectory in results:
+            self.assertEqual(fraction, 1.0)
+            np.testing.assert_allclose(trajectory.joints, results[0][1].joints, atol=1e-9)
+        fraction, free = swivel.compute_cartesian_path(self.robot, [], [self.robot.tool_pose(self.start), self.there], None)
+        self.assertEqual(fraction, 1.0)
+
+    def test_a_start_in_collision_goes_nowhere(self):
+        wall = [swivel.SceneObject("wall", swivel.Box([0.1, 0.1, 0.1]), self.robot.tool_pose(self.start))]
+        fraction, rows = swivel.compute_cartesian_path(self.robot, wall, [self.there], self.start)
+        self.assertEqual((fraction, len(rows)), (0.0, 0))
+
+
+class Threads(unittest.TestCase):
+    def test_python_runs_while_a_plan_does(self):
+        counted, end = [0], threading.Event()
+
+        def count():
+            while not end.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        counter = threading.Thread(target=count)
+        counter.start()
+        before = counted[0]
+        swivel.plan(endless(), planner=LONG, timeout=0.5, threads=1)
+        during = counted[0] - before
+        end.set()
+        counter.join()
+        self.assertGreater(during, 20)
+
+    def test_a_planner_is_for_one_thread_at_a_time(self):
+        planner, caught = swivel.Planner(endless()), []
+        thread = threading.Thread(target=lambda: planner.plan(planner=LONG, timeout=0.5))
+        thread.start()
+        for _ in range(200):
+            try:
+                planner.problem
+            except RuntimeError as error:
+                caught.append(str(error))
+                during = repr(planner)
+                break
+            time.sleep(0.001)
+        thread.join()
+        self.assertIn("clone()", caught[0])
+        self.assertEqual(during, "<Planner, at work>")
+        planner.problem  # free again
+
+    def test_two_threads_plan_at_once(self):
+        problem = experiment("c", dphi=0.02, ds=0.003)
+        planner = swivel.Planner(problem)
+        expected = planner.plan(planner="lazy").joints
+        rails = [problem.scene["rail"].pose for _ in range(8)]
+
+        def work(own, count, answers):
+            for k in range(count):
+                rail = rails[0].copy()
+                rail[0, 3] += 1e-6 * k
+                own.move("rail", rail)
+                answers.append(own.plan(planner="lazy").joints)
+
+        def timed(threads, count):
+            clones = [planner.clone() for _ in range(threads)]
+            for clone in clones:
+                clone.plan(planner="lazy")
+            answers = [[] for _ in clones]
+            begin = time.perf_counter()
+            workers = [threading.Thread(target=work, args=(clone, count, answer)) for clone, answer in zip(clones, answers)]
+            for worker in workers:
+                worker.start()
+            for worker in workers:
+                worker.join()
+            took = time.perf_counter() - begin
+            for answer in answers:
+                self.assertEqual(len(answer), count)
+                np.testing.assert_array_equal(answer[0], expected)
+            return threads * count / took
+
+        # Wants two idle cores: what other programs leave is measured, and nothing is asked of it.
+        rounds = [(timed(1, 100), timed(2, 100)) for _ in range(4)]
+        one, two = (max(rates) for rates in zip(*rounds))
+        print(f"plans a second, best of {len(rounds)}: {one:.0f} by one thread, {two:.0f} by two, {two / one:.2f} times as many; "
+              f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+
+    def test_overhead(self):
+        planner = swivel.Planner(experiment("c", ds=0.02, dphi=0.1))
+        over, inside = [], []
+        for _ in range(500):
+            begin = time.perf_counter()
+            plan = planner.plan(planner="lazy")
+            took = 1e3 * (time.perf_counter() - begin)
+            inside.append(sum(plan.time_ms[part] for part in ("prepare", "plan", "report")))
+            over.append(took - inside[-1])
+        print(f"a plan takes {statistics.median(inside):.3f} ms, the call {statistics.median(over):.3f} ms more (median of {len(over)}); "
+              f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+        self.assertLess(sorted(over)[len(over) // 4], 0.2)  # the median where nothing else runs
+
+
+class Places(unittest.TestCase):
+    QUICK = ("--planner", "lazy", "--ds", "0.02", "--dphi", "0.2")
+    GRID = {"x": (-0.1, 0.1, 0.05), "y": (0, 0.1, 0.05), "yaw": 0.1}
+
+    @staticmethod
+    def problem():
+        return experiment("c", ds=0.02, dphi=0.2)
+
+    def table(self, command, *arguments):
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "out.csv"
+            run = subprocess.run([PROGRAM, command, PROBLEMS / "experiment_c.yaml", *self.QUICK, *arguments, "--out", out], capture_output=True, text=True)
+            self.assertIn(run.returncode, (0, 1), run.stderr)
+            return out.read_text()
+
+    def saved(self, table):
+        with tempfile.TemporaryDirectory() as folder:
+            table.save(Path(folder) / "out.csv")
+            return (Path(folder) / "out.csv").read_text()
+
+    def test_the_program_gives_the_same_table(self):
+        grid = ("--x", "-0.1:0.1:0.05", "--y", "0:0.1:0.05", "--yaw", "0.1")
+        fine = {"x": (-0.1, 0.1, 0.02), "y": (-0.1, 0.1, 0.02)}
+        count = 0
+        for options, keywords in ((("--object", "door", *grid), {"object": "door", **self.GRID}), (("--base", *grid), {"base": True, **self.GRID}),
+                                  (("--path", "--x", "-0.1:0.1", "--z", "0.01", "--sample", "9", "--seed", "5"), {"path": True, "x": (-0.1, 0.1), "z": 0.01, "sample": 9, "seed": 5}),
+                                  (("--object", "door", "--x", "-0.1:0.1:0.02", "--y", "-0.1:0.1:0.02", "--refine-grid", "--best", "speed"),
+                                   {"object": "door", **fine, "refine_grid": True, "best": "speed"})):
+            wanted = self.table("place", *options)
+            for threads in (1, 2):
+                rows = swivel.place(self.problem(), planner="lazy", threads=threads, **keywords)
+                self.assertEqual(self.saved(rows), wanted)
+                count += len(rows)
+        self.assertGreater(count, 100)
+
+    def test_rows_and_columns(self):
+        problem = self.problem()
+        rows = swivel.place(problem, object="door", planner="lazy", **self.GRID)
+        self.assertEqual(len(rows), 15)
+        self.assertEqual(rows.offset.shape, (15, 6))
+        self.assertEqual(rows.cell.tolist(), list(range(15)))
+        solved = [k for k in range(15) if rows.solved[k]]
+        self.assertTrue(0 < len(solved) < 15)
+        for k in range(15):
+            row = rows[k]
+            self.assertEqual((row.cell, row.offset.tolist(), row.status), (k, rows.offset[k].tolist(), rows.status[k]))
+            plan = swivel.plan(problem.placed(row.offset, object="door"), planner="lazy", evidence=True)
+            self.assertEqual((plan.status, plan.cost), (row.status, row.cost))
+            if row.solved:
+                self.assertEqual((rows.cost[k], row.clearance_margin, row.tool_speed), (row.cost, plan.measures.min_margin.margin, plan.measures.top_tool_speed.speed))
+                self.assertRegex(repr(row), r"<Placement \d+.*, yaw 0.1: cost [0-9.]+, clearance ")
+            else:
+                self.assertTrue(np.isnan(rows.cost[k]) and row.cost is None)
+                self.assertEqual(rows.reason[k], row.reason)
+                self.assertIn("no path, " + row.reason, repr(row))
+        self.assertEqual(rows[-1].cell, 14)
+        with self.assertRaises(IndexError):
+            rows[15]
+        self.assertEqual([row.cell for row in rows.best("cost", 3)], sorted(solved, key=lambda k: (round(rows.cost[k], 9), k))[:3])
+        self.assertEqual([row.cell for row in rows.best(["clearance", "cost"], 99)],
+                         sorted(solved, key=lambda k: (round(-rows.clearance_margin[k], 9), round(rows.cost[k], 9), k)))
+        self.assertRegex(repr(rows), r"^<Placements: 15, of which %d have a path; cost [0-9.]+ to [0-9.]+>$" % len(solved))
+
+    def test_campaigns(self):
+        without = lambda text: [[*line.split(",")[:3], *line.split(",")[4:]] for line in text.splitlines()]
+        rows = swivel.campaign(self.problem(), episodes=12, seed=3, planner="lazy")
+        self.assertEqual(without(self.saved(rows)), without(self.table("campaign", "--episodes", "12", "--seed", "3")))
+        self.assertEqual(rows.episode.tolist(), list(range(12)))
+        self.assertTrue((rows.plan_ms > 0).all())
+        plan = swivel.plan(self.problem().episode(3, 5), planner="lazy")
+        self.assertEqual((rows[5].status, rows[5].cost, rows[5].nodes_checked), (plan.status, plan.cost, plan.counters["nodes_checked"]))
+        self.assertRegex(repr(rows), r"^<Episodes: 12, of which \d+ have a path; cost ")
+        self.assertRegex(repr(rows[0]), r"^<Episode 0: .* ms>$")
+
+    def test_progress(self):
+        seen = []
+        rows = swivel.place(self.problem(), object="door", planner="lazy", progress=lambda part, done, of: seen.append((part[0].cell, done, of)), **self.GRID)
+        self.assertEqual(sorted(cell for cell, _, _ in seen), rows.cell.tolist())
+        self.assertEqual([(done, of) for _, done, of in seen], [(k + 1, 15) for k in range(15)])
+        seen.clear()
+        swivel.campaign(self.problem(), episodes=6, progress=lambda part, done, of: seen.append((part[0].episode, done, of)))
+        self.assertEqual(seen, [(k, k + 1, 6) for k in range(6)])
+
+        def broken(*_):
+            raise KeyError("mine")
+
+        for many in (lambda: swivel.place(self.problem(), object="door", progress=broken, **self.GRID), lambda: swivel.campaign(self.problem(), progress=broken)):
+            with self.assertRaisesRegex(KeyError, "mine"):
+                many()
+
+    def test_timeout_and_ctrl_c(self):
+        many = {"object": "door", "x": (-0.1, 0.1, 0.0005), "y": (-0.1, 0.1, 0.0005)}
+        rows = swivel.place(self.problem(), timeout=0.5, **many)
+        self.assertTrue(0 < len(rows) < 160801)
+        for work in (lambda: swivel.place(self.problem(), **many), lambda: swivel.campaign(self.problem(), episodes=100000)):
+            begin = time.perf_counter()
+            threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+            with self.assertRaises(KeyboardInterrupt):
+                work()
+            self.assertLess(time.perf_counter() - begin, 20)
+
+    def test_bad_values(self):
+        problem = self.problem()
+        for keywords, words in (({"x": 0}, "exactly one"), ({"object": "door", "base": True, "x": 0}, "exactly one"), ({"object": "door"}, "one to six"),
+                                ({"object": "dor", "x": 0}, "'dor'"), ({"object": "door", "x": (0, 1)}, "step"), ({"object": "door", "x": (1, 0, 0.1)}, "from <= to"),
+                                ({"object": "door", "x": (0, 1, 0)}, "step > 0"), ({"object": "door", "x": (0, 1, 1e-300)}, "larger step"),
+                                ({"object": "door", "x": (0, 1, 1e-4), "y": (0, 1, 1e-4)}, "1000000"), ({"object": "door", "x": (0, 1), "sample": 0}, "1000000"),
+                                ({"object": "door", "x": (0, 1), "sample": 5, "refine_grid": True}, "without sample"), ({"object": "door", "x": 0, "planner": "magic"}, "eager_dp"),
+                                ({"object": "door", "x": (0, 1, 0.5), "refine_grid": True, "best": "fastest"}, "clearance, cost"), ({"object": "door", "x": float("nan")}, "1000"),
+                                ({"object": "door", "x": 0, "threads": -1}, "1024"), ({"object": "door", "x": 0, "timeout": 0}, "above 0")):
+            with self.assertRaisesRegex(ValueError, words):
+                swivel.place(problem, **keywords)
+        with self.assertRaisesRegex(ValueError, "vary"):
+            swivel.campaign(PROBLEMS / "experiment_a.yaml")
+        with self.assertRaisesRegex(ValueError, "episodes: 0"):
+            swivel.campaign(problem, episodes=0)
+        with self.assertRaisesRegex(ValueError, "exactly one"):
+            problem.placed(np.zeros(6))
+
+
+class Pickles(unittest.TestCase):
+    """What went through pickle is what went in: every public attribute, and what is planned of it."""
+
+    def setUp(self):
+        self.count = 0
+
+    def same(self, a, b, where):
+        self.assertIs(type(a), type(b), where)
+        self.count += 1
+        if isinstance(a, np.ndarray):
+            self.assertEqual((a.dtype, a.shape), (b.dtype, b.shape), where)
+            self.assertTrue(np.array_equal(a, b, equal_nan=a.dtype.kind == "f"), where)
+        elif isinstance(a, (list, tuple)):
+            self.assertEqual(len(a), len(b), where)
+            for k, (x, y) in enumerate(zip(a, b)):
+                self.same(x, y, f"{where}[{k}]")
+        elif isinstance(a, dict):
+            self.assertEqual(list(a), list(b), where)
+            for key in a:
+                self.same(a[key], b[key], f"{where}[{key!r}]")
+        elif isinstance(a, swivel.Scene):
+            self.same(list(a), list(b), where)
+        elif type(a).__module__ != "swivel" or hasattr(type(a), "__members__"):
+            self.assertTrue(a == b or a != a, where)
+        else:
+            self.assertEqual(repr(a), repr(b), where)
+            for name in dir(type(a)):
+                member = getattr(type(a), name)
+                if not name.startswith("_") and isinstance(member, property) and not (isinstance(a, swivel.Motion) and not a.executable):
+                    self.same(getattr(a, name), getattr(b, name), f"{where}.{name}")
+
+    def through(self, thing):
+        for protocol in (2, pickle.HIGHEST_PROTOCOL):
+            self.same(thing, pickle.loads(pickle.dumps(thing, protocol)), type(thing).__name__)
+        return pickle.loads(pickle.dumps(thing))
+
+    def test_problems(self):
+        for file in sorted(PROBLEMS.glob("*.yaml")):
+            problem = swivel.load_problem(file)
+            problem.limits.joint_jerk = [1.0, 2, 3, 4, 5, 6, 7]
+            again = self.through(problem)
+            for part in (problem.robot, problem.task, problem.scene):
+                self.through(part)
+            if file.stem in ("experiment_a", "experiment_b", "experiment_c", "panda_weld_seam", "kr6_weld_pipe"):
+                one, two = swivel.plan(problem, planner="lazy"), swivel.plan(again, planner="lazy")
+                self.assertTrue(one.solved)
+                self.assertEqual((one.joints.tobytes(), one.cost, one.counters), (two.joints.tobytes(), two.cost, two.counters))
+            if file.stem == "experiment_c":
+                self.assertEqual(swivel.plan(problem.episode(1, 4), planner="lazy").cost, swivel.plan(again.episode(1, 4), planner="lazy").cost)
+        print(self.count, "values compared")
+        self.assertGreater(self.count, 5000)
+
+    def test_parts(self):
+        corners, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+        mesh = swivel.Mesh.from_arrays(corners, faces)
+        for thing in (swivel.Sphere(0.1), swivel.Box([0.1, 1 / 3, 0.3]), swivel.Cylinder(0.1, 0.2), swivel.Capsule(0.1, 0.2), mesh, swivel.Roll(lower=-1 / 3), swivel.Limits(edges="nodes"),
+                      swivel.AttachedBody("tool", mesh, "flange", swivel.pose([0, 0, 0.1], rpy=[0.1, 0.2, 0.3])), swivel.SceneObject("box", mesh, [1, 2, 3], ["flange"]),
+                      swivel.Resolution(arc=0.3), swivel.Cost(metric="max"), swivel.PathSmoothing(angle=0.1), swivel.Refinement(smoothing=0.2)):
+            self.through(thing)
+
+    def test_a_mesh_of_many_is_written_once(self):
+        problem = swivel.load_problem(PROBLEMS / "experiment_c_20k.yaml")
+        size = len(pickle.dumps(problem))
+        mesh = problem.scene["door"].shape
+        for k in range(20):
+            problem.scene.add(f"door {k}", mesh, [k + 2, 0, 0])
+        self.assertLess(len(pickle.dumps(problem)), 1.02 * size)
+
+    def test_answers(self):
+        problem = experiment("c")
+        plan = self.through(swivel.plan(problem, refine=True, speed=0.1, evidence=True))
+        self.assertEqual(plan.to_json(), pickle.loads(pickle.dumps(plan)).to_json())
+        for thing in (plan.motion, plan.refinement, plan.trajectory, plan.measures, swivel.check(problem, plan.trajectory)):
+            self.through(thing)
+        slow = experiment("c")
+        slow.limits.joint_acceleration = [0.3] * 7
+        self.assertTrue(self.through(swivel.plan(slow, speed=0.25).motion).slow)
+        none = swivel.plan(PROBLEMS / "experiment_a_start.yaml", evidence=True)
+        self.assertTrue(self.through(none).diagnosis.cause)
+        far = experiment("a")
+        far.waypoints = far.waypoints + [2, 0, 0, 0, 0, 0, 0] * np.linspace(0, 1, len(far.waypoints))[:, None]
+        far = swivel.plan(far, evidence=True)
+        self.assertTrue(self.through(far).diagnosis.empty_layers)
+        self.assertTrue(far.diagnosis.removed)
+        advice = swivel.advise(PROBLEMS / "experiment_a_start.yaml", none)
+        self.assertTrue(advice)
+        self.through(advice)
+        timed = swivel.check(experiment("c"), plan.motion)
+        self.assertIsNotNone(self.through(timed).duration)
+        self.through(swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.05), y=(0, 0.1, 0.05)))
+        self.through(swivel.campaign(Places.problem(), episodes=12))
+        self.through(swivel.place(Places.problem(), object="door", x=(-0.1, 0.1, 0.05))[2])
+        stuck = swivel.plan(PROBLEMS / "experiment_c.yaml", speed=0.1, timeout=1e-3)
+        self.through(stuck)
+        print(self.count, "values compared")
+        self.assertGreater(self.count, 1500)
+
+    def test_another_process_plans_the_same(self):
+        problem = experiment("c")
+        code = "import pickle, sys, swivel; sys.stdout.buffer.write(pickle.dumps(swivel.plan(pickle.load(sys.stdin.buffer), planner='lazy')))"
+        run = subprocess.run([sys.executable, "-c", code], input=pickle.dumps(problem), capture_output=True)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(pickle.loads(run.stdout).joints.tobytes(), swivel.plan(problem, planner="lazy").joints.tobytes())
+
+    def test_what_is_no_pickle_of_this_version(self):
+        state = swivel.Box([1, 2, 3]).__reduce_ex__(2)[2]
+        for wrong, words in ((("0.0.9", state[1]), "version 0.0.9 .*allowed"), ((state[0], state[1][:-1]), "not a pickle of swivel"), ((state[0],), "version . .*allowed")):
+            with self.assertRaisesRegex(ValueError, words):
+                swivel.Box.__new__(swivel.Box).__setstate__(wrong)
+
+
+class Wheels(unittest.TestCase):
+    """What pip installs, from the module that is built already."""
+
+    def test_wheel(self):
+        sys.path.insert(0, os.environ["SWIVEL_BACKEND"])
+        import build_wheel
+
+        def install_what_is_built(folder):
+            shutil.copytree(Path(swivel.__file__).parent, Path(folder) / "swivel", ignore=shutil.ignore_patterns("__pycache__"))
+
+        build_wheel.build_package = install_what_is_built
+        with tempfile.TemporaryDirectory() as folder:
+            name = build_wheel.build_wheel(folder)
+            info = build_wheel.prepare_metadata_for_build_wheel(folder)
+            with zipfile.ZipFile(Path(folder) / name) as wheel:
+                files = {path: wheel.read(path) for path in wheel.namelist()}
+            for path in (Path(folder) / info).iterdir():
+                self.assertEqual(path.read_bytes(), files[f"{info}/{path.name}"])
+            rows = [line.split(",") for line in files[f"{info}/RECORD"].decode().splitlines()]
+            self.assertEqual({row[0] for row in rows}, set(files))
+            for path, digest, size in rows[:-1]:
+                self.assertEqual(digest, "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(files[path]).digest()).rstrip(b"=").decode())
+                self.assertEqual(int(size), len(files[path]))
+            self.assertIn(f"Version: {swivel.__version__}\n", files[f"{info}/METADATA"].decode())
+            if subprocess.run([sys.executable, "-m", "pip", "--version"], capture_output=True).returncode:
+                self.skipTest("pip is not installed")
+            where = Path(folder) / "site"
+            subprocess.run([sys.executable, "-m", "pip", "install", "--no-index", "--no-deps", "--quiet", "--target", where, Path(folder) / name], check=True)
+            program = f"import swivel; print(swivel.__file__, swivel.plan({str(PROBLEMS / 'experiment_b.yaml')!r}).status)"
+            run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(where)})
+            self.assertEqual(run.stdout, f"{where}/swivel/__init__.py solved\n")
+
+    def test_source_distribution(self):
+        sys.path.insert(0, os.environ["SWIVEL_BACKEND"])
+        import build_wheel
+
+        if subprocess.run(["git", "-C", str(build_wheel.ROOT), "rev-parse"], capture_output=True).returncode:
+            self.skipTest("no clone by git")
+        with tempfile.TemporaryDirectory() as folder, tarfile.open(Path(folder) / build_wheel.build_sdist(folder)) as archive:
+            names = archive.getnames()
+            base = f"swivel-{swivel.__version__}"
+            self.assertTrue({f"{base}/{name}" for name in ("PKG-INFO", "pyproject.toml", "CMakeLists.txt", "python/build_wheel.py")} <= set(names))
+
+
+class Stubs(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(swivel.__file__).parent
+        self.tree = ast.parse((self.folder / "__init__.pyi").read_text())
+
+    @staticmethod
+    def members(thing):
+        own = {name for name in vars(thing) if not name.startswith("_") or name in ("__len__", "__iter__", "__getitem__", "__contains__", "__bool__")}
+        return own | ({"__init__"} if "__init__" in vars(thing) and not hasattr(thing, "__members__") else set())
+
+    def test_names_are_those_of_the_module(self):
+        self.assertTrue((self.folder / "py.typed").exists())
+        classes = {node.name: node for node in self.tree.body if isinstance(node, ast.ClassDef)}
+        functions = {node.name: node for node in self.tree.body if isinstance(node, ast.FunctionDef)}
+        self.assertEqual(set(classes) | set(functions), set(swivel.__all__))
+        count = 0
+        for name, node in classes.items():
+            thing = getattr(swivel, name)
+            if issubclass(thing, Exception):
+                continue
+            told = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
+            told |= {item.target.id for item in node.body if isinstance(item, ast.AnnAssign)}
+            # What no one can make has an __init__ that says so.
+            actual = self.members(thing) - ({"__init__"} if "__init__" not in told and "No constructor" in self.refusal(thing) else set())
+            self.assertEqual(told, actual, name)
+            count += len(told)
+            for item in node.body:
+                if isinstance(item, ast.FunctionDef) and not any(isinstance(d, (ast.Attribute, ast.Name)) and "setter" in ast.dump(d) for d in item.decorator_list):
+                    count += self.same_arguments(f"{name}.{item.name}", item, getattr(thing, item.name))
+        for name, node in functions.items():
+            count += self.same_arguments(name, node, getattr(swivel, name))
+        print(count, "names compared")
+        self.assertGreater(count, 300)
+
+    @staticmethod
+    def refusal(thing):
+        try:
+            thing()
+        except TypeError as error:
+            return str(error)
+        return ""
+
+    def same_arguments(self, name, node, function):
+        told = [a.arg for a in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs) if a.arg != "self"]
+        if not callable(function) or isinstance(function, property) or not told:
+            return 0
+        if hasattr(function, "__code__"):
+            code = function.__code__
+            actual = set(code.co_varnames[: code.co_argcount + code.co_kwonlyargcount])
+        else:
+            text = function.__doc__.split("\n\n")[0] if "Overloaded function" not in function.__doc__ else function.__doc__
+            if "**kwargs" in text:
+                return 0  # a struct made of keywords: its members are compared
+            actual = set(re.findall(r"[(,] ?\*?(\w+):", text)) - {"self"}
+        self.assertLessEqual(set(told), actual, name)
+        return len(told)
+
+    def test_mypy_accepts_the_examples(self):
+        if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True).returncode:
+            self.skipTest("mypy is not installed")
+        examples = sorted(Path(os.environ["SWIVEL_EXAMPLES"]).glob("*.py"))
+        self.assertEqual(len(examples), 4)
+        with tempfile.TemporaryDirectory() as folder:
+            run = subprocess.run([sys.executable, "-m", "mypy", "--ignore-missing-imports", "--cache-dir", folder, *examples], capture_output=True, text=True,
+                                 env={**os.environ, "MYPYPATH": str(self.folder.parent)})
+        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=["python_test"] + sys.argv[1:], verbosity=1)
