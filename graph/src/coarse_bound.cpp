@@ -16,7 +16,7 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr int kRun = 16;  // angles relaxed at once
 
-/// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the arm angle may
+/// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the coordinate may
 /// turn.
 int stride_of(const SrsLattice& lattice) {
   constexpr double kTurn = 0.8;

@@ -157,7 +157,7 @@ class Search {
     return true;
   }
 
-  /// The region of failing nodes around those just found, breadth first along the path and the arm angle: an obstacle blocks many
+  /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
   /// neighbours, and each found now saves a round.
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;

@@ -14,6 +14,7 @@
 #include "first_too_near.hpp"
 #include "path_following.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
@@ -399,16 +400,11 @@ class Check {
     const int layer = static_cast<int>(std::floor(place(k)));
     ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
     if (layer < place(k)) plane = carry_plane(*arm_, plane, pose_at(path_, place(k)));
-    const double phi = plane.angle_of(arm_->elbow_axis(row.q));
+    const double phi = arm_angle(*arm_, plane, row.q);
     if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle)) fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
 
-    const double sign_tells = std::sin(arm_->exact ? 0.01 : 0.05);
-    const std::pair<BranchBit, double> angles[] = {
-        {kShoulderBit, arm_->shoulder_angle(row.q)}, {kWristBit, arm_->wrist_angle(row.q)}, {kElbowBit, arm_->elbow_angle(row.q)}};
-    bool agrees = row.branch >= 0 && row.branch < kBranches;
-    for (const auto& [bit, angle] : angles)
-      if (std::abs(std::sin(angle)) > sign_tells) agrees = agrees && ((row.branch & bit) != 0) == (std::sin(angle) < 0);
-    if (!agrees) fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_->branch(row.q));
+    if (!is_of_branch(*arm_, row.q, row.branch))
+      fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_->branch(row.q));
   }
 
   /// From row k - 1 to row k. A move that its joints may not make is not examined further.
@@ -554,9 +550,7 @@ class Check {
   void examine_step_error(std::size_t k) {
     if (!lattice_ || !is_step(place(k - 1), place(k))) return;
     const int layer = static_cast<int>(place(k - 1));
-    const auto phi = [&](std::size_t row, int at) {
-      return planes_[static_cast<std::size_t>(at)].angle_of(arm_->elbow_axis(rows_[row].q));
-    };
+    const auto phi = [&](std::size_t row, int at) { return arm_angle(*arm_, planes_[static_cast<std::size_t>(at)], rows_[row].q); };
     const double phi0 = phi(k - 1, layer), phi1 = phi(k, layer + 1), dphi = wrap_angle(phi1 - phi0);
     const double error = std::max(step_error(*lattice_, layer, 0, rows_[k - 1].branch & (kBranches - 1), phi0, dphi),
                                   step_error(*lattice_, layer, 1, rows_[k].branch & (kBranches - 1), phi1, dphi));

@@ -45,7 +45,7 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
 std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {
   if (!lattice_->has_own_rows()) return q;
   auto& rows = rows_[static_cast<std::size_t>(worker)];
-  // Neighbours along the path and along the arm angle must not share a place.
+  // Neighbours along the path and along the coordinate must not share a place.
   const auto place = (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) % rows.size();
   Row& row = rows[place];
   if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->row(layer, slot, q)};

@@ -8,7 +8,7 @@
 
 #include "measure_rows.hpp"
 #include "nearest_approach.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/arm_angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/validate.hpp"
@@ -16,13 +16,6 @@
 namespace swivel {
 
 namespace {
-
-/// Measured between the base's vertical and the elbow, in the plane normal to S->W: the convention of vendors and of Shimizu 2008.
-double conventional_arm_angle(const SrsArm& arm, const Pose& tool, const Config& q) {
-  const double axis_angle = first_plane(arm, tool).angle_of(arm.elbow_axis(q));
-  return wrap_angle(axis_angle +
-                    (std::sin(arm.elbow_angle(q)) > 0 ? kPi : 0));  // axis 4 stands at a right angle to the elbow, by its sign
-}
 
 void measure_tool_path_error(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& trajectory,
                              const Budget& budget, Measures& result) {

@@ -9,52 +9,18 @@
 #include <utility>
 
 #include "asked_hooks.hpp"
-#include "swivel/core/alignment.hpp"
 #include "swivel/core/angle.hpp"
-#include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/arc_lengths.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"
+#include "swivel/core/redundancy.hpp"
 #include "swivel/core/smooth_path.hpp"
-#include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {
 
 namespace {
 
-constexpr double kFarthest = 1;  // rad, that an arm angle may move
-
-/// The arm angle of each layer, about the angle that it had; branches and joint images stay.
-class ArmAngles final : public LayerSolver {
- public:
-  ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows) : lattice_(&lattice), rows_(&rows) {
-    for (int i = 0; i < layers(); ++i) {
-      const Pose& tool = lattice.path().layer(i).tool;
-      reachable_.push_back(reach_status(lattice.arm(), lattice.plane(i).reach) == ReachStatus::kReachable);
-      circles_.push_back(reachable_.back() ? elbow_circles(lattice.arm(), lattice.plane(i), tool) : std::array<ElbowCircle, 2>{});
-    }
-  }
-  [[nodiscard]] int layers() const override { return lattice_->layers(); }
-  [[nodiscard]] double travel(int layer) const override { return lattice_->path().layer(layer).travel; }
-  [[nodiscard]] std::optional<Config> joints(int layer, double angle) const override {
-    const auto i = static_cast<std::size_t>(layer);
-    const TrajectoryRow& row = (*rows_)[i];
-    if (!reachable_[i]) return std::nullopt;
-    std::optional<Config> q = srs_ik(lattice_->arm(), circles_[i], angle, row.branch);
-    if (!lattice_->arm().exact)
-      q = polish(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), lattice_->path().layer(layer).tool, angle, *q);
-    if (!q) return std::nullopt;
-    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
-    return q;
-  }
-
- private:
-  const SrsLattice* lattice_;
-  const std::vector<TrajectoryRow>* rows_;
-  std::vector<bool> reachable_;
-  std::vector<std::array<ElbowCircle, 2>> circles_;
-};
+constexpr double kFarthest = 1;  // rad, that a coordinate may move
 
 /// Every so many layers of another solver, its first and its last among them.
 class EveryFew final : public LayerSolver {
@@ -101,74 +67,6 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   return x;
 }
 
-/// What refinement asks of an arm of some class.
-class Redundancy {
- public:
-  /// The arguments must outlive it.
-  Redundancy(const PreparedRobot& robot, const Problem& problem, const ToolPath& path, const Budget& budget)
-      : arm_(&robot.arm_class()) {
-    const Chain& chain = robot.arm().chain;
-    if (arm_->srs) {
-      auto grid = std::make_unique<SrsLattice>(chain, *arm_->srs, path, problem, budget);
-      grid_ = grid.get();
-      lattice_ = std::move(grid);
-    } else {
-      // Without nodes, which refinement has no use for.
-      lattice_ = std::make_unique<ExplicitLattice>(
-          chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size())));
-      alignments_ = alignments_of(chain);
-    }
-  }
-  [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
-  /// Of S-R-S arms, else null.
-  [[nodiscard]] const SrsLattice* grid() const { return grid_; }
-
-  /// The phi of rows becomes the coordinate that moves, about the joints that they have: the arm angle without jumps, or the length
-  /// along the self-motion from there.
-  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const {
-    if (grid_) {
-      for (std::size_t i = 1; i < rows.size(); ++i) rows[i].phi = rows[i - 1].phi + wrap_angle(rows[i].phi - rows[i - 1].phi);
-      return std::make_unique<ArmAngles>(*grid_, rows);
-    }
-    std::vector<Config> origins;
-    for (TrajectoryRow& row : rows) {
-      row.phi = 0;
-      origins.push_back(row.q);
-    }
-    return std::make_unique<ArcLengths>(lattice_->chain(), lattice_->path(), std::move(origins));
-  }
-  /// And phi and branch again what they are in trajectories.
-  void label(std::vector<TrajectoryRow>& rows) const {
-    for (TrajectoryRow& row : rows) {
-      if (grid_) {
-        row.phi = wrap_angle(row.phi);
-      } else {
-        row.phi = arc_angle(lattice_->chain(), row.q);
-        row.branch = arc_branch(lattice_->chain(), arm_->lock, row.q);
-      }
-    }
-  }
-  /// rad, of the coordinate from a layer to the next: what the lattice's window allows.
-  [[nodiscard]] double most_change() const { return grid_ ? grid_->most_turn() : std::numeric_limits<double>::infinity(); }
-  /// Sine of the angle nearest to singular.
-  [[nodiscard]] double singular_sine(const Config& q) const {
-    double least = 1;
-    if (grid_) {
-      const SrsArm& arm = grid_->arm();
-      return std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
-                       std::abs(std::sin(arm.wrist_angle(q)))});
-    }
-    for (const Alignment& a : alignments_) least = std::min(least, std::abs(std::sin(a.away(q))));
-    return least;
-  }
-
- private:
-  const ArmClass* arm_;
-  std::unique_ptr<Lattice> lattice_;
-  const SrsLattice* grid_ = nullptr;
-  std::vector<Alignment> alignments_;  // of arms without a grid
-};
-
 /// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
 class Judge {
  public:
@@ -212,11 +110,7 @@ class Judge {
       return false;
     if (limits.tool_angle_error && !within(angle_deviation(chain, lattice_->path(), layer, a.q, move), *limits.tool_angle_error))
       return false;
-    if (limits.step_error)
-      for (const int end : {0, 1})
-        if (!(step_error(*redundancy_->grid(), layer, end, (end == 0 ? a : b).branch, (end == 0 ? a : b).phi, b.phi - a.phi) <=
-              *limits.step_error))
-          return false;
+    if (limits.step_error && !(redundancy_->step_error(layer, a, b) <= *limits.step_error)) return false;
     if (limits.edges == EdgeMode::kContinuous && edge_blocked(between_, rule_, a.q, b.q, budget_)) return false;
     if (!check_.checks_motions()) return true;
     const StateCheck::Motion motion{a.q, b.q};
@@ -409,7 +303,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   coarse.limits.joint_step *= times;
   const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
   // Each waypoint is a layer: where these are dense the nodes are those of the first path, as far as they are not of a finer grid.
-  if (!redundancy.grid() && 4 * path.size() > 3 * redundancy.lattice().layers()) return std::nullopt;
+  if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers()) return std::nullopt;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
@@ -422,7 +316,6 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   const auto motion = make_path_motion(robot.arm().chain, robot.arm_class(), path, found.trajectory);
   if (!motion->jumps().empty()) return std::nullopt;
   const Lattice& lattice = redundancy.lattice();
-  const SrsLattice* grid = redundancy.grid();
   std::vector<TrajectoryRow> rows;
   for (int i = 0; i < lattice.layers(); ++i) {
     TrajectoryRow row;
@@ -430,7 +323,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
     const auto q = i == 0 ? found.trajectory[0].q : motion->joints(lattice.path().layer(i).travel);
     if (!q) return std::nullopt;
     row.q = *q;
-    if (grid) row.phi = grid->plane(i).angle_of(grid->arm().elbow_axis(*q));
+    row.phi = redundancy.coordinate(i, *q);
     row.branch = found.trajectory[0].branch;
     rows.push_back(row);
   }
@@ -462,7 +355,8 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
-  const Redundancy redundancy(robot, problem, path, budget);
+  const std::unique_ptr<const Redundancy> made = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
+  const Redundancy& redundancy = *made;
   const Lattice& lattice = redundancy.lattice();
   Judge judge(robot, problem, redundancy, options, budget);
   Refined result;

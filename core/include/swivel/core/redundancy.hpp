@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "swivel/core/arm_class.hpp"
+#include "swivel/core/budget.hpp"
+#include "swivel/core/lattice.hpp"
+#include "swivel/core/layer_solver.hpp"
+#include "swivel/core/plan.hpp"
+
+namespace swivel {
+
+/// The degree of freedom that a tool path leaves to an arm, as one coordinate in each layer: what refinement knows of an arm.
+class Redundancy {
+ public:
+  virtual ~Redundancy() = default;
+  Redundancy(const Redundancy&) = delete;
+  Redundancy& operator=(const Redundancy&) = delete;
+
+  /// The rules of nodes and edges along the path; it need not list its nodes.
+  [[nodiscard]] virtual const Lattice& lattice() const = 0;
+  /// Whether nodes are those of a grid in the coordinate, as fine as the resolution says.
+  [[nodiscard]] virtual bool has_grid() const = 0;
+  /// The phi of rows becomes the coordinate, about the joints that they have. The rows must outlive the solver.
+  [[nodiscard]] virtual std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const = 0;
+  /// A coordinate of joints at a layer, rad; solver() makes it continuous along the rows.
+  [[nodiscard]] virtual double coordinate(int layer, const Config& q) const = 0;
+  /// The phi and branch of rows become again what they are in trajectories.
+  virtual void label(std::vector<TrajectoryRow>& rows) const = 0;
+  /// Of the coordinate from a layer to the next, rad: what the lattice's window allows.
+  [[nodiscard]] virtual double most_change() const = 0;
+  /// Sine of the angle nearest to singular.
+  [[nodiscard]] virtual double singular_sine(const Config& q) const = 0;
+  /// Step error (docs/model.md) of the edge from `a`, at a layer, to `b`: the larger of both ends. Only where limits.step_error may
+  /// be given.
+  [[nodiscard]] virtual double step_error(int layer, const TrajectoryRow& a, const TrajectoryRow& b) const = 0;
+
+ protected:
+  Redundancy() = default;
+};
+
+/// The arm angle of S-R-S arms, of others the length along the self-motion. All arguments but the problem must outlive it.
+[[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
+                                                                const Problem& problem, const Budget& budget);
+
+}  // namespace swivel

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/redundancy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "swivel/core/alignment.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/arc_lengths.hpp"
+#include "swivel/core/arm_angle.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// The arm angle of each layer, about the angle that it had; branches and joint images stay.
+class ArmAngles final : public LayerSolver {
+ public:
+  ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows) : lattice_(&lattice), rows_(&rows) {
+    for (int i = 0; i < layers(); ++i) {
+      const Pose& tool = lattice.path().layer(i).tool;
+      reachable_.push_back(reach_status(lattice.arm(), lattice.plane(i).reach) == ReachStatus::kReachable);
+      circles_.push_back(reachable_.back() ? elbow_circles(lattice.arm(), lattice.plane(i), tool) : std::array<ElbowCircle, 2>{});
+    }
+  }
+  [[nodiscard]] int layers() const override { return lattice_->layers(); }
+  [[nodiscard]] double travel(int layer) const override { return lattice_->path().layer(layer).travel; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double angle) const override {
+    const auto i = static_cast<std::size_t>(layer);
+    const TrajectoryRow& row = (*rows_)[i];
+    if (!reachable_[i]) return std::nullopt;
+    std::optional<Config> q = srs_ik(lattice_->arm(), circles_[i], angle, row.branch);
+    if (!lattice_->arm().exact)
+      q = polish(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), lattice_->path().layer(layer).tool, angle, *q);
+    if (!q) return std::nullopt;
+    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
+    return q;
+  }
+
+ private:
+  const SrsLattice* lattice_;
+  const std::vector<TrajectoryRow>* rows_;
+  std::vector<bool> reachable_;
+  std::vector<std::array<ElbowCircle, 2>> circles_;
+};
+
+class ArmAngleRedundancy final : public Redundancy {
+ public:
+  ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
+      : grid_(chain, arm, path, problem, budget) {}
+  [[nodiscard]] const Lattice& lattice() const override { return grid_; }
+  [[nodiscard]] bool has_grid() const override { return true; }
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
+    for (std::size_t i = 1; i < rows.size(); ++i) rows[i].phi = rows[i - 1].phi + wrap_angle(rows[i].phi - rows[i - 1].phi);
+    return std::make_unique<ArmAngles>(grid_, rows);
+  }
+  [[nodiscard]] double coordinate(int layer, const Config& q) const override {
+    return arm_angle(grid_.arm(), grid_.plane(layer), q);
+  }
+  void label(std::vector<TrajectoryRow>& rows) const override {
+    for (TrajectoryRow& row : rows) row.phi = wrap_angle(row.phi);
+  }
+  [[nodiscard]] double most_change() const override { return grid_.most_turn(); }
+  [[nodiscard]] double singular_sine(const Config& q) const override {
+    const SrsArm& arm = grid_.arm();
+    return std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
+                     std::abs(std::sin(arm.wrist_angle(q)))});
+  }
+  [[nodiscard]] double step_error(int layer, const TrajectoryRow& a, const TrajectoryRow& b) const override {
+    return std::max(swivel::step_error(grid_, layer, 0, a.branch, a.phi, b.phi - a.phi),
+                    swivel::step_error(grid_, layer, 1, b.branch, b.phi, b.phi - a.phi));
+  }
+
+ private:
+  SrsLattice grid_;
+};
+
+class ArcLengthRedundancy final : public Redundancy {
+ public:
+  ArcLengthRedundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem)
+      : arm_(&arm),
+        // Without nodes, which refinement has no use for.
+        lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
+        alignments_(alignments_of(chain)) {}
+  [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
+  [[nodiscard]] bool has_grid() const override { return false; }
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
+    std::vector<Config> origins;
+    for (TrajectoryRow& row : rows) {
+      row.phi = 0;
+      origins.push_back(row.q);
+    }
+    return std::make_unique<ArcLengths>(lattice_.chain(), lattice_.path(), std::move(origins));
+  }
+  [[nodiscard]] double coordinate(int, const Config&) const override { return 0; }  // lengths begin at the joints
+  void label(std::vector<TrajectoryRow>& rows) const override {
+    for (TrajectoryRow& row : rows) {
+      row.phi = arc_angle(lattice_.chain(), row.q);
+      row.branch = arc_branch(lattice_.chain(), arm_->lock, row.q);
+    }
+  }
+  [[nodiscard]] double most_change() const override { return std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] double singular_sine(const Config& q) const override {
+    double least = 1;
+    for (const Alignment& a : alignments_) least = std::min(least, std::abs(std::sin(a.away(q))));
+    return least;
+  }
+  [[nodiscard]] double step_error(int, const TrajectoryRow&, const TrajectoryRow&) const override {
+    throw std::logic_error("step error of an arm without an arm angle");
+  }
+
+ private:
+  const ArmClass* arm_;
+  ExplicitLattice lattice_;
+  std::vector<Alignment> alignments_;
+};
+
+}  // namespace
+
+std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
+                                                  const Problem& problem, const Budget& budget) {
+  if (arm.srs) return std::make_unique<ArmAngleRedundancy>(chain, *arm.srs, path, problem, budget);
+  return std::make_unique<ArcLengthRedundancy>(chain, arm, path, problem);
+}
+
+}  // namespace swivel
