@@ -14,6 +14,16 @@ double EdgeRule::motion(const Config& q0, const Config& q1, int first, int last)
   return bound;
 }
 
+double EdgeRule::bend(const Config& dq) const {
+  double sum = 0, before = 0;  // of joints before j
+  for (int j = 0; j < kDof; ++j) {
+    const double turn = std::abs(dq[j]);
+    sum += turn * (2 * before + turn) * radii[j];
+    before += turn;
+  }
+  return sum / 2;
+}
+
 std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tolerance) const {
   const double bound = motion(q0, q1);
   std::int64_t n = 1;
@@ -23,16 +33,20 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 
 namespace {
 
-/// below(q, level, likely) names a pair too near, or none. No pair comes nearer by more than `bound` on the whole motion.
-template <class Below>
-std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, const Budget& budget,
-                               const Below& below) {
+/// below(q, level, likely) names a pair too near, or none; below_on(stretch, q, level) as well, of a stretch about q. No pair comes
+/// nearer by more than `bound` on the whole motion, and no point's path bends by more than `bend` on half of it.
+template <class Below, class BelowOn>
+std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double bend,
+                               const Budget& budget, const Below& below, const BelowOn& below_on) {
   const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
   std::vector<std::int64_t> open{0}, next;  // first leaves of the intervals of this size that are not decided yet
   for (std::int64_t size = leaves; !open.empty(); size /= 2) {
     const double half_bound = step * static_cast<double>(size) / 2;
+    const double share = static_cast<double>(size) / static_cast<double>(leaves);
+    // All bounds hold up to the ends, half a leaf beyond the midpoints that count: what lies between must cover how FCL errs.
+    const Stretch stretch{share / 2 * delta, share * share * bend, step / 2};
     next.clear();
     for (const std::int64_t first : open) {
       budget.poll();
@@ -42,7 +56,7 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
         if (const auto pair = below(q, Keep::kMidpoint, std::nullopt)) return pair;
         continue;
       }
-      const auto likely = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt);
+      const auto likely = below_on(stretch, q, Level(Keep::kMidpoint, half_bound));
       if (!likely) continue;
       if (const auto pair = below(q, Keep::kMotion, likely)) return pair;
       next.push_back(first);
@@ -64,7 +78,9 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
     return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
-  return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, budget, this_one).has_value();
+  return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one,
+                [&](const Stretch&, const Config& q, const Level& level) { return this_one(q, level, {}); })
+      .has_value();
 }
 
 }  // namespace
@@ -78,7 +94,13 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
     if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
     return pair;
   };
-  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), budget, any)) return pair;
+  const auto any_on = [&](const Stretch& stretch, const Config& q, const Level& level) {
+    const auto pair = query.next_below_on(stretch, q, level);
+    if (spare && !pair) *spare = std::min(*spare, query.spare(level));
+    return pair;
+  };
+  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any, any_on))
+    return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
   return std::nullopt;
@@ -91,7 +113,9 @@ bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& 
   const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
     return query.pair_below(q, pair, level) ? std::optional(pair) : std::nullopt;
   };
-  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), budget, this_one).has_value();
+  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one,
+                [&](const Stretch&, const Config& q, const Level& level) { return this_one(q, level, {}); })
+      .has_value();
 }
 
 }  // namespace swivel

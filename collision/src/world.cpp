@@ -266,6 +266,13 @@ struct World::Query::Impl {
   std::vector<double> lower_bound;    // by pair, m
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
   std::vector<std::size_t> open;      // pairs whose bound does not prove them free
+  // For next_below_on.
+  std::optional<Stretch> stretch;
+  /// What the joints of a stretch move a group of bodies by, to first order: a point x by `origin` + turn x x, base frame.
+  struct Twist {
+    Vector3d turn = Vector3d::Zero(), origin = Vector3d::Zero();  // rad, m
+  };
+  std::array<Twist, kDof + 1> twists;
 
   Impl(const World::Impl& w, Certificates c)
       : world(&w),
@@ -308,6 +315,37 @@ struct World::Query::Impl {
     for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) place_body(i);
   }
 
+  void begin(const Stretch& asked) {
+    stretch = asked;
+    place_bodies();
+    const Chain& chain = world->robot->chain;
+    for (int j = 0; j < displaced; ++j) {
+      const auto k = static_cast<std::size_t>(j);
+      const Vector3d turn = asked.half[j] * (displacements[k].linear() * chain.axis[k]);
+      twists[k + 1] = {twists[k].turn + turn, twists[k].origin + (displacements[k] * chain.point[k]).cross(turn)};
+    }
+  }
+  /// How much nearer two bodies can come on the stretch, to first order: how fast the one that more joints move goes, as seen from
+  /// the other.
+  [[nodiscard]] double comes_nearer(const BodyPair& p) const {
+    const int group_a = world->body(p.a).group, group_b = world->body(p.b).group;
+    const int mover = group_b > group_a ? p.b : p.a;
+    const Twist &far = twists[static_cast<std::size_t>(std::max(group_a, group_b))],
+                &near = twists[static_cast<std::size_t>(std::min(group_a, group_b))];
+    const Vector3d turn = far.turn - near.turn;
+    const PlacedBound& at = placed_bound(mover);
+    double speed = (far.origin - near.origin + turn.cross(at.center)).norm();
+    for (int k = 0; k < 3; ++k)
+      if (const double half = bound(mover).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
+    return speed;
+  }
+  /// What is asked of one of the world's pairs, m.
+  [[nodiscard]] double required(std::size_t k, const Level& level) const {
+    const double d = world->required(k, level);
+    if (!stretch || !(level.more > 0)) return d;
+    return std::min(d, world->required(k, level.keep) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
+  }
+
   std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& likely, bool keep) {
     all_certified = certificates != Certificates::kOff;
     const auto found = first(level, likely, keep && all_certified);
@@ -320,7 +358,7 @@ struct World::Query::Impl {
     if (keep) return first_open(level, likely);
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
-      const double d = world->required(k, level);
+      const double d = required(k, level);
       if (d >= 0 && p != likely && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
     }
     return std::nullopt;
@@ -330,7 +368,7 @@ struct World::Query::Impl {
     find_open(level);
     for (const std::size_t k : open) {
       const BodyPair& p = world->pairs[k];
-      const double d = world->required(k, level);
+      const double d = required(k, level);
       if (d >= 0 && p != likely && is_below(p, d, renewed(k, d))) return p;
     }
     return std::nullopt;
@@ -388,7 +426,7 @@ struct World::Query::Impl {
   [[nodiscard]] double spare(const Level& level) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < lower_bound.size(); ++k)
-      if (const double d = world->required(k, level); d >= 0) {
+      if (const double d = required(k, level); d >= 0) {
         const double here = lower_bound[k] - moved_together(world->pairs[k]) - d - kKeptSafety;
         if (!(here >= 0)) return -1;  // NaN
         least = std::min(least, here);
@@ -403,6 +441,12 @@ struct World::Query::Impl {
       found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, level) + kKeptSafety);  // NaN is open
     }
     open.resize(found);
+    if (stretch) {
+      std::erase_if(open, [&](std::size_t k) {
+        return lower_bound[k] - moved_together(world->pairs[k]) >= required(k, level) + kKeptSafety;
+      });
+      found = open.size();
+    }
     own.pairs_kept += static_cast<std::int64_t>(lower_bound.size() - found);
   }
   /// certify_pair, which also renews the bound.
@@ -433,12 +477,20 @@ World::Query& World::Query::operator=(Query&&) noexcept = default;
 
 std::optional<BodyPair> World::Query::first_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
+  impl_->stretch.reset();
   return impl_->first_below(level, likely, false);
 }
 
 std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
+  impl_->stretch.reset();
   return impl_->first_below(level, likely, true);
+}
+
+std::optional<BodyPair> World::Query::next_below_on(const Stretch& stretch, const Config& q, const Level& level) {
+  impl_->move_to(q);
+  impl_->begin(stretch);
+  return impl_->first_below(level, {}, true);
 }
 
 double World::Query::spare(const Level& level) const {

@@ -192,6 +192,76 @@ TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
   EXPECT_LE(in_band, 3);
 }
 
+TEST(EdgeRule, NoPathBendsFurther) {
+  Random random(44);
+  const RobotModel robot = capsule_arm();
+  const ArmModel arm = arm_of(robot);
+  const World world(robot, arm, problem_for(robot));
+  const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
+  double most = 0;  // of the bound
+  int tried = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Config q = random.config(2.5), half = random.config(random.uniform(0.01, 0.5));
+    for (const RobotBody& body : world.bodies()) {
+      if (body.group == 0) continue;
+      const auto at = [&](double t) -> Vector3d {
+        return arm.chain.displacements(q + t * half)[static_cast<std::size_t>(body.group)] * body.pose.translation();
+      };
+      constexpr double kSmall = 1e-4;
+      const Vector3d velocity = (at(kSmall) - at(-kSmall)) / (2 * kSmall);
+      for (const double t : {-1.0, 1.0}) {
+        const double bent = (at(t) - at(0) - t * velocity).norm();
+        EXPECT_LE(bent, rule.bend(half) + 1e-7);
+        most = std::max(most, bent / rule.bend(half));
+        ++tried;
+      }
+    }
+  }
+  std::printf("%d paths of points, at most %.2f of the bound\n", tried, most);
+  EXPECT_GT(most, 0.3);  // the bound is of the right size
+}
+
+/// Stretches that are proved by the speed of their bodies are free throughout, and many of them are not by how far joints could
+/// move anything.
+TEST(Stretch, NoPairComesNearerThanSaid) {
+  Random random(43);
+  const RobotModel robot = capsule_arm();
+  const ArmModel arm = arm_of(robot);
+  const World base(robot, arm, problem_for(robot));
+  const EdgeRule rule = base.edge_rule(motion_radii(arm.chain, base.bodies()));
+  constexpr double kNoBound = 100;  // m
+  int proved = 0, by_speed_alone = 0, refused = 0;
+  for (int w = 0; w < 60; ++w) {
+    const World world(base, random_scene(random));
+    for (const Certificates certificates : {Certificates::kOn, Certificates::kOff}) {
+      World::Query query(world, certificates), plain(world);
+      for (int k = 0; k < 40; ++k) {
+        Config q = random.config(1.5);
+        for (int again = 0; again < 20 && plain.first_below(q, 0.01); ++again) q = random.config(1.5);
+        Stretch stretch;
+        stretch.half = random.config(random.uniform(0, 0.15));
+        stretch.bend = rule.bend(stretch.half);
+        const auto free = [&](double reserve) {
+          stretch.reserve = reserve;
+          return !query.next_below_on(stretch, q, Level(Keep::kMidpoint, kNoBound));
+        };
+        ++(free(0) ? proved : refused);
+        if (!free(0)) continue;
+        by_speed_alone += plain.first_below(q, Level(Keep::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
+        double least = 0, most = 1;  // m: as much as can be asked for besides
+        while (most - least > kTau / 4) (free((least + most) / 2) ? least : most) = (least + most) / 2;
+        for (int i = -10; i <= 10; ++i)
+          ASSERT_FALSE(plain.first_below(q + i / 10.0 * stretch.half, Level(Keep::kMidpoint, least - kTau)))
+              << w << " " << k << " " << i;
+      }
+    }
+  }
+  std::printf("%d stretches proved, %d of them by speed alone, %d refused\n", proved, by_speed_alone, refused);
+  EXPECT_GT(proved, 1000);
+  EXPECT_GT(by_speed_alone, 300);
+  EXPECT_GT(refused, 300);
+}
+
 TEST(EdgeBlocked, StandingStill) {
   const RobotModel robot = capsule_arm();
   const World world(robot, arm_of(robot), problem_for(robot));

@@ -67,15 +67,15 @@ constexpr Work kTable[] = {
     {"experiment_b", kEager, kNodes, 6927, 37300, 8690, 0, 3409, 0, 26208, 156468, 8072},
     {"experiment_b", kEagerDp, kNodes, 6927, 1838, 8690, 0, 0, 0, 26208, 156468, 9908},
     {"experiment_b", kLazy, kNodes, 3372, 100, 2, 3370, 303, 3, 130496, 127583, 10621},
-    {"experiment_b", kLazy, kContinuous, 3372, 100, 2, 3590, 303, 3, 130496, 127583, 10809},
+    {"experiment_b", kLazy, kContinuous, 3372, 100, 2, 3470, 303, 3, 130496, 127583, 10809},
     {"experiment_b", kParallel, kNodes, 3377, 100, 1, 3376, 303, 3, 130496, 127703, 8013},
-    {"experiment_b", kParallel, kContinuous, 3377, 100, 1, 3596, 303, 3, 130496, 127703, 8200},
+    {"experiment_b", kParallel, kContinuous, 3377, 100, 1, 3476, 303, 3, 130496, 127703, 8200},
     {"experiment_c", kEager, kNodes, 11000, 136596, 11144, 0, 11000, 0, 37296, 659664, 1096},
     {"experiment_c", kEagerDp, kNodes, 11000, 8084, 11144, 0, 0, 0, 37296, 659664, 9508},
     {"experiment_c", kLazy, kNodes, 109, 108, 0, 109, 109, 1, 33288, 26720, 1250},
-    {"experiment_c", kLazy, kContinuous, 109, 108, 4, 387, 109, 1, 33288, 26720, 1494},
+    {"experiment_c", kLazy, kContinuous, 109, 108, 0, 217, 109, 1, 33288, 26720, 1494},
     {"experiment_c", kParallel, kNodes, 109, 108, 0, 109, 109, 1, 33288, 26720, 1036},
-    {"experiment_c", kParallel, kContinuous, 109, 108, 4, 387, 109, 1, 33288, 26720, 1281},
+    {"experiment_c", kParallel, kContinuous, 109, 108, 0, 217, 109, 1, 33288, 26720, 1281},
     // clang-format on
 };
 

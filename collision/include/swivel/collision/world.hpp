@@ -61,6 +61,15 @@ struct Level {
   double more = 0;  ///< m; no pair is below a level less than zero
 };
 
+/// A stretch of a motion that is straight in joint space, from q - half to q + half about its middle posture q. How much nearer a
+/// pair can come on it than at q: by the speed of its bodies there, and by how far a point's path can bend away from its tangent
+/// (docs/theory.md, Lemma 9).
+struct Stretch {
+  Config half = Config::Zero();  ///< rad
+  double bend = 0;               ///< m, of any point; EdgeRule::bend(half)
+  double reserve = 0;            ///< m, asked for besides
+};
+
 /// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. docs/model.md.
 inline constexpr double kVerdictBand = 0.05e-3;
 
@@ -79,6 +88,9 @@ struct EdgeRule {
   std::vector<Near> near;
   /// A bound on how far any point moves, m: sum |dq_j| R_j; for joints first <= j < last: as seen from the link below them.
   [[nodiscard]] double motion(const Config& q0, const Config& q1, int first = 0, int last = kDof) const;
+  /// A bound on how far a point's place at q + dq is from where its velocity at q would bring it, m: sum |dq_i dq_j| R_max(i,j)
+  /// / 2.
+  [[nodiscard]] double bend(const Config& dq) const;
   /// Number of midpoints N: the smallest power of two with B / (2 N) <= tolerance, B = motion of all joints.
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1, double tolerance) const;
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1) const { return midpoints(q0, q1, h); }
@@ -170,8 +182,10 @@ class World {
     /// With Certificates::kOff nothing is kept.
     [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, const Level& level,
                                                      const std::optional<BodyPair>& likely = {});
-    /// At the posture of the last next_below, which named no pair at this level: as FCL sees it, every pair's clearance is more
-    /// than its level by this, m; less than 0 where that is not known.
+    /// The same, where more than the level's Keep is asked of a pair only as far as it can come nearer on the stretch about q.
+    [[nodiscard]] std::optional<BodyPair> next_below_on(const Stretch& stretch, const Config& q, const Level& level);
+    /// At the posture of the last next_below or next_below_on, which named no pair at this level: as FCL sees it, every pair's
+    /// clearance is more than what was asked of it by this, m; less than 0 where that is not known.
     [[nodiscard]] double spare(const Level& level) const;
     /// Of the pair that one of these has just named: its clearance is proved below its level by more than FCL may err.
     [[nodiscard]] bool certified() const;
@@ -207,10 +221,10 @@ class World {
 };
 
 /// None when every pair is clear by its PairKeeps::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes too near.
-/// N is of the pair's own h. By bisection, coarse to fine: an interval is free when its middle is clear by as much as the interval
-/// can move, blocked when its middle is below PairKeeps::motion. The query is of the world that the rule is of, and keeps
-/// clearances from one motion to the next, as from one posture to the next. `spare`, where there is no such pair and none is near
-/// by design: it would be the same if scene objects stood elsewhere by less than this, m. Throws Stopped.
+/// N is of the pair's own h. By bisection, coarse to fine: an interval is free when each pair is clear in its middle by as much as
+/// it can come nearer within the interval, blocked when its middle is below PairKeeps::motion. The query is of the world that the
+/// rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `spare`, where there is no such
+/// pair and none is near by design: it would be the same if scene objects stood elsewhere by less than this, m. Throws Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                                    const Budget& budget = {}, double* spare = nullptr);
 /// Whether one pair of the world is what blocks it, whatever others do: too near at one of the midpoints. Throws Stopped.
