@@ -256,7 +256,8 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
 }  // namespace
 
 std::string to_json(const CampaignSummary& summary) {
-  const Json json = {{"episodes", summary.episodes},
+  const Json json = {{"schema_version", kResultVersion},
+                     {"episodes", summary.episodes},
                      {"answered", summary.answered()},
                      {"solved", summary.solved},
                      {"infeasible", summary.infeasible},

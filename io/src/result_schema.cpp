@@ -336,6 +336,25 @@ Schema plan_result() {
       });
 }
 
+Schema campaign_summary() {
+  const auto spread = [] {
+    return section("", {key("median", number(), "half of them are below"), key("p5", number(), "5 % are below"),
+                        key("p95", number(), "5 % are above")});
+  };
+  return section("campaign",
+                 {
+                     key("schema_version", integer(kResultVersions), "1, as of [results](#result-json)"),
+                     key("episodes", integer(), "of this shard"),
+                     key("answered", integer(), "of these: the others were not planned when the campaign was stopped"),
+                     key("solved", integer(), "with a path"),
+                     key("infeasible", integer(), "without a path"),
+                     key("errors", integer(), "with an internal error"),
+                     key("plan_ms", spread(), "finding the answer: `median`, `p5`, `p95` over the episodes answered", "ms"),
+                     key("nodes_checked", spread(), "the same of this counter"),
+                     key("fcl_calls", spread(), "the same of this counter"),
+                 });
+}
+
 Schema error_result() {
   return section("", {key("schema_version", integer(kResultVersions), "as of other results"),
                       key("status", one_of({"error"}), "it failed"), key("message", text(), "why")});
@@ -345,6 +364,10 @@ Schema error_result() {
 
 const Schema& result_schema() {
   static const Schema schema = either(plan_result(), error_result());
+  return schema;
+}
+const Schema& campaign_schema() {
+  static const Schema schema = campaign_summary();
   return schema;
 }
 

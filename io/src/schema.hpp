@@ -104,6 +104,7 @@ inline constexpr int kResultVersion = 1;
 /// Each of one kind of file; of CSV files that of a row, whose keys are the columns.
 [[nodiscard]] const Schema& problem_schema();
 [[nodiscard]] const Schema& result_schema();
+[[nodiscard]] const Schema& campaign_schema();
 [[nodiscard]] const Schema& trajectory_schema();
 [[nodiscard]] const Schema& motion_schema();
 

@@ -197,11 +197,15 @@ std::string result_json_schema() {
   return document("Result of swivel plan --json", result_schema(), Absent::kIsAbsent);
 }
 
+std::string campaign_json_schema() {
+  return document("Summary of swivel campaign --json", campaign_schema(), Absent::kIsAbsent);
+}
+
 std::string schema_tables() {
   std::set<std::string> known;
   std::string text;
   add_tables(problem_schema(), Absent::kMayBeNull, known, text);
-  for (const Schema* const schema : {&trajectory_schema(), &motion_schema(), &result_schema()})
+  for (const Schema* const schema : {&trajectory_schema(), &motion_schema(), &result_schema(), &campaign_schema()})
     add_tables(*schema, Absent::kIsAbsent, known, text);
   return text;
 }

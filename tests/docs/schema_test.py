@@ -157,6 +157,17 @@ class Results(unittest.TestCase):
         self.assertGreaterEqual(statuses, {"solved", "infeasible", "timeout"})
         print(len(known), "keys of results seen" + ("" if jsonschema else "; values not judged: python3-jsonschema is missing"), file=sys.stderr)
 
+    def test_summaries_of_campaigns_too(self):
+        of_campaigns = schema("campaign")
+        for out in (self.folder.name + "/rows.csv", self.folder.name + "/rows.csv"):  # planned, then read again
+            done = swivel("campaign", PROBLEMS / "experiment_c.yaml", "--episodes", 3, "--ds", 0.02, "--dphi", 0.2, "--out", out, "--json", "-")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            summary = json.loads(done.stdout)
+            self.assertEqual((summary["schema_version"], summary["answered"]), (1, 3))
+            self.assertEqual(set(keys_of(summary, set())), set(keys_of_schema(of_campaigns)))
+            if jsonschema:
+                validator(of_campaigns).validate(summary)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -9,6 +9,8 @@ namespace swivel::io {
 [[nodiscard]] std::string problem_json_schema();
 /// The same of RESULT.json.
 [[nodiscard]] std::string result_json_schema();
+/// The same of the summary of a campaign.
+[[nodiscard]] std::string campaign_json_schema();
 
 /// The tables of docs/formats.md in Markdown, each between "<!-- schema NAME -->" and "<!-- /schema -->".
 [[nodiscard]] std::string schema_tables();
