@@ -10,13 +10,11 @@ import pickle
 import re
 import shutil
 import signal
-import statistics
 import subprocess
 import sys
 import tarfile
 import tempfile
 import threading
-import time
 import unittest
 import zipfile
 from pathlib import Path
@@ -43,6 +41,14 @@ def endless():
 
 
 LONG = "eager_dp"
+
+
+class Enough(Exception):
+    """Ends an endless plan."""
+
+
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
 
 
 def arm(**keywords):
@@ -340,84 +346,87 @@ class Functions(unittest.TestCase):
 
     def test_progress(self):
         seen = []
-        swivel.plan(endless(), planner=LONG, timeout=0.5, progress=lambda stage, done, of: seen.append((stage, done, of)))
-        print("progress:", len(seen), "times, stages", sorted({stage for stage, _, _ in seen}))
-        self.assertGreaterEqual(len(seen), 2)
+
+        def progress(stage, done, of):
+            seen.append((stage, done, of))
+            if len(seen) == 20:
+                raise Enough
+
+        with self.assertRaises(Enough):
+            swivel.plan(endless(), planner=LONG, progress=progress)
+        print("stages", sorted({stage for stage, _, _ in seen}))
         self.assertTrue(all(isinstance(stage, str) and done >= 0 for stage, done, _ in seen))
 
 
 class Interrupts(unittest.TestCase):
+    """Signals are sent by functions that a plan calls, so that it is certainly under way; it would take minutes."""
+
     def test_ctrl_c_stops_a_plan(self):
-        waits = []
-        for after in (0.03, 0.1, 0.2, 0.4, 0.8, 1.2):
-            planner = swivel.Planner(endless())
-            sent = []
+        for after in (1, 2, 3, 5, 10, 20):
+            planner, calls = swivel.Planner(endless()), []
 
-            def interrupt():
-                sent.append(time.perf_counter())
-                os.kill(os.getpid(), signal.SIGINT)
+            def progress(*_):
+                calls.append(None)
+                if len(calls) == after:
+                    interrupt()
 
-            timer = threading.Timer(after, interrupt)
-            timer.start()
             with self.assertRaises(KeyboardInterrupt):
-                planner.plan(planner=LONG)
-                time.sleep(60)
-            waits.append(time.perf_counter() - sent[0])
-            timer.join()
+                planner.plan(planner=LONG, progress=progress)
             planner.set_task(experiment("c", ds=0.02, dphi=0.1).task)
             self.assertTrue(planner.plan().solved)  # it is none the worse for it
-        print("KeyboardInterrupt after", " ".join(f"{1e3 * wait:.0f}" for wait in waits), "ms")
-        self.assertLess(statistics.median(waits), 1)
 
     def test_ctrl_c_in_a_check(self):
-        def slow(joints):
-            time.sleep(0.001)
+        calls = []
+
+        def check(joints):
+            calls.append(None)
+            if len(calls) == 3:
+                interrupt()
             return np.ones(len(joints), bool)
 
-        threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
-            for _ in range(1000):
-                swivel.plan(experiment("c", ds=0.002), check=slow, planner="eager_dp")
+            swivel.plan(endless(), check=check, planner=LONG)
 
     def test_a_handler_that_does_not_raise_does_not_stop(self):
         rung = []
-        before = signal.signal(signal.SIGALRM, lambda *_: rung.append(time.perf_counter()))
-        signal.setitimer(signal.ITIMER_REAL, 0.1, 0.1)
-        begin = time.perf_counter()
-        plan = swivel.plan(endless(), planner=LONG, timeout=0.6)
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
-        self.assertEqual(plan.status, swivel.Status.TIMEOUT)
-        self.assertGreaterEqual(len([t for t in rung if t < begin + 0.55]), 2)  # while it planned
+        before = signal.signal(signal.SIGUSR1, lambda *_: rung.append(None))
+        self.addCleanup(signal.signal, signal.SIGUSR1, before)
+
+        def progress(*_):
+            if len(rung) == 3:
+                raise Enough
+            os.kill(os.getpid(), signal.SIGUSR1)
+
+        with self.assertRaises(Enough):  # after three handlers have run while it planned
+            swivel.plan(endless(), planner=LONG, progress=progress)
 
     def test_python_ends_while_a_thread_plans(self):
         program = f"""
-import sys, threading, time
+import sys, threading
 sys.path.insert(0, {str(Path(__file__).parent)!r})
 from python_test import LONG, endless, np, swivel
-def forever(**keywords):
+def forever(planning, **keywords):
     try:
         while True:
-            swivel.plan(endless(), **keywords)
+            swivel.plan(endless(), progress=lambda *_: planning.set(), **keywords)
     except RuntimeError:
         pass  # Python ends; what a daemon thread prints then may abort it
 def check(joints):
     return np.ones(len(joints), bool)
 for keywords in ({{"planner": LONG}}, {{"planner": LONG, "check": check}}, {{"planner": "lazy"}}):
-    threading.Thread(target=forever, kwargs=keywords, daemon=True).start()
-time.sleep(0.3)
+    planning = threading.Event()
+    threading.Thread(target=forever, args=(planning,), kwargs=keywords, daemon=True).start()
+    planning.wait()
 print("at its end")
 """
         for _ in range(3):
-            run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+            run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
             self.assertEqual((run.returncode, run.stdout), (0, "at its end\n"), run.stderr)
 
     def test_timeouts(self):
-        begin = time.perf_counter()
         plan = swivel.plan(endless(), planner=LONG, timeout=0.2)
         self.assertEqual(str(plan.status), "timeout")
         self.assertIsNone(plan.diagnosis)
-        self.assertLess(time.perf_counter() - begin, 5)
         problem = experiment("c")
         rows = swivel.plan(problem).trajectory
         with self.assertRaises(TimeoutError):
@@ -573,88 +582,84 @@ class Cartesian(unittest.TestCase):
 
 
 class Threads(unittest.TestCase):
+    """What one thread waits for is done by another: nothing here depends on which of them runs when."""
+
     def test_python_runs_while_a_plan_does(self):
-        counted, end = [0], threading.Event()
+        planning = threading.Event()
 
         def count():
-            while not end.is_set():
-                counted[0] += 1
-                time.sleep(0.001)
+            planning.wait()
+            for _ in range(1000):
+                pass
+            interrupt()  # a plan that kept Python to itself would go on for minutes
 
         counter = threading.Thread(target=count)
         counter.start()
-        before = counted[0]
-        swivel.plan(endless(), planner=LONG, timeout=0.5, threads=1)
-        during = counted[0] - before
-        end.set()
+        with self.assertRaises(KeyboardInterrupt):
+            swivel.plan(endless(), planner=LONG, threads=1, progress=lambda *_: planning.set())
         counter.join()
-        self.assertGreater(during, 20)
 
     def test_a_planner_is_for_one_thread_at_a_time(self):
-        planner, caught = swivel.Planner(endless()), []
-        thread = threading.Thread(target=lambda: planner.plan(planner=LONG, timeout=0.5))
+        planner, planning, seen = swivel.Planner(experiment("c", ds=0.02, dphi=0.1)), threading.Event(), threading.Event()
+
+        def check(joints):
+            planning.set()
+            seen.wait()
+            return np.ones(len(joints), bool)
+
+        thread = threading.Thread(target=lambda: planner.plan(check=check))
         thread.start()
-        for _ in range(200):
-            try:
+        planning.wait()
+        try:
+            with self.assertRaisesRegex(RuntimeError, r"clone\(\)"):
                 planner.problem
-            except RuntimeError as error:
-                caught.append(str(error))
-                during = repr(planner)
-                break
-            time.sleep(0.001)
-        thread.join()
-        self.assertIn("clone()", caught[0])
-        self.assertEqual(during, "<Planner, at work>")
+            self.assertEqual(repr(planner), "<Planner, at work>")
+        finally:
+            seen.set()
+            thread.join()
         planner.problem  # free again
 
-    def test_two_threads_plan_at_once(self):
-        problem = experiment("c", dphi=0.02, ds=0.003)
-        planner = swivel.Planner(problem)
-        expected = planner.plan(planner="lazy").joints
-        rails = [problem.scene["rail"].pose for _ in range(8)]
-
-        def work(own, count, answers):
-            for k in range(count):
-                rail = rails[0].copy()
-                rail[0, 3] += 1e-6 * k
-                own.move("rail", rail)
-                answers.append(own.plan(planner="lazy").joints)
-
-        def timed(threads, count):
-            clones = [planner.clone() for _ in range(threads)]
-            for clone in clones:
-                clone.plan(planner="lazy")
-            answers = [[] for _ in clones]
-            begin = time.perf_counter()
-            workers = [threading.Thread(target=work, args=(clone, count, answer)) for clone, answer in zip(clones, answers)]
-            for worker in workers:
-                worker.start()
-            for worker in workers:
-                worker.join()
-            took = time.perf_counter() - begin
-            for answer in answers:
-                self.assertEqual(len(answer), count)
-                np.testing.assert_array_equal(answer[0], expected)
-            return threads * count / took
-
-        # Wants two idle cores: what other programs leave is measured, and nothing is asked of it.
-        rounds = [(timed(1, 100), timed(2, 100)) for _ in range(4)]
-        one, two = (max(rates) for rates in zip(*rounds))
-        print(f"plans a second, best of {len(rounds)}: {one:.0f} by one thread, {two:.0f} by two, {two / one:.2f} times as many; "
-              f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
-
-    def test_overhead(self):
+    def test_what_goes_wrong_in_another_thread_is_told_there(self):
         planner = swivel.Planner(experiment("c", ds=0.02, dphi=0.1))
-        over, inside = [], []
-        for _ in range(500):
-            begin = time.perf_counter()
-            plan = planner.plan(planner="lazy")
-            took = 1e3 * (time.perf_counter() - begin)
-            inside.append(sum(plan.time_ms[part] for part in ("prepare", "plan", "report")))
-            over.append(took - inside[-1])
-        print(f"a plan takes {statistics.median(inside):.3f} ms, the call {statistics.median(over):.3f} ms more (median of {len(over)}); "
-              f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
-        self.assertLess(sorted(over)[len(over) // 4], 0.2)  # the median where nothing else runs
+        rows, asked = planner.plan().trajectory, []
+
+        def broken(joints):
+            asked.append(threading.get_ident())
+            raise KeyError("mine")
+
+        def other():
+            with self.assertRaisesRegex(KeyError, "mine"):
+                planner.plan(check=broken, planner="lazy")
+            with self.assertRaises(TimeoutError):
+                planner.refine(rows, timeout=1e-6)
+            np.testing.assert_array_equal(planner.plan(check=lambda joints: np.ones(len(joints), bool)).joints, rows.joints)
+            done.append(threading.get_ident())
+
+        done = []
+        thread = threading.Thread(target=other)
+        thread.start()
+        thread.join()
+        self.assertEqual(done, asked)  # the thread that plans is the caller's
+
+    def test_two_threads_plan_what_one_does(self):
+        planner = swivel.Planner(experiment("c", dphi=0.02, ds=0.003))
+
+        def walk(own):
+            door = own.problem.scene["door"].pose
+            for k in range(20):
+                door[0, 3] += 1e-3 * (k % 5)
+                own.move("door", door)
+                yield own.plan(planner="lazy").joints.tobytes()
+
+        clones = [planner.clone() for _ in range(2)]
+        expected, answers = list(walk(planner)), [[], []]
+        workers = [threading.Thread(target=lambda clone, answer: answer.extend(walk(clone)), args=one) for one in zip(clones, answers)]
+        for worker in workers:
+            worker.start()
+        for worker in workers:
+            worker.join()
+        self.assertEqual(answers, [expected, expected])
+        self.assertGreater(len(set(expected)), 1)
 
 
 class Places(unittest.TestCase):
@@ -749,14 +754,14 @@ class Places(unittest.TestCase):
 
     def test_timeout_and_ctrl_c(self):
         many = {"object": "door", "x": (-0.1, 0.1, 0.0005), "y": (-0.1, 0.1, 0.0005)}
-        rows = swivel.place(self.problem(), timeout=0.5, **many)
-        self.assertTrue(0 < len(rows) < 160801)
-        for work in (lambda: swivel.place(self.problem(), **many), lambda: swivel.campaign(self.problem(), episodes=100000)):
-            begin = time.perf_counter()
-            threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        seen = []
+        rows = swivel.place(self.problem(), timeout=0.5, progress=lambda rows, *_: seen.extend(row.cell for row in rows), **many)
+        self.assertLess(len(rows), 160801)
+        self.assertEqual(sorted(row.cell for row in rows), sorted(seen))
+        stop = {"progress": lambda *_: interrupt()}
+        for work in (lambda: swivel.place(self.problem(), **many, **stop), lambda: swivel.campaign(self.problem(), episodes=100000, **stop)):
             with self.assertRaises(KeyboardInterrupt):
                 work()
-            self.assertLess(time.perf_counter() - begin, 20)
 
     def test_bad_values(self):
         problem = self.problem()
