@@ -59,25 +59,25 @@ class UnderWay {
   std::list<std::stop_source>::iterator place_;
 };
 
-/// work(stop) on a thread of its own, without the interpreter's lock. Meanwhile this thread lets Python handle its signals: where a
-/// handler raises, as that of Ctrl-C does, the work is asked to stop, and what was raised goes on once it has. What the work throws
-/// is thrown here; Stopped as TimeoutError, since nothing else stops it.
+/// Whether this is Python's main thread, which alone handles its signals.
+inline bool handles_signals() {
+  return py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>() == PyThread_get_thread_ident();
+}
+
+/// work() on a thread of its own, while this one lets Python handle its signals: where a handler raises, as that of Ctrl-C does,
+/// `stop` is told, and what was raised goes on once the work has ended. Begins and ends with the interpreter's lock.
 template <class Work>
-auto interruptible(const Work& work) {
-  using Result = std::invoke_result_t<Work, std::stop_token>;
+void with_signals(const Work& work, std::stop_source& stop) {
   constexpr auto kBetweenLooks = std::chrono::milliseconds(10);
-  std::optional<Result> result;
   std::exception_ptr error;
   std::optional<py::error_already_set> interrupt;
   bool ended = false;
   std::mutex mutex;
   std::condition_variable end;
-  std::stop_source stop;
-  const UnderWay under_way(stop);
   std::optional<py::gil_scoped_release> released(std::in_place);
   std::jthread worker([&] {
     try {
-      result.emplace(work(stop.get_token()));
+      work();
     } catch (...) {
       error = std::current_exception();
     }
@@ -99,13 +99,29 @@ auto interruptible(const Work& work) {
   worker.join();
   released.reset();
   if (interrupt) throw py::error_already_set(std::move(*interrupt));
-  if (!error) return std::move(*result);
+  if (error) std::rethrow_exception(std::exchange(error, nullptr));
+}
+
+/// work(stop) without the interpreter's lock, interrupted by Python's signals where this thread handles them. What the work throws
+/// is thrown here; Stopped as TimeoutError, since nothing else stops it.
+template <class Work>
+auto interruptible(const Work& work) {
+  std::optional<std::invoke_result_t<Work, std::stop_token>> result;
+  std::stop_source stop;
+  const UnderWay under_way(stop);
+  const auto run = [&] { result.emplace(work(stop.get_token())); };
   try {
-    std::rethrow_exception(std::exchange(error, nullptr));
+    if (handles_signals()) {
+      with_signals(run, stop);
+    } else {
+      const py::gil_scoped_release released;
+      run();
+    }
   } catch (const Stopped&) {
     PyErr_SetString(PyExc_TimeoutError, "stopped by its timeout");
     throw py::error_already_set();
   }
+  return std::move(*result);
 }
 
 }  // namespace swivel::python

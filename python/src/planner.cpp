@@ -373,7 +373,7 @@ void bind_planner(py::module_& m) {
           "check(joints) -> bool (n,): own rule, asked about batches of states (n, 7), rad, that all other rules allow.\n"
           "check_motions(from, to) -> bool (n,): the same of straight motions, (n, 7) each. cost(joints) -> float64 (n,): own cost "
           "of\n"
-          "states, added to that of steps. All are called on another thread than this, never two at a time, and must depend on "
+          "states, added to that of steps. All may be called on another thread than this, never two at a time, and must depend on "
           "the\n"
           "states alone. progress(stage, done, of): now and then.\n"
           "refine: move the arm angles off the grid: cheaper and smoother, never dearer. speed (m/s), turn_speed (rad/s), rate\n"
