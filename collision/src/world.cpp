@@ -61,7 +61,8 @@ struct World::Impl {
   std::vector<Body> bodies;
   std::vector<std::string> names;
   std::vector<BodyPair> pairs;
-  std::vector<Kept> keeps;  // by pair
+  std::vector<Kept> keeps;   // by pair
+  std::vector<int> numbers;  // [a * bodies + b] of `pairs`; -1: none of them
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
 
@@ -99,6 +100,7 @@ struct World::Impl {
       near.push_back({p, own[kMotionIndex], known->keeps.tolerance, first_joint, last});
       own[kMotionIndex] = own[kMidpointIndex] = -std::numeric_limits<double>::infinity();
     }
+    number_pairs();
     warn_of_pairs();
     [[maybe_unused]] static const bool warm = warm_up();
   }
@@ -110,8 +112,18 @@ struct World::Impl {
   [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
     if (level.keep == Keep::kNothing) return level.more;
     if (p.b >= static_cast<int>(robot->bodies.size())) return required(0, level);
-    const auto found = std::find(pairs.rbegin(), pairs.rend(), p);
-    return required(static_cast<std::size_t>(pairs.rend() - found) - 1, level);
+    return required(*number_of(p), level);
+  }
+  [[nodiscard]] std::optional<std::size_t> number_of(const BodyPair& p) const {
+    const int number = numbers[place_of(p)];
+    return number < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(number));
+  }
+  [[nodiscard]] std::size_t place_of(const BodyPair& p) const {
+    return static_cast<std::size_t>(p.a) * bodies.size() + static_cast<std::size_t>(p.b);
+  }
+  void number_pairs() {
+    numbers.assign(robot->bodies.size() * bodies.size(), -1);
+    for (std::size_t k = 0; k < pairs.size(); ++k) numbers[place_of(pairs[k])] = static_cast<int>(k);
   }
   [[nodiscard]] PairKeeps keeps_of(const BodyPair& p) const {
     const RobotPair* known = robot_pair(p);
@@ -134,6 +146,7 @@ struct World::Impl {
         pairs.push_back(all[k]);
         keeps.push_back(all_keeps[k]);
       }
+    number_pairs();
   }
 
   void warn_of_pairs() {
@@ -373,23 +386,18 @@ struct World::Query::Impl {
     }
     return std::nullopt;
   }
-  /// Of one of the world's pairs.
-  [[nodiscard]] std::optional<std::size_t> number_of(const BodyPair& p) const {
-    const auto found = std::find(world->pairs.begin(), world->pairs.end(), p);
-    return found == world->pairs.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - world->pairs.begin()));
-  }
   bool below(const BodyPair& p, const Level& level) {
     const double d = world->required(p, level);
     if (!(d >= 0)) return false;
     place_body(p.a);
     place_body(p.b);
     TrianglePair none;
-    const auto k = number_of(p);
+    const auto k = world->number_of(p);
     return is_below(p, d, certify_pair(p, d, k ? witness[*k] : none));
   }
   bool surely_below(const BodyPair& p, const Level& level) {
     if (certificates == Certificates::kOff) return false;
-    const auto k = number_of(p);
+    const auto k = world->number_of(p);
     if (!k) return false;
     place_body(p.a);
     place_body(p.b);

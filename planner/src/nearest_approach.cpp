@@ -7,21 +7,26 @@
 namespace swivel {
 
 std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
-                                                const Budget& budget, const std::optional<NearestApproach>& so_far) {
+                                                const Budget& budget, const std::optional<NearestApproach>& so_far,
+                                                std::vector<double>* proved) {
   constexpr int kStride = 8;  // rows far apart come first, so that one of them is near the nearest
   const int count = static_cast<int>(rows.size());
   World::Query query(world, Certificates::kOn);
   std::optional<NearestApproach> nearest = so_far;
-  const auto is_further = [&](const Config& q) {
-    return nearest->clearance.distance > 0 &&
-           !query.next_below(q, Level(Keep::kNode, nearest->clearance.margin() + 2 * kVerdictBand)) &&
-           (seek == Seek::kMargin || !query.next_below(q, Level(nearest->least + 2 * kVerdictBand)));
+  const auto is_further = [&](int row, const Config& q) {
+    if (!(nearest->clearance.distance > 0)) return false;
+    const Level level(Keep::kNode, nearest->clearance.margin() + 2 * kVerdictBand);
+    double* known = proved ? &(*proved)[static_cast<std::size_t>(row)] : nullptr;
+    if (known && *known >= level.more) return true;
+    if (query.next_below(q, level)) return false;
+    if (known) *known = std::max(*known, level.more + std::max(0.0, query.spare(level)));
+    return seek == Seek::kMargin || !query.next_below(q, Level(nearest->least + 2 * kVerdictBand));
   };
   int looked_at = 0;
   const auto look_at = [&](int row) {
     budget.poll(Stage::kMeasuring, looked_at++, count);
     const Config& q = rows[static_cast<std::size_t>(row)].q;
-    if (nearest && is_further(q)) return;
+    if (nearest && is_further(row, q)) return;
     const auto here = query.clearance(q);
     if (!here) return;
     const double least = nearest ? std::min(nearest->least, here->least) : here->least;

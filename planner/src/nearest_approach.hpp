@@ -19,8 +19,10 @@ struct NearestApproach {
 enum class Seek { kMargin, kMarginAndLeast };
 /// Of these rows and of `so_far`, which is of the same rows and of other pairs. None where there are no pairs or no rows. Rows that
 /// are proved to be further than the nearest so far are not measured: most, after the first few. Throws Stopped.
+/// `proved`, of kMargin: by row, what its margin is known to be at least, which spares it the proof; raised where it is proved.
 [[nodiscard]] std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
                                                               const Budget& budget,
-                                                              const std::optional<NearestApproach>& so_far = std::nullopt);
+                                                              const std::optional<NearestApproach>& so_far = std::nullopt,
+                                                              std::vector<double>* proved = nullptr);
 
 }  // namespace swivel

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <new>
@@ -19,29 +20,60 @@ namespace swivel {
 
 namespace {
 
-/// The nearest approach of paths, by their margin; where one object alone moves, of pairs without it once for each path.
+/// The nearest approach of paths, by their margin; where one object alone moves, of pairs without it once for each path, and with
+/// it on the rows that it may have come near to since.
 class LeastMargins {
  public:
   /// `moved`: its number in the scene.
   explicit LeastMargins(std::optional<int> moved) : moved_(moved) {}
   std::optional<NearestApproach> of(const PlanView& view, const std::vector<TrajectoryRow>& rows, const Budget& budget) {
     if (!moved_) return nearest_approach(view.world, rows, Seek::kMargin, budget);
-    const std::vector<int> moved{*moved_};
-    std::vector<double> joints;
-    for (const TrajectoryRow& row : rows) joints.insert(joints.end(), row.q.begin(), row.q.end());
-    constexpr std::size_t kMost = 1000;
-    if (known_.size() == kMost) known_.clear();
-    auto known = known_.find(joints);
-    if (known == known_.end()) {
-      const auto still = nearest_approach(World(view.world, moved, World::Pairs::kBut), rows, Seek::kMargin, budget);
-      known = known_.emplace(std::move(joints), still).first;
-    }
-    return nearest_approach(World(view.world, moved), rows, Seek::kMargin, budget, known->second);
+    Path& path = path_of(view, rows, budget);
+    const Pose& pose = view.problem.scene[static_cast<std::size_t>(*moved_)].pose;
+    std::vector<double> proved;
+    for (const Proof& proof : path.proofs)
+      proved.push_back(proof.margin == kNone ? kNone : proof.margin - view.world.displacement(*moved_, proof.pose, pose));
+    const auto before = proved;
+    const World with_it(view.world, std::vector<int>{*moved_});
+    const auto nearest = nearest_approach(with_it, rows, Seek::kMargin, budget, path.without_it, &proved);
+    for (std::size_t row = 0; row < proved.size(); ++row)
+      if (proved[row] != before[row]) path.proofs[row] = {proved[row], pose};
+    return nearest;
   }
 
  private:
+  static constexpr double kNone = -std::numeric_limits<double>::infinity();
+  /// What the margin of the object's pairs on a row was proved to be at least, where the object stood.
+  struct Proof {
+    double margin = kNone;
+    Pose pose = Pose::Identity();
+  };
+  struct Path {
+    std::optional<NearestApproach> without_it;
+    std::vector<Proof> proofs;  // by row
+  };
+  Path& path_of(const PlanView& view, const std::vector<TrajectoryRow>& rows, const Budget& budget) {
+    std::vector<double> joints;
+    for (const TrajectoryRow& row : rows) joints.insert(joints.end(), row.q.begin(), row.q.end());
+    auto known = paths_.find(joints);
+    if (known != paths_.end()) return known->second;
+    // Paths may be of many thousand rows.
+    constexpr std::size_t kMostRows = 100'000;
+    rows_ += rows.size();
+    if (rows_ > kMostRows) {
+      paths_.clear();
+      rows_ = rows.size();
+    }
+    const World without_it(view.world, std::vector<int>{*moved_}, World::Pairs::kBut);
+    return paths_
+        .emplace(std::move(joints),
+                 Path{nearest_approach(without_it, rows, Seek::kMargin, budget), std::vector<Proof>(rows.size())})
+        .first->second;
+  }
+
   std::optional<int> moved_;
-  std::map<std::vector<double>, std::optional<NearestApproach>> known_;  // by the joints of all rows
+  std::map<std::vector<double>, Path> paths_;  // by the joints of all rows
+  std::size_t rows_ = 0;                       // of all paths
 };
 
 /// The number of the object that is moved, where the path stays.
