@@ -250,7 +250,9 @@ class ProblemReader {
     problem_.roll = Roll{};
     problem_.cost.weights.back() = 0;
     if (!value.is_sequence()) {
-      if (value.text() != "free") value.fail("is '" + value.text() + "'", "free, or [lower, upper] in rad");
+      constexpr const char* kAllowed = "free, or [lower, upper] in rad";
+      if (value.is_map()) value.fail("is a map", kAllowed);
+      if (value.text() != "free") value.fail("is '" + value.text() + "'", kAllowed);
       return;
     }
     const std::vector<double> ends = value.numbers();

@@ -109,6 +109,7 @@ const Case kCases[] = {
     {"JointStepZero", "limits", "{joint_step: 0}", {"limits.joint_step", "> 0"}},
     {"RollSlopeZero", "limits", "{roll_slope: 0}", {"limits.roll_slope", "> 0"}},
     {"RollWord", "path", "{roll: some, waypoints: []}", {"path.roll", "'some'", "free"}},
+    {"RollMap", "path", "{roll: {}, waypoints: []}", {"path.roll", "a map", "free"}},
     {"RollEmpty", "path", "{roll: [1, 1], waypoints: []}", {"path.roll", "lower < upper"}},
     {"RollShort", "path", "{roll: [1], waypoints: []}", {"path.roll", "2 numbers"}},
     {"ArmSlopeZero", "limits", "{arm_slope: 0}", {"limits.arm_slope", "> 0"}},
