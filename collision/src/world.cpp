@@ -243,6 +243,9 @@ bool World::has_meshes() const {
 PairKeeps World::keeps(const BodyPair& pair) const {
   return impl_->keeps_of(pair);
 }
+double World::required(std::size_t pair, Keep keep) const {
+  return impl_->required(pair, Level(keep));
+}
 double World::displacement(int object, const Pose& from, const Pose& to) const {
   const Bound& bound = impl_->bodies[impl_->robot->bodies.size() + static_cast<std::size_t>(object)].shape.bound;
   return motion(bound, place(bound, from), place(bound, to)) + kBoundSafety;
@@ -473,6 +476,19 @@ struct World::Query::Impl {
     clear_by(std::max(bound_now, proof.bound));
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
+  double clear_by(std::size_t k, double least, double enough) {
+    const BodyPair& p = world->pairs[k];
+    place_body(p.a);
+    place_body(p.b);
+    const double sought = enough + kKeptSafety;
+    double found = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (!(found >= sought)) found = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (!(found >= sought) && certificates == Certificates::kOn) {
+      const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), witness[k]);
+      if (proof.certificate == Certificate::kFree) found = std::max(found, proof.bound);
+    }
+    return found - kKeptSafety;
+  }
   [[nodiscard]] PlacedShapeRef placed(int i) const { return {&world->body(i).shape, &poses[i]}; }
   [[nodiscard]] const Bound& bound(int i) const { return world->body(i).shape.bound; }
   [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[i]; }
@@ -503,6 +519,18 @@ std::optional<BodyPair> World::Query::next_below_on(const Stretch& stretch, cons
 
 double World::Query::spare(const Level& level) const {
   return impl_->spare(level);
+}
+
+double World::Query::clear_by(const Config& q, std::size_t pair, double least, double enough) {
+  impl_->move_to(q);
+  return impl_->clear_by(pair, least, enough);
+}
+
+std::span<const double> World::Query::moved(const Config& q) {
+  impl_->move_to(q);
+  impl_->place_bodies();
+  impl_->move_on();
+  return impl_->moved;
 }
 
 bool World::Query::certified() const {

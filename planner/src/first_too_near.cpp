@@ -2,52 +2,220 @@
 #include "first_too_near.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 
 namespace swivel {
 
 namespace {
 
-class Rows {
- public:
-  Rows(const World& world, const EdgeRule& rule, const Limits& limits, const std::vector<Config>& rows, const Budget& budget)
-      : rows_(&rows),
-        rule_(&rule),
-        query_(world, Certificates::kOn),
-        budget_(&budget),
-        asks_motions_(limits.edges == EdgeMode::kContinuous),
-        rows_tell_motions_(!asks_motions_ || (limits.d_edge() <= limits.clearance && limits.d_self_edge() <= limits.d_self())) {
-    for (std::size_t k = 0; k < rows.size(); ++k) moved_.push_back(k == 0 ? 0 : moved_.back() + rule.motion(rows[k - 1], rows[k]));
-  }
+constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-  /// From row `first` to row `last`, in order; `first` itself only where it is the first of all.
-  std::optional<TooNear> find(std::size_t first, std::size_t last) {
-    budget_->poll();
-    const std::size_t middle = (first + last) / 2;
-    if (rows_tell_motions_ && last > first) {
-      const double most = std::max(moved_[middle] - moved_[first], moved_[last] - moved_[middle]);
-      if (!query_.next_below((*rows_)[middle], Level(Keep::kNode, most))) return std::nullopt;
+/// What certificates leave open of rows and of the moves between them, pair by pair. A pair that is clear at a row by more than it
+/// must keep is so as far along the rows as its bodies can have used that up: one proof serves many rows, and a far pair has few.
+class OpenParts {
+ public:
+  std::vector<bool> rows, moves;  ///< a row; the move from it to the next
+
+  OpenParts(const World& world, World::Query& query, const EdgeRule& rule, const Limits& limits, const std::vector<Config>& joints,
+            const Budget& budget)
+      : rows(joints.size(), false),
+        moves(joints.size() - 1, false),
+        joints_(&joints),
+        query_(&query),
+        budget_(&budget),
+        asks_moves_(limits.edges == EdgeMode::kContinuous) {
+    add_travel(world, rule);
+    add_pairs(world, rule);
+    const std::size_t last = joints.size() - 1;
+    std::vector<Stretch> stretches;
+    for (std::size_t pair = 0; pair < pairs_.size(); ++pair) stretches.push_back({pair, 0, last, at_end(pair, 0, last), kNever});
+    for (Stretch& stretch : stretches) {
+      stretch.first = forward(stretch.pair, 0, last, stretch.clear_first);
+      stretch.clear_first -= travel(stretch.pair, 0, stretch.first);
     }
-    if (last > first + 1) {
-      auto found = find(first, middle);
-      return found ? found : find(middle, last);
+    std::erase_if(stretches, [&](const Stretch& stretch) { return stretch.first == last; });
+    for (Stretch& stretch : stretches) {
+      stretch.clear_last = at_end(stretch.pair, last, last - stretch.first);
+      stretch.last = backward(stretch.pair, stretch.first, last, stretch.clear_last);
+      stretch.clear_last -= travel(stretch.pair, stretch.last, last);
     }
-    if (first == 0)
-      if (const auto pair = query_.next_below((*rows_)[0], Keep::kNode)) return TooNear{0, *pair};
-    if (last == first) return std::nullopt;
-    if (const auto pair = query_.next_below((*rows_)[last], Keep::kNode)) return TooNear{last, *pair};
-    if (asks_motions_)
-      if (const auto pair = edge_blocked(query_, *rule_, (*rows_)[first], (*rows_)[last], *budget_))
-        return TooNear{last, *pair, true};
-    return std::nullopt;
+    std::erase_if(stretches, [](const Stretch& stretch) { return stretch.first == stretch.last; });
+    settle(0, last, stretches);
   }
 
  private:
-  const std::vector<Config>* rows_;
-  const EdgeRule* rule_;
-  World::Query query_;
+  struct Pair {
+    int a = 0, b = 0;               // bodies
+    double row = 0, move = kNever;  // what is asked of its clearance, m
+    int moving = 0;                 // of the two bodies
+    int first_joint = 0, last = 0;  // that move them against each other
+    [[nodiscard]] double both() const { return std::max(row, move); }
+    [[nodiscard]] double least() const { return move < 0 ? row : std::min(row, move); }
+  };
+  /// Of one pair: all moves from one row to another are open, and the rows between, not those two. Clearances at both are at
+  /// least these.
+  struct Stretch {
+    std::size_t pair, first, last;
+    double clear_first, clear_last;
+  };
+
+  /// How far bodies come from row to row: on the chord, and off it by no more than an eighth of the acceleration, which is at most
+  /// 2 sum |dq_j| sum |dq_j| R_j.
+  void add_travel(const World& world, const EdgeRule& rule) {
+    bodies_ = world.bodies().size();
+    for (std::size_t k = 0; k < joints_->size(); ++k) {
+      if (k % 64 == 0) budget_->poll();
+      const std::span<const double> moved = query_->moved((*joints_)[k]);
+      moved_.insert(moved_.end(), moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(bodies_));
+      if (k == 0) {
+        turned_.push_back({});
+        off_chords_.push_back(0);
+        continue;
+      }
+      const Config move = ((*joints_)[k] - (*joints_)[k - 1]).cwiseAbs();
+      std::array<double, kDof> turned = turned_.back();
+      double bound = 0;
+      for (int j = 0; j < kDof; ++j) {
+        const double way = move[j] * rule.radii[static_cast<std::size_t>(j)];
+        turned[static_cast<std::size_t>(j)] += way;
+        bound += way;
+      }
+      turned_.push_back(turned);
+      off_chords_.push_back(off_chords_.back() + move.sum() * bound / 4);
+    }
+  }
+
+  void add_pairs(const World& world, const EdgeRule& rule) {
+    const auto group = [&](int body) {
+      return static_cast<std::size_t>(body) < bodies_ ? world.bodies()[static_cast<std::size_t>(body)].group : 0;
+    };
+    for (std::size_t k = 0; k < world.pairs().size(); ++k) {
+      const BodyPair& bodies = world.pairs()[k];
+      const int of_a = group(bodies.a), of_b = group(bodies.b), first = std::min(of_a, of_b), last = std::max(of_a, of_b);
+      Pair pair{bodies.a, bodies.b, world.required(k, Keep::kNode), kNever, (first > 0) + (last > 0), first, last};
+      if (asks_moves_) pair.move = world.required(k, Keep::kMidpoint);
+      for (const EdgeRule::Near& near : rule.near)
+        if (asks_moves_ && near.pair == bodies) pair.move = near.d_edge + near.h;
+      pairs_.push_back(pair);
+    }
+  }
+
+  [[nodiscard]] double moved(int body, std::size_t from, std::size_t to) const {
+    const auto i = static_cast<std::size_t>(body);
+    return i < bodies_ ? moved_[to * bodies_ + i] - moved_[from * bodies_ + i] : 0;
+  }
+  [[nodiscard]] double turned(const Pair& pair, std::size_t from, std::size_t to) const {
+    double way = 0;
+    for (auto j = static_cast<std::size_t>(pair.first_joint); j < static_cast<std::size_t>(pair.last); ++j)
+      way += turned_[to][j] - turned_[from][j];
+    return way;
+  }
+  /// No point of the pair's bodies comes nearer to the other by more than this, anywhere between two rows.
+  [[nodiscard]] double travel(std::size_t pair, std::size_t from, std::size_t to) const {
+    const Pair& p = pairs_[pair];
+    const double chords = moved(p.a, from, to) + moved(p.b, from, to) + p.moving * (off_chords_[to] - off_chords_[from]);
+    return std::min(chords, turned(p, from, to));
+  }
+  /// How far along the rows the pair stays clear that is clear by so much at the first of them.
+  [[nodiscard]] std::size_t forward(std::size_t pair, std::size_t first, std::size_t last, double clear) const {
+    std::size_t far = first, open = last + 1;
+    while (open - far > 1) {
+      const std::size_t middle = (far + open) / 2;
+      (clear - travel(pair, first, middle) >= pairs_[pair].both() ? far : open) = middle;
+    }
+    return far;
+  }
+  [[nodiscard]] std::size_t backward(std::size_t pair, std::size_t first, std::size_t last, double clear) const {
+    std::size_t far = last, open = first;  // row `first` is known
+    if (clear - travel(pair, first, last) >= pairs_[pair].both()) return first;
+    while (far - open > 1) {
+      const std::size_t middle = (far + open) / 2;
+      (clear - travel(pair, middle, last) >= pairs_[pair].both() ? far : open) = middle;
+    }
+    return far;
+  }
+
+  /// The pair's clearance at a row is at least this; looked for no further than serves for `need` of travel.
+  double clear_at(std::size_t pair, const Config& q, double need) {
+    constexpr double kFurthest = 0.1;  // m; between meshes a large clearance takes long to prove
+    const Pair& p = pairs_[pair];
+    return query_->clear_by(q, pair, p.least(), p.both() + std::min(need, kFurthest));
+  }
+  double at_row(std::size_t pair, std::size_t row, double need) {
+    const double clear = clear_at(pair, (*joints_)[row], need);
+    if (!(clear >= pairs_[pair].row)) rows[row] = true;
+    return clear;
+  }
+  double at_end(std::size_t pair, std::size_t row, std::size_t other) {
+    return at_row(pair, row, travel(pair, std::min(row, other), std::max(row, other)));
+  }
+
+  /// Closes stretches, or parts of them, that lie between these two rows.
+  void settle(std::size_t first, std::size_t last, const std::vector<Stretch>& stretches) {
+    if (stretches.empty()) return;
+    budget_->poll();
+    if (last == first + 1) {
+      for (const Stretch& stretch : stretches)
+        if (asks_moves_ && !moves[first] && !closes(stretch)) moves[first] = true;
+      return;
+    }
+    const std::size_t middle = (first + last) / 2;
+    std::vector<Stretch> before, after;
+    for (const Stretch& s : stretches) {
+      if (s.last <= middle) {
+        before.push_back(s);
+      } else if (s.first >= middle) {
+        after.push_back(s);
+      } else {
+        const double clear = at_row(s.pair, middle, std::max(travel(s.pair, s.first, middle), travel(s.pair, middle, s.last)));
+        const std::size_t from = backward(s.pair, s.first, middle, clear), to = forward(s.pair, middle, s.last, clear);
+        if (from > s.first) before.push_back({s.pair, s.first, from, s.clear_first, clear - travel(s.pair, from, middle)});
+        if (to < s.last) after.push_back({s.pair, to, s.last, clear - travel(s.pair, middle, to), s.clear_last});
+      }
+    }
+    settle(first, middle, before);
+    settle(middle, last, after);
+  }
+
+  /// Of a stretch of one move.
+  bool closes(const Stretch& s) {
+    const std::size_t k = s.first;
+    if (reaches(s.pair, k, 1, s.clear_first, s.clear_last)) return true;
+    const double need = travel(s.pair, k, k + 1);
+    const double at_first = std::max(s.clear_first, clear_at(s.pair, (*joints_)[k], need));
+    if (reaches(s.pair, k, 1, at_first, s.clear_last)) return true;
+    const double at_last = std::max(s.clear_last, clear_at(s.pair, (*joints_)[k + 1], need));
+    return closes(s.pair, k, 0, 1, at_first, at_last);
+  }
+  bool closes(std::size_t pair, std::size_t k, double from, double to, double clear_from, double clear_to) {
+    constexpr double kShortest = 1. / 8;  // of the move; FCL decides what is left
+    if (reaches(pair, k, to - from, clear_from, clear_to)) return true;
+    if (to - from <= kShortest) return false;
+    const double middle = (from + to) / 2;
+    const Config q = (*joints_)[k] + middle * ((*joints_)[k + 1] - (*joints_)[k]);
+    const double clear = clear_at(pair, q, travel(pair, k, k + 1));
+    return clear >= pairs_[pair].move && closes(pair, k, from, middle, clear_from, clear) &&
+           closes(pair, k, middle, to, clear, clear_to);
+  }
+  /// Whether the clearances at both ends of a share of a move prove the pair to keep what it must on all of it.
+  [[nodiscard]] bool reaches(std::size_t pair, std::size_t k, double share, double clear_from, double clear_to) const {
+    const Pair& p = pairs_[pair];
+    const double spare = clear_from + clear_to - 2 * p.move;
+    const double off_chord = 2 * p.moving * (off_chords_[k + 1] - off_chords_[k]);  // both ends may lie off it
+    return spare >= share * turned(p, k, k + 1) || spare >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
+  }
+
+  const std::vector<Config>* joints_;
+  World::Query* query_;
   const Budget* budget_;
-  bool asks_motions_, rows_tell_motions_;
-  std::vector<double> moved_;  // up to each row: a bound on the way of any point, m
+  bool asks_moves_;
+  std::size_t bodies_ = 0;  // of the robot
+  std::vector<Pair> pairs_;
+  // Up to each row. moved_: of each body in turn; turned_: by each joint, of any point.
+  std::vector<double> moved_, off_chords_;
+  std::vector<std::array<double, kDof>> turned_;
 };
 
 }  // namespace
@@ -55,7 +223,16 @@ class Rows {
 std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
                                       const std::vector<Config>& rows, const Budget& budget) {
   if (rows.empty()) return std::nullopt;
-  return Rows(world, rule, limits, rows, budget).find(0, rows.size() - 1);
+  World::Query query(world, Certificates::kOn);
+  const OpenParts open(world, query, rule, limits, rows, budget);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    budget.poll();
+    if (open.rows[k])
+      if (const auto pair = query.next_below(rows[k], Keep::kNode)) return TooNear{k, *pair};
+    if (k > 0 && open.moves[k - 1])
+      if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return TooNear{k, *pair, true};
+  }
+  return std::nullopt;
 }
 
 }  // namespace swivel

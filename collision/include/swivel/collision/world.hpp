@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -156,6 +157,9 @@ class World {
   [[nodiscard]] bool has_meshes() const;
   /// One of pairs(): what it must keep, by the limits of this world.
   [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const;
+  /// What is asked of a pair, by its place in pairs(), m: its PairKeeps less what this world forgives. Less than zero where it is
+  /// asked nothing.
+  [[nodiscard]] double required(std::size_t pair, Keep keep) const;
   [[nodiscard]] const std::vector<RobotPair>& robot_pairs() const;
   /// The same with every median known, however far.
   [[nodiscard]] std::vector<RobotPair> robot_pairs_with_medians() const;
@@ -187,6 +191,12 @@ class World {
     /// At the posture of the last next_below or next_below_on, which named no pair at this level: as FCL sees it, every pair's
     /// clearance is more than what was asked of it by this, m; less than 0 where that is not known.
     [[nodiscard]] double spare(const Level& level) const;
+    /// Without FCL: a number that the clearance of a pair, by its place in pairs(), is not below as FCL sees it, m. Looked for
+    /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Certificates::kOff by bounds alone.
+    [[nodiscard]] double clear_by(const Config& q, std::size_t pair, double least, double enough);
+    /// By body: how far no point of it has moved in all, m, on the chords from each posture asked about here or in next_below() to
+    /// the next. Valid until the next question.
+    [[nodiscard]] std::span<const double> moved(const Config& q);
     /// Of the pair that one of these has just named: its clearance is proved below its level by more than FCL may err.
     [[nodiscard]] bool certified() const;
     /// Whether one pair's clearance is below its level.
