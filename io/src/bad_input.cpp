@@ -14,7 +14,13 @@ void bad_input(const std::string& where, const std::string& what, const std::str
     constexpr std::size_t kMost = 400;
     return text.size() <= kMost ? printable(text) : printable(std::string_view(text).substr(0, kMost)) + " ...";
   };
-  throw InputError(printable(where) + ": " + part(what) + ": allowed is " + part(allowed));
+  // A file's name at the beginning, a key's at the end; of the one and the other as much as tells them.
+  const auto place = [](std::string_view text) {
+    constexpr std::size_t kEach = 1000;
+    if (text.size() <= 2 * kEach) return printable(text);
+    return printable(text.substr(0, kEach)) + " ... " + printable(text.substr(text.size() - kEach));
+  };
+  throw InputError(place(where) + ": " + part(what) + ": allowed is " + part(allowed));
 }
 
 std::string at_line(const std::string& file, int line) {

@@ -12,6 +12,8 @@ bool Range::has(double value) const {
   return std::isfinite(value) && (above_least ? value > least : value >= least) && value <= most;
 }
 
+Schema::Schema(Type what) : type(what) {}
+
 std::string Schema::Choice::allowed() const {
   std::string names;
   for (const std::string& key : keys) names += (names.empty() ? "" : ", ") + key;

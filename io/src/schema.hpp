@@ -43,13 +43,14 @@ struct Schema {
     [[nodiscard]] std::string allowed() const;
   };
 
+  Schema(Type what);  // implicit, and elsewhere: Clang needs a vector's type whole where its member is initialised
   Type type;
   Range range = kFinite;                ///< of numbers
   std::size_t count = 0;                ///< of lists: how many items; 0: any number
   std::vector<std::string> words = {};  ///< of words: one of these
   std::vector<Schema> item = {};        ///< of lists and of maps with free keys: what each item is
   std::string name = {};                ///< of sections: its table's
-  std::vector<Key> keys = {};           ///< of sections
+  std::vector<Key> keys;                ///< of sections
   std::vector<Choice> choices = {};     ///< of sections
   std::vector<Schema> others = {};      ///< what may stand there instead
   bool nullable = false;

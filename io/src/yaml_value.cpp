@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 #include <stdexcept>
+
+#include <yaml-cpp/eventhandler.h>
 
 #include "bad_input.hpp"
 #include "files.hpp"
@@ -170,17 +173,47 @@ std::optional<std::pair<std::string, YamlValue>> YamlSection::chosen(const std::
   return found;
 }
 
+namespace {
+
+class Ignored final : public YAML::EventHandler {
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+};
+
+/// 0, 1, or 2 for more. At some misplaced characters, a comma at the beginning, the parser finds one document after the other and
+/// never comes further, so that YAML::LoadAll takes all memory.
+int documents_in(const std::string& text) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  Ignored ignored;
+  int count = 0;
+  while (count < 2 && parser.HandleNextDocument(ignored)) ++count;
+  return count;
+}
+
+}  // namespace
+
 YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
   const std::string name = file.string();
   const std::string text = read_file(file, "YAML file", kMostYamlBytes);
-  std::vector<YAML::Node> documents;
+  YAML::Node document;
+  int documents = 0;
   try {
-    documents = YAML::LoadAll(text);
+    documents = documents_in(text);
+    if (documents == 1) document = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     bad_input(at_line(name, error.mark.line + 1), "not YAML (" + error.msg + ")", "well-formed YAML");
   }
-  if (documents.size() != 1) bad_input(name, "holds " + std::to_string(documents.size()) + " YAML documents", "one document");
-  return {std::make_shared<YamlFile>(YamlFile{name}), documents.front(), schema, "", 1};
+  if (documents != 1)
+    bad_input(name, documents == 0 ? "holds no YAML document" : "holds more than one YAML document", "one document");
+  return {std::make_shared<YamlFile>(YamlFile{name}), document, schema, "", 1};
 }
 
 }  // namespace swivel::io

@@ -95,6 +95,38 @@ TEST(Bounds, AliasesDoNotMultiply) {
   expect_message(input_error([&] { (void)load_problem(file); }), {"problem.yaml:", "too many values"});
 }
 
+TEST(Bounds, MessagesEnd) {
+  const ProblemFolder folder;
+  const std::string key(60'000, 'k'), name = "box" + std::string(60'000, '-') + ".stl";
+  for (const std::string& message : {input_error([&] {
+                                       (void)load_problem(folder.write({{"path", "{" + key + ": 1}"}}));
+                                     }),
+                                     input_error([&] {
+                                       (void)load_problem(folder.write({{key, "1"}}));
+                                     }),
+                                     input_error([&] {
+                                       (void)load_problem(folder.write({{"scene", "[{name: rail, mesh: " + name + "}]"}}));
+                                     })}) {
+    EXPECT_LE(message.size(), 4000u);
+    expect_message(message, {".yaml", "allowed"});
+  }
+}
+
+TEST(Bounds, MisplacedCharactersOfYamlEnd) {
+  const TempFolder folder;
+  for (const char* const text : {",", ",<", ", tool_angle", "]", "}", "a: 1\n, b", "a: 1\n--- \n,"}) {
+    const std::string message = input_error([&] { (void)load_problem(folder.write("p.yaml", text)); });
+    expect_message(message, {"p.yaml", "allowed"});
+  }
+  const ProblemFolder problems;
+  for (const char* const more : {"\n, b", "\n]", "\n---\n", "\n--- ~\n---\nscene: []\n"}) {
+    const fs::path file = problems.write({});
+    EXPECT_FALSE(load_problem(file).waypoints.empty());
+    std::ofstream(file, std::ios::app) << more;
+    expect_message(input_error([&] { (void)load_problem(file); }), {"problem.yaml"});
+  }
+}
+
 TEST(Bounds, LinesOfTablesEnd) {
   const TempFolder folder;
   const std::string commas(std::size_t{1} << 20, ',');
