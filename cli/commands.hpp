@@ -32,6 +32,8 @@ struct EpisodeChoice {
   PlacementOptions placement;
   void add_to(CLI::App& command);
   [[nodiscard]] Problem apply(const Problem& problem) const;
+  /// "episode 33 of seed 1"; "" of none.
+  [[nodiscard]] std::string words() const;
 };
 
 /// Throws InputError where the text printed so far has not reached standard output: it is full or closed.

@@ -166,7 +166,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
         PageMotion motion;
         if (plan.refinement && plan.refinement->refined) motion.refined = &result.trajectory;
         if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget);
+        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget, arguments.episode.words());
       }
     } catch (const Stopped&) {
       map.reset();
@@ -243,6 +243,10 @@ void EpisodeChoice::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "campaign seed of --episode");
   command.add_option("--episode", episode, "plan the problem of this campaign episode");
   placement.add_to(command, "");
+}
+
+std::string EpisodeChoice::words() const {
+  return seed && episode ? "episode " + std::to_string(*episode) + " of seed " + std::to_string(*seed) : "";
 }
 
 Problem EpisodeChoice::apply(const Problem& problem) const {

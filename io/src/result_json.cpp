@@ -173,6 +173,7 @@ Json advice_json(const std::vector<Advice>& advice) {
   Json list = Json::array();
   for (const Advice& one : advice)
     list.push_back({{"change", to_string(one.change)},
+                    {"words", words(one)},
                     {"object", one.object.empty() ? Json(nullptr) : Json(one.object)},
                     {"from", or_null(one.from)},
                     {"to", or_null(one.to)},

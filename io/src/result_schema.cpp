@@ -242,7 +242,8 @@ Schema advice() {
       {
           key("change", text(),
               "`free_start`, `finer` (half the steps of the lattice), the name of a limit, `move_object`, `without_object`"),
-          key("object", or_null(text()), "of the last two"),
+          key("words", text(), "the change in a phrase"),
+          key("object", or_null(text()), "of `move_object` and `without_object`"),
           key("from", or_null(number()), "of limits: what it is"),
           key("to", or_null(number()), "of limits: what was tried"),
           key("offset", or_null(numbers(3)), "of `move_object`, base frame; zeros where no way helps", "m"),

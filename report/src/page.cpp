@@ -155,9 +155,52 @@ Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& 
           {"jerk", std::move(ratios[2])}};
 }
 
+std::string millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
+  return text;
+}
+
+/// How near two bodies are that are too near, in words, and the line between their nearest points.
+struct Nearness {
+  std::string words;
+  Json line = nullptr;
+};
+
+/// Of two bodies by name, which may have several shapes.
+Nearness nearness(const World& world, const std::array<std::string, 2>& names, const Config& q) {
+  World::Query query(world, Certificates::kOn);
+  // The largest depth that is proved, by bisection: of a point of one inside the other.
+  constexpr double kDeepest = 0.5, kTelling = 1e-4;  // m
+  double depth = 0;
+  const auto named = [&](const BodyPair& pair) {
+    const auto own = world.names(pair);
+    return own == names || (own[0] == names[1] && own[1] == names[0]);
+  };
+  for (const BodyPair& pair : world.pairs()) {
+    if (!named(pair) || !query.surely_below(q, pair, Level(-depth))) continue;
+    for (double above = kDeepest; above - depth > kTelling;) {
+      const double middle = (depth + above) / 2;
+      (query.surely_below(q, pair, Level(-middle)) ? depth : above) = middle;
+    }
+  }
+  if (depth > 0) return {"at least " + millimetres(depth) + " inside each other"};
+  const auto clearance = query.clearance(q);
+  if (!clearance || !named(clearance->pair)) return {};
+  if (!(clearance->distance > 0)) return {"they touch"};
+  Nearness apart{millimetres(clearance->distance) + " apart, asked " + millimetres(clearance->required)};
+  if (const auto points = query.nearest_points(q, *clearance)) {
+    Json ends = vector_json((*points)[0]);
+    for (const double x : (*points)[1]) ends.push_back(x);
+    apart.line = {{"points", std::move(ends)}, {"text", millimetres(clearance->distance)}};
+  }
+  return apart;
+}
+
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
-Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::vector<int>& path, const Json& diagnosis) {
+Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::vector<int>& path,
+              const Json& diagnosis) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
   const std::string reason = diagnosis["reason"];
@@ -186,10 +229,14 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::vector<i
   const LatticeMap::Node& node = map.at(layer, cell / map.angles, cell % map.angles);
   const Config q = lattice.row(layer, best->slot, best->q).value_or(best->q);
   std::string what = "no valid pose here: " + reason;
-  Json pair = nullptr;
+  Json pair = nullptr, line = nullptr;
   if (node.state == NodeState::kBlocked) {
-    pair = {map.blockers[node.cause].first, map.blockers[node.cause].second};
+    const auto& [first, second] = map.blockers[node.cause];
+    pair = {first, second};
     what = (map.path.empty() ? "a pose of the first layer, blocked by " : "the next pose is blocked by ") + map.blocker_name(node);
+    Nearness near = nearness(world, {first, second}, q);
+    if (!near.words.empty()) what += ": " + near.words;
+    line = std::move(near.line);
   } else if (motion) {
     pair = bodies;
     what = "the way to the next pose is blocked by " + pair[0].get<std::string>() + " - " + pair[1].get<std::string>();
@@ -209,6 +256,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const std::vector<i
           {"phi", lattice.phi(layer, best->slot)},
           {"q", std::vector<double>(q.begin(), q.end())},
           {"pair", std::move(pair)},
+          {"line", std::move(line)},
           {"what", std::move(what)}};
 }
 
@@ -310,7 +358,7 @@ bool page_available() {
 }
 
 std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json, const PageMotion& motion,
-                    const Budget& budget) {
+                    const Budget& budget, const std::string& which) {
   const Problem& problem = view.problem;
   const World& world = view.world;
   const Lattice& lattice = view.lattice;
@@ -325,6 +373,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
 
   const Json data = {
       {"problem", std::filesystem::path(problem.source).filename().string()},
+      {"which", which},
       {"result", result},
       {"settings",
        {{"ds", problem.resolution.ds},
@@ -341,7 +390,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"motion", motion.motion ? motion_json(*motion.motion, joint_rates(lattice.chain(), problem.limits, problem.source),
                                              lattice.chain(), rows, path)
                                : Json(nullptr)},
-      {"cut", diagnosis.is_object() ? cut_json(map, lattice, view.path, diagnosis) : Json(nullptr)},
+      {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, diagnosis) : Json(nullptr)},
       {"map", map_json(map, lattice, world, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
 }

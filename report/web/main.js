@@ -12,12 +12,12 @@ import { summary, verdict } from './summary.js';
 const { rows, chain, cut, motion } = data, kDegrees = 180 / Math.PI;
 const solved = data.result.status === 'solved', last = rows.length - 1;
 
-document.title = `${data.problem} – Swivel`;
-$('title').textContent = data.problem;
+$('title').textContent = data.problem + (data.which ? `, ${data.which}` : '');
+document.title = `${$('title').textContent} – Swivel`;
 verdict($('verdict'), data, (s) => { pause(); go(rowAt(s)); });
 summary(data);
 
-let view = null, shown = null, cursor = 0, time = 0, playing = false, picked = false, before = 0, told = 0;
+let view = null, shown = null, cursor = 0, time = 0, playing = false, picked = false, turned = null, before = 0, told = 0;
 /** For those who test the page: joints and line shown now, pictures drawn. */
 window.swivel = { joints: null, frames: 0, line: null };
 
@@ -88,6 +88,22 @@ function keep({ s, phi, q, pair, what, line = null }) {
   readout(s, phi, q, what);
   picked = true;
 }
+/** Turns the arm about its tool where it stands: to the next cell of the same solution that has joints, up or down in the map. */
+function turn(by) {
+  if (!rows.length) return;
+  const row = rows[Math.round(cursor)], panel = cells.panels.findIndex(({ sheet }) => sheet === row.sheet);
+  if (panel < 0) return;
+  const { rows: most, layers_each, angles_each } = cells, begin = turned ?? Math.floor((row.angle + 0.5) / angles_each);
+  for (let k = 1; k <= most; ++k) {
+    const at = (((begin + by * k) % most) + most) % most, cell = cells.at(panel, Math.floor(row.layer / layers_each), at);
+    if (!cell.q) continue;
+    pause();
+    keep(cell);
+    turned = at;
+    panels.turn(cell);
+    return;
+  }
+}
 function show(q, pair, line = null, hit = false) {
   shown = [q, pair, line, hit];
   view?.pose(...shown);
@@ -104,6 +120,7 @@ function go(k) {
   cursor = Math.min(last, Math.max(0, k));
   if (timed && Math.abs(layerAt(time) - cursor) > 1e-9) time = momentOf(indexAt(motion.layers, cursor));
   picked = false;
+  turned = null;
   const i = Math.min(Math.floor(cursor), Math.max(0, last - 1)), f = cursor - i, a = rows[i], b = rows[Math.min(i + 1, last)];
   const q = a.q.map((v, j) => (f === 0 ? v : f === 1 ? b.q[j] : v + f * (b.q[j] - v)));
   const near = f < 0.5 ? a : b;
@@ -166,7 +183,7 @@ $('names').addEventListener('change', (event) => $('view').classList.toggle('nam
 addEventListener('keydown', (event) => {
   if (event.target.matches(event.key === ' ' ? 'select, button, [type=checkbox]' : 'select') || event.ctrlKey || event.altKey || event.metaKey) return;
   const step = event.shiftKey ? 10 : 1, to = (k) => () => { pause(); go(k); };
-  const action = { ' ': () => (playing ? pause() : play()), ArrowLeft: to(Math.round(cursor) - step), ArrowRight: to(Math.round(cursor) + step), Home: to(0), End: to(last), t: turnTheme,
+  const action = { ' ': () => (playing ? pause() : play()), ArrowLeft: to(Math.round(cursor) - step), ArrowRight: to(Math.round(cursor) + step), ArrowUp: () => turn(1), ArrowDown: () => turn(-1), Home: to(0), End: to(last), t: turnTheme,
     f: () => view?.look('fit'), 0: () => view?.look('best'), 1: () => view?.look('front'), 2: () => view?.look('side'), 3: () => view?.look('top') }[event.key];
   if (!action) return;
   event.preventDefault();
@@ -206,7 +223,7 @@ whenResized(paint);
 function showCut() {
   pause();
   go(last);
-  keep({ ...cut, line: null });
+  keep(cut);
 }
 $('blocked').hidden = !cut;
 $('blocked').addEventListener('click', showCut);

@@ -148,6 +148,11 @@ export class Panels {
       dot.style.transform = `translate(${left}px, ${y.apply(here.angle).toFixed(1)}px)`;
     }
   }
+  /** The dot alone, to another cell of its panel. */
+  turn({ layer, phi, branch }) {
+    const { dot, x, y } = this.panels.find(({ name }) => name === branch), angle = ((phi + Math.PI) / (2 * Math.PI)) * this.cells.angles;
+    dot.style.transform = `translate(${x.apply(layer).toFixed(1)}px, ${y.apply(angle).toFixed(1)}px)`;
+  }
   /** The map as one drawing for papers. */
   figure() {
     const drawings = this.panels.map((panel) => this.drawing(panel, 640, 240, PAPER, true));

@@ -4,6 +4,7 @@ import { $, number, table } from './page.js';
 
 /** The answer in one line; what it names along the path are buttons that go there. jump: called with s, m. */
 export function verdict(host, { result, rows, map }, jump) {
+  const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
   const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = result.summary ?? {}, d = result.diagnosis;
   const say = (text, s) => {
     if (host.childNodes.length) host.append(' · ');
@@ -19,6 +20,8 @@ export function verdict(host, { result, rows, map }, jump) {
     say(!d || d.reached_layer === null ? `${none}: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`
       : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), where ${d.reason} stops it.`);
     if (d?.unreachable) say(`no joints within their limits reach ${d.unreachable.waypoint === null ? `layer ${d.unreachable.layer}` : `waypoint ${d.unreachable.waypoint}`}`, d.unreachable.s);
+    if (helps.length) say(`What would help: ${helps[0].words}${helps.length > 1 ? `, or one of ${helps.length - 1} more` : ''}`);
+    else say(result.advice ? 'Nothing that was tried helps' : 'What would help is planned with --advise 1');
   } else {
     say(`Solved: ${rows.length} layers, cost ${number(result.cost)}`);
     if (clearance) say(`least clearance ${number(1e3 * clearance.value, 3)} mm (asked ${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`, clearance.s);
@@ -40,6 +43,10 @@ const words = (object) => Object.entries(object ?? {}).filter(([, v]) => typeof 
 export function summary({ result, settings }) {
   const add = (caption, entries) => table($('tables'), caption, entries);
   const removed = result.diagnosis?.removed, empty = result.diagnosis?.empty_layers ?? [];
+  // Each was planned: what it says of itself is what came out.
+  const cameTo = ({ outcome, cost, reached_s }) => ({ solved: `solved, cost ${number(cost)}`, further: `not enough: paths to s = ${number(reached_s)} m`,
+    no_help: 'no help', unknown: 'not tried in the time' })[outcome];
+  if (result.advice?.length) add('What would help', result.advice.map((one) => [one.words, cameTo(one)]));
   if (removed) add('Removed past the furthest layer', words(removed));
   if (empty.length)
     add('Empty layers', [...empty.slice(0, 20).map(({ layers: [first, last], s, reason }) => [first === last ? `layer ${first}, s = ${number(s[0])} m` : `layers ${first} to ${last}, s = ${number(s[0])} to ${number(s[1])} m`, reason]), ...(empty.length > 20 ? [['more', `${empty.length - 20}`]] : [])]);

@@ -104,6 +104,20 @@ async function checkAnswer(page, data) {
   await until(page, (before) => window.swivel.frames > before, frames);
 }
 
+/** Arrows turn the arm while the tool stands still: up and down again is the same pose; the cursor's next step ends it. */
+async function checkSelfMotion(page, data) {
+  await page.keyboard.press('Home');
+  const before = await joints(page);
+  await page.keyboard.press('ArrowUp');
+  const turned = await joints(page);
+  assert.notDeepEqual(turned, before);
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('ArrowDown');
+  assert.deepEqual(await joints(page), turned);
+  await page.keyboard.press('Home');
+  assert.deepEqual(await joints(page), data.rows[0].q);
+}
+
 /** Some cell of the middle column has joints: hovering shows them and moves the arm, a click keeps them. The path's tell clearance. */
 async function checkHover(page) {
   const dot = await page.locator('.dot:visible').boundingBox();
@@ -147,6 +161,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await slide(page, Math.floor(rows.length / 2));
     await page.waitForTimeout(800);  // at rest it is drawn with more pixels
     await shoot(page, `report_${name}.png`);
+    await checkSelfMotion(page, data);
+    await slide(page, Math.floor(rows.length / 2));
     await checkHover(page);
     await checkExports(page, name, data.map.panels.length);
     await page.keyboard.press('t');
@@ -228,10 +244,10 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
   // Where there is no path: the furthest layer, why, and the pose past it. By the joints, by a body, and in the first layer.
   for (const [name, reason, reached, ...options] of [
     ['a_start', /^the next pose cannot be moved to: joint arm_left_joint_5_r$/, true],
-    ['c', /^the next pose is blocked by arm_left_link_5_r - post$/, true, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '258'],
-    ['c', /^a pose of the first layer, blocked by arm_left_link_6_b - post$/, false, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '33'],
+    ['c', /^the next pose is blocked by arm_left_link_5_r - post: (at least [\d.]+ mm inside each other|[\d.]+ mm apart, asked 5 mm|they touch)$/, true, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '258'],
+    ['c', /^a pose of the first layer, blocked by arm_left_link_6_b - post: (at least [\d.]+ mm inside each other|[\d.]+ mm apart, asked 5 mm|they touch)$/, false, '--ds', '0.02', '--dphi', '0.2', '--seed', '1', '--episode', '33'],
   ]) {
-    const { html, rows, data, status } = plan(folder, name, ...options);
+    const { html, rows, data, status } = plan(folder, name, '--advise', '1', ...options);
     assert.equal(status, 1);
     assert.equal(rows, null);
     const viewport = name === 'a_start' ? phone : wide;
@@ -239,6 +255,18 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await drawn(page);
     assert.match(await page.textContent('#verdict'), reached ? /^No path at this resolution: every one ends by layer \d+ of \d+/ : /^No path at this resolution: the first layer has no valid node/);
     assert.match(data.cut.what, reason);
+    const episode = options.includes('--episode') ? `, episode ${options.at(options.indexOf('--episode') + 1)} of seed 1` : '';
+    assert.equal(await page.textContent('#title'), `experiment_${name}.yaml${episode}`);
+    // The line between bodies that are too near is as long as they are apart.
+    if (data.cut.line) {
+      const [ax, ay, az, bx, by, bz] = data.cut.line.points;
+      assert.ok(Math.abs(1e3 * Math.hypot(bx - ax, by - ay, bz - az) - Number(data.cut.what.match(/([\d.]+) mm apart/)[1])) <= 0.11);
+      assert.equal(await page.isVisible('#gap'), true);
+    }
+    const helps = data.result.advice.filter(({ outcome }) => outcome === 'solved');
+    assert.match(await page.textContent('#verdict'), helps.length ? /What would help: / : /Nothing that was tried helps/);
+    if (helps.length) assert.ok((await page.textContent('#verdict')).includes(helps[0].words));
+    for (const { words } of data.result.advice) assert.ok((await page.textContent('#tables')).includes(words));
     assert.equal((await page.textContent('#readout')).split('\n').at(-1), data.cut.what);
     assert.deepEqual(await joints(page), data.cut.q);
     assert.equal(data.cut.layer, data.rows.length);

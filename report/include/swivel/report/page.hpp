@@ -19,8 +19,8 @@ struct PageMotion {
 
 /// One HTML file that needs nothing else: the arm among the scene in three dimensions, the (s, phi) map, plots over s and over
 /// time, summary. `result_json`: the result in the format of `--json`. Made after planning: clearances along the path are asked for
-/// again. Throws Stopped.
+/// again. `which`: of the problems that one file describes, for the title. Throws Stopped.
 [[nodiscard]] std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json,
-                                  const PageMotion& motion = {}, const Budget& budget = {});
+                                  const PageMotion& motion = {}, const Budget& budget = {}, const std::string& which = {});
 
 }  // namespace swivel
