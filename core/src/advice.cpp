@@ -48,6 +48,8 @@ const char* to_string(Advice::Change change) {
   switch (change) {
     case Advice::Change::kFreeStart:
       return "free_start";
+    case Advice::Change::kFreeRoll:
+      return "free_roll";
     case Advice::Change::kFiner:
       return "finer";
     case Advice::Change::kMoveObject:
@@ -84,6 +86,8 @@ std::string words(const Advice& advice) {
   switch (advice.change) {
     case Advice::Change::kFreeStart:
       return "a free start";
+    case Advice::Change::kFreeRoll:
+      return "a tool free to turn about its axis (path.roll)";
     case Advice::Change::kFiner:
       return "half the steps of the lattice, and nodes on narrow arcs (--ds, --dphi, --arcs)";
     case Advice::Change::kMoveObject:

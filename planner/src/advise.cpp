@@ -80,6 +80,7 @@ class Adviser {
     by_cause(result_.diagnosis.cause);
     for (const Cause& cause : result_.diagnosis.together) by_cause(cause);
     if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+    free_roll();
     finer();
     for (const SceneObject& object : problem_.scene)
       if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
@@ -100,6 +101,7 @@ class Adviser {
       case Cause::Kind::kContact:
         if (cause.kind == Cause::Kind::kPair) relax(Change::kClearance);
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        free_roll();
         for (const std::string& body : cause.bodies) {
           move(body);
           if (is_object(body) && body != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = body});
@@ -107,12 +109,14 @@ class Adviser {
         break;
       case Cause::Kind::kLimit:
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
+        free_roll();
         finer();
         relax(Change::kJointMargin);
         move(problem_.path_frame);
         break;
       case Cause::Kind::kReach:
       case Cause::Kind::kSingular:
+        free_roll();
         move(problem_.path_frame);
         break;
       case Cause::Kind::kManipulability:
@@ -147,6 +151,11 @@ class Adviser {
     }
   }
 
+  /// What stands in the way of the given rolls may not stand in that of others.
+  void free_roll() {
+    if (problem_.roll && problem_.roll->upper - problem_.roll->lower < kTwoPi && !problem_.start)
+      try_once({.change = Change::kFreeRoll});
+  }
   void finer() {
     if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution) try_once({.change = Change::kFiner});
   }
@@ -169,6 +178,9 @@ class Adviser {
       case Change::kFreeStart:
         changed.start.reset();
         break;
+      case Change::kFreeRoll:
+        changed.roll = Roll{};
+        break;
       case Change::kFiner:
         changed.resolution.ds /= 2;
         changed.resolution.dphi /= 2;
@@ -189,8 +201,12 @@ class Adviser {
     }
     PlanResult found;
     try {
-      trial_.set_problem(std::move(changed));
-      found = trial_.plan(options_);
+      if (advice.change == Change::kFreeRoll) {  // another arm, whose roll has other limits
+        found = Planner(std::move(changed)).plan(options_);
+      } else {
+        trial_.set_problem(std::move(changed));
+        found = trial_.plan(options_);
+      }
     } catch (const InputError&) {  // too fine for the memory; a start that does not fit the path that moved
       advice.outcome = Outcome::kNoHelp;
       return;

@@ -379,6 +379,7 @@ class CauseKind:
 
 class Change:
     FREE_START: ClassVar[Change]
+    FREE_ROLL: ClassVar[Change]
     FINER: ClassVar[Change]
     CLEARANCE: ClassVar[Change]
     JOINT_MARGIN: ClassVar[Change]

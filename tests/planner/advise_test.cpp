@@ -23,6 +23,9 @@ Problem followed(Problem problem, const Advice& advice) {
     case Change::kFreeStart:
       problem.start = std::nullopt;
       break;
+    case Change::kFreeRoll:
+      problem.roll = Roll{};
+      break;
     case Change::kFiner:
       for (double* step : {&problem.resolution.ds, &problem.resolution.dphi, &problem.resolution.dalpha, &problem.resolution.arc})
         *step *= 0.5;
@@ -155,6 +158,26 @@ TEST(Advise, ExperimentAFromItsStartNeedsAnother) {
   ASSERT_FALSE(advice.empty());
   EXPECT_EQ(advice[0].change, Change::kFreeStart);
   EXPECT_EQ(advice[0].outcome, Outcome::kSolved);
+}
+
+/// The torch stands turned so that the arm cannot follow; turned as it likes it can.
+TEST(Advise, ATorchMayTurnAboutItsAxis) {
+  for (const Roll& roll : {Roll{-0.3, -0.2}, Roll{0.4, 0.5}}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml");
+    problem.roll = roll;
+    Planner planner(problem);
+    const PlanResult result = planner.plan();
+    ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+    const std::vector<Advice> advice = advise(planner, result, for_seconds(60));
+    const auto free = std::find_if(advice.begin(), advice.end(), [](const Advice& a) { return a.change == Change::kFreeRoll; });
+    ASSERT_NE(free, advice.end());
+    EXPECT_EQ(free->outcome, Outcome::kSolved);
+    const PlanResult follow = plan(followed(problem, *free));
+    EXPECT_EQ(follow.status, PlanStatus::kSolved);
+    EXPECT_EQ(follow.cost, free->cost);
+  }
+  Planner planner(io::load_problem(data_dir() / "problems" / "kr6_weld_pipe.yaml"));
+  EXPECT_EQ(planner.plan().status, PlanStatus::kSolved);  // whose roll is free
 }
 
 /// A wall across the path, which nothing but its removal helps against.

@@ -12,6 +12,7 @@ namespace swivel {
 struct Advice {
   enum class Change {
     kFreeStart,       ///< no start given
+    kFreeRoll,        ///< path.roll without bounds: a tool that may stand turned about its axis as it likes
     kFiner,           ///< half the steps of the lattice, and Resolution::arcs
     kClearance,       ///< limits.clearance, and self_clearance where that is what bars
     kJointMargin,     ///< limits.joint_margin
