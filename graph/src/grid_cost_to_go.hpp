@@ -36,6 +36,7 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
   [[nodiscard]] Config config(int layer, int slot) override;
+  [[nodiscard]] std::optional<Config> node(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:

@@ -88,4 +88,11 @@ Config GridCostToGo::config(int layer, int slot) {
   return here.nodes->config(sheet, here.shift);
 }
 
+std::optional<Config> GridCostToGo::node(int layer, int slot) {
+  const int sheet = lattice_->sheet_of(slot);
+  const NodeRun here = nodes(layer, lattice_->family_of(sheet), lattice_->angle_of(slot), 1, scratch_);
+  if (!here.nodes->valid(sheet, here.shift)) return std::nullopt;
+  return here.nodes->config(sheet, here.shift);
+}
+
 }  // namespace swivel

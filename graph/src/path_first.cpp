@@ -68,6 +68,20 @@ class Search {
     }
   }
 
+  /// Removes what fails of them, before the first sweep. Ends where they fail no longer.
+  void ask_suspects(std::span<const Suspect> suspects) {
+    constexpr std::size_t kAtOnce = 64;
+    std::vector<NodeQuestion> questions;
+    for (std::size_t first = 0; first < suspects.size(); first += kAtOnce) {
+      cost_to_go_.budget().poll();
+      questions.clear();
+      for (const Suspect& x : suspects.subspan(first, std::min(kAtOnce, suspects.size() - first)))
+        if (x.layer < lattice_.layers() && x.slot < lattice_.slots(x.layer) && verdicts_.node(x.layer, x.slot) == Verdict::kUnknown)
+          if (const auto q = cost_to_go_.node(x.layer, x.slot)) questions.push_back({x.layer, x.slot, *q, x.likely});
+      if (2 * ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return;
+    }
+  }
+
  private:
   struct Failure {
     int layer, slot;
@@ -289,6 +303,10 @@ class Search {
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
                          const AskedFirst& first) {
   return Search(cost_to_go, validity, options, validity.asks_costs()).run(counters, first);
+}
+
+void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects) {
+  if (!suspects.empty()) Search(cost_to_go, validity, {}, false).ask_suspects(suspects);
 }
 
 int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {

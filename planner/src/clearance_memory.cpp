@@ -6,6 +6,19 @@
 
 namespace swivel {
 
+namespace {
+
+constexpr FailureId kBodies = FailureId{1} << 31;
+
+}  // namespace
+
+FailureId failure_of(const BodyPair& pair) {
+  return pair.a * kBodies + pair.b;
+}
+BodyPair pair_of(FailureId failure) {
+  return {static_cast<int>(failure / kBodies), static_cast<int>(failure % kBodies)};
+}
+
 void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world,
                             const std::vector<SceneObject>& scene) {
   // Far more than a search asks about; a planner that runs for days in a changing scene must not grow for days.
@@ -109,6 +122,16 @@ void ClearanceMemory::learn() {
   };
   take(noted_nodes_, nodes_, failed_nodes_);
   take(noted_edges_, edges_, failed_edges_);
+}
+
+std::vector<Suspect> ClearanceMemory::suspects() {
+  learn();
+  std::vector<Suspect> suspects;
+  for (const std::uint64_t node : failed_nodes_)
+    if (const NodeFinding& finding = nodes_.at(node); !finding.valid && finding.pair != kNoPair)
+      suspects.push_back(
+          {static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), failure_of(finding.pair)});
+  return suspects;
 }
 
 AskedFirst ClearanceMemory::failures() const {

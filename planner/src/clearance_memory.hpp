@@ -9,6 +9,10 @@
 
 namespace swivel {
 
+/// A pair of bodies as the searches know it, and back.
+[[nodiscard]] FailureId failure_of(const BodyPair& pair);
+[[nodiscard]] BodyPair pair_of(FailureId failure);
+
 /// What earlier plans found about nodes and edges of one lattice. It holds as long as limits and robot do; where a scene object has
 /// moved since, it holds of all other pairs of bodies. Plans are numbered from 1 on.
 class ClearanceMemory {
@@ -51,6 +55,8 @@ class ClearanceMemory {
 
   /// All failures, in the order in which they were found.
   [[nodiscard]] AskedFirst failures() const;
+  /// The nodes among them, with those of the last plan.
+  [[nodiscard]] std::vector<Suspect> suspects();
 
  private:
   struct EdgeKey {

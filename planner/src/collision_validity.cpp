@@ -11,13 +11,6 @@ namespace swivel {
 namespace {
 
 constexpr std::size_t kRows = 8192, kSlotsApart = 67;
-constexpr FailureId kBodies = FailureId{1} << 31;
-FailureId fault_of(const BodyPair& pair) {
-  return pair.a * kBodies + pair.b;
-}
-BodyPair pair_of(FailureId failure) {
-  return {static_cast<int>(failure / kBodies), static_cast<int>(failure % kBodies)};
-}
 
 }  // namespace
 
@@ -82,6 +75,8 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
       const auto holds = memory_->holds(*known);
       if (holds == ClearanceMemory::Holds::kAll) {
         answers[k] = known->answer;
+        // Bodies may be numbered otherwise since.
+        if (known->pair != ClearanceMemory::kNoPair) answers[k].failure = failure_of(known->pair);
         continue;
       }
       open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;
@@ -104,7 +99,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   open.pair = ClearanceMemory::kNoPair;
   const auto failure = [&](const BodyPair& pair, bool shared) {
     open.pair = pair;
-    return NodeAnswer{false, shared, groups_of(*world_, pair), fault_of(pair)};
+    return NodeAnswer{false, shared, groups_of(*world_, pair), failure_of(pair)};
   };
   if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
     return failure(*likely, lattice_->stand_alike(groups_of(*world_, *likely)));

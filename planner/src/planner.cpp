@@ -173,6 +173,7 @@ struct Planner::Impl {
   std::unique_ptr<Layout> layout;
   std::unique_ptr<CostToGo> retired;  // of another lattice
   ClearanceMemory memory;             // of this lattice, the robot and the limits
+  std::vector<Suspect> suspects;      // what failed on the lattice before this one; of these bodies
   std::uint64_t plans = 0;            // that the memory knows of
   std::vector<std::uint64_t> met;     // by object: the first of them that meets it as it is
   std::optional<Executor> executor;
@@ -188,6 +189,7 @@ struct Planner::Impl {
   void path_changed() {
     if (layout && layout->first.cost_to_go) retired = std::move(layout->first.cost_to_go);
     layout.reset();
+    if (auto failed = memory.suspects(); !failed.empty()) suspects = std::move(failed);
     memory = {};
     viewable = false;
   }
@@ -195,9 +197,13 @@ struct Planner::Impl {
     world_is_old = true;
     viewable = false;
   }
+  void bodies_changed() {
+    suspects.clear();
+    scene_changed();
+  }
   void all_changed() {
     path_changed();
-    scene_changed();
+    bodies_changed();
   }
   void attached_changed() {
     if (robot) last_robot = std::exchange(robot, nullptr);
@@ -243,7 +249,8 @@ struct Planner::Impl {
       memory = {};
       scene_changed();
     } else {
-      all_changed();
+      path_changed();
+      scene_changed();
     }
   }
 
@@ -331,8 +338,9 @@ struct Planner::Impl {
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
                                budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
-    found =
-        search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : AskedFirst{}, options, counters, result.time_ms);
+    const std::vector<Suspect> asked_before = remembered ? std::exchange(suspects, {}) : std::vector<Suspect>();
+    found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : AskedFirst{}, asked_before, options,
+                          counters, result.time_ms);
     count(validity);
     return found;
   }
@@ -473,6 +481,7 @@ void Planner::set_problem(Problem problem) {
   impl_->problem.vary = problem.vary;
   impl_->set_scene(std::move(problem.scene));
   impl_->set_task(problem);
+  impl_->suspects.clear();  // problems have little in common; and what one takes must not hang on the one before
 }
 
 void Planner::add(SceneObject object) {
@@ -480,7 +489,7 @@ void Planner::add(SceneObject object) {
   next.scene.push_back(std::move(object));
   impl_->replace(std::move(next));
   impl_->met.push_back(impl_->plans + 1);
-  impl_->scene_changed();
+  impl_->bodies_changed();
 }
 
 void Planner::move(const std::string& object, const Pose& pose) {
@@ -498,7 +507,7 @@ void Planner::remove(const std::string& object) {
   impl_->replace(std::move(next));
   impl_->met.erase(impl_->met.begin() + static_cast<std::ptrdiff_t>(k));
   impl_->memory.object_removed(static_cast<int>(k));
-  impl_->scene_changed();
+  impl_->bodies_changed();
 }
 
 void Planner::attach(AttachedBody body) {

@@ -39,8 +39,9 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
-Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first, const PlanOptions& options,
-                    Counters& counters, std::map<std::string, double>& time_ms) {
+Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first,
+                    std::span<const Suspect> suspects, const PlanOptions& options, Counters& counters,
+                    std::map<std::string, double>& time_ms) {
   Stopwatch watch;
   Found found;
   SearchCounters searched;
@@ -49,7 +50,10 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   const bool in_batches = options.planner == PlannerKind::kParallel || options.hooks.check;
   const PathFirstOptions path_first_options{.batch = in_batches ? 32 : 1};
   try {
-    if (!swept) cost_to_go.sweep(cost_to_go.lattice().layers() - 1);
+    if (!swept) {
+      ask_suspects(cost_to_go, validity, suspects);
+      cost_to_go.sweep(cost_to_go.lattice().layers() - 1);
+    }
     time_ms["sweep"] = watch.lap();
     found.outcome = path_first(cost_to_go, validity, path_first_options, searched, first);
     found.decided = true;

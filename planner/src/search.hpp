@@ -3,6 +3,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "swivel/core/plan.hpp"
@@ -24,8 +25,10 @@ struct Found {
 /// The planners eager and eager_dp.
 [[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
                                    Counters& counters);
-/// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals.
+/// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals; else `suspects` are asked about
+/// before it is swept.
 [[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first,
-                                  const PlanOptions& options, Counters& counters, std::map<std::string, double>& time_ms);
+                                  std::span<const Suspect> suspects, const PlanOptions& options, Counters& counters,
+                                  std::map<std::string, double>& time_ms);
 
 }  // namespace swivel

@@ -140,6 +140,43 @@ TEST(Planner, RemembersWithoutChangingAnAnswer) {
   EXPECT_LT(remembered_questions, fresh_questions * 2 / 3);
 }
 
+/// What failed where the path was a moment ago is asked about first: fewer rounds of search, for the same answers.
+TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
+  const std::uint64_t base = seed("Suspects");
+  const auto robots = all_robots();
+  int plans = 0, solved = 0;
+  std::int64_t remembered_rounds = 0, fresh_rounds = 0;
+  for (int trial = 0; trial < trials(60); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    problem.start.reset();
+    Planner planner(problem);
+    for (int step = 0; step < 5; ++step) {
+      PlanOptions options;
+      options.planner = random.coin() ? PlannerKind::kLazy : PlannerKind::kParallel;
+      options.threads = 2;
+      options.evidence.layers = true;
+      const PlanResult remembered = planner.plan(options), fresh = plan(planner.problem(), options);
+      expect_same(remembered, fresh, "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial));
+      if (HasFatalFailure()) return;
+      if (step > 0) {
+        ++plans;
+        solved += fresh.status == PlanStatus::kSolved;
+        remembered_rounds += remembered.counters.iterations;
+        fresh_rounds += fresh.counters.iterations;
+      }
+      Task task = planner.problem();
+      for (Waypoint& waypoint : task.waypoints) waypoint.position.z() += random.uniform(-0.001, 0.001);
+      planner.set_task(task);
+    }
+  }
+  std::printf("%d plans, %d solved; %lld rounds where fresh planners have %lld\n", plans, solved,
+              static_cast<long long>(remembered_rounds), static_cast<long long>(fresh_rounds));
+  if (plans < 200) return;
+  EXPECT_GT(solved, plans / 5);
+  EXPECT_LT(remembered_rounds, fresh_rounds * 3 / 4);
+}
+
 TEST(Planner, StopsAndGoesOn) {
   Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   problem.resolution = {.ds = 0.01, .dphi = 0.1};

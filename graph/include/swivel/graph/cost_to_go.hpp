@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "swivel/core/lattice.hpp"
@@ -52,6 +53,8 @@ class CostToGo {
 
   /// One node's joints.
   [[nodiscard]] virtual Config config(int layer, int slot) = 0;
+  /// The same, before the first sweep too; none where there is no such node.
+  [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) { return lattice().node(layer, slot); }
   struct Step {
     int slot = 0;
     double cost = 0;  ///< of the edge and of the node that it leaves

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "swivel/graph/cost_to_go.hpp"
@@ -37,6 +38,12 @@ struct AskedFirst {
   std::vector<EdgeQuestion> edges;
 };
 
+/// A node that failed in the search of another lattice like this one, whose path lay a little elsewhere.
+struct Suspect {
+  int layer = 0, slot = 0;
+  FailureId likely = kNoFailure;
+};
+
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
 /// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
@@ -44,6 +51,10 @@ struct AskedFirst {
 /// They are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                        SearchCounters& counters, const AskedFirst& first = {});
+
+/// Asks about nodes before the first sweep and removes those that fail, so that neither sweep nor search begins with what failed a
+/// moment ago. It ends where hardly any fails. Changes the work, never the answer. Throws Stopped.
+void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects);
 
 /// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
 /// the cost-to-go with that layer as its goal. Throws Stopped.
