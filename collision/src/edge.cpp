@@ -33,11 +33,11 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 
 namespace {
 
-/// below(q, level, likely) names a pair too near, or none; below_on(stretch, q, level) as well, of a stretch about q. No pair comes
+/// below(q, level, likely, stretch) names a pair too near, or none; of a stretch about q, where it is not null. No pair comes
 /// nearer by more than `bound` on the whole motion, and no point's path bends by more than `bend` on half of it.
-template <class Below, class BelowOn>
+template <class Below>
 std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double bend,
-                               const Budget& budget, const Below& below, const BelowOn& below_on) {
+                               const Budget& budget, const Below& below) {
   const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
@@ -53,12 +53,12 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
       const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {
-        if (const auto pair = below(q, Keep::kMidpoint, std::nullopt)) return pair;
+        if (const auto pair = below(q, Keep::kMidpoint, std::nullopt, nullptr)) return pair;
         continue;
       }
-      const auto likely = below_on(stretch, q, Level(Keep::kMidpoint, half_bound));
+      const auto likely = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt, &stretch);
       if (!likely) continue;
-      if (const auto pair = below(q, Keep::kMotion, likely)) return pair;
+      if (const auto pair = below(q, Keep::kMotion, likely, nullptr)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }
@@ -74,13 +74,11 @@ double distance_of(const Level& level, const EdgeRule::Near& pair) {
 
 bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                 const Budget& budget) {
-  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
+  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
     return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
-  return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one,
-                [&](const Stretch&, const Config& q, const Level& level) { return this_one(q, level, {}); })
-      .has_value();
+  return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one).has_value();
 }
 
 }  // namespace
@@ -88,18 +86,13 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                      const Budget& budget, double* spare) {
   if (spare) *spare = std::numeric_limits<double>::infinity();
-  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
-    const auto pair = query.next_below(q, level, likely);
+  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely, const Stretch* stretch) {
+    const auto pair = stretch ? query.next_below_on(*stretch, q, level) : query.next_below(q, level, likely);
     // What is asked of motions says whether to go on, and proves nothing.
     if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
     return pair;
   };
-  const auto any_on = [&](const Stretch& stretch, const Config& q, const Level& level) {
-    const auto pair = query.next_below_on(stretch, q, level);
-    if (spare && !pair) *spare = std::min(*spare, query.spare(level));
-    return pair;
-  };
-  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any, any_on))
+  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any))
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
@@ -110,12 +103,10 @@ bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& 
                      const Budget& budget) {
   for (const EdgeRule::Near& near : rule.near)
     if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
-  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&) {
+  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
     return query.pair_below(q, pair, level) ? std::optional(pair) : std::nullopt;
   };
-  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one,
-                [&](const Stretch&, const Config& q, const Level& level) { return this_one(q, level, {}); })
-      .has_value();
+  return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one).has_value();
 }
 
 }  // namespace swivel
