@@ -74,6 +74,8 @@ void ClearanceMemory::object_removed(int object) {
         finding = {{0, true, kNoPair, finding.listed}};
       else
         --finding.pair.b;
+      if constexpr (requires { finding.answer; })
+        if (!finding.valid) finding.answer.failure = failure_of(finding.pair);
     }
   };
   renumber(nodes_);

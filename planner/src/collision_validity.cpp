@@ -75,8 +75,6 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
       const auto holds = memory_->holds(*known);
       if (holds == ClearanceMemory::Holds::kAll) {
         answers[k] = known->answer;
-        // Bodies may be numbered otherwise since.
-        if (known->pair != ClearanceMemory::kNoPair) answers[k].failure = failure_of(known->pair);
         continue;
       }
       open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;

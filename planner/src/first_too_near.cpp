@@ -29,20 +29,20 @@ class OpenParts {
     add_travel(world, rule);
     add_pairs(world, rule);
     const std::size_t last = joints.size() - 1;
-    std::vector<Stretch> stretches;
-    for (std::size_t pair = 0; pair < pairs_.size(); ++pair) stretches.push_back({pair, 0, last, at_end(pair, 0, last), kNever});
-    for (Stretch& stretch : stretches) {
-      stretch.first = forward(stretch.pair, 0, last, stretch.clear_first);
-      stretch.clear_first -= travel(stretch.pair, 0, stretch.first);
+    std::vector<OpenRun> runs;
+    for (std::size_t pair = 0; pair < pairs_.size(); ++pair) runs.push_back({pair, 0, last, at_end(pair, 0, last), kNever});
+    for (OpenRun& run : runs) {
+      run.first = forward(run.pair, 0, last, run.clear_first);
+      run.clear_first -= travel(run.pair, 0, run.first);
     }
-    std::erase_if(stretches, [&](const Stretch& stretch) { return stretch.first == last; });
-    for (Stretch& stretch : stretches) {
-      stretch.clear_last = at_end(stretch.pair, last, last - stretch.first);
-      stretch.last = backward(stretch.pair, stretch.first, last, stretch.clear_last);
-      stretch.clear_last -= travel(stretch.pair, stretch.last, last);
+    std::erase_if(runs, [&](const OpenRun& run) { return run.first == last; });
+    for (OpenRun& run : runs) {
+      run.clear_last = at_end(run.pair, last, last - run.first);
+      run.last = backward(run.pair, run.first, last, run.clear_last);
+      run.clear_last -= travel(run.pair, run.last, last);
     }
-    std::erase_if(stretches, [](const Stretch& stretch) { return stretch.first == stretch.last; });
-    settle(0, last, stretches);
+    std::erase_if(runs, [](const OpenRun& run) { return run.first == run.last; });
+    settle(0, last, runs);
   }
 
  private:
@@ -56,7 +56,7 @@ class OpenParts {
   };
   /// Of one pair: all moves from one row to another are open, and the rows between, not those two. Clearances at both are at
   /// least these.
-  struct Stretch {
+  struct OpenRun {
     std::size_t pair, first, last;
     double clear_first, clear_last;
   };
@@ -152,18 +152,18 @@ class OpenParts {
     return at_row(pair, row, travel(pair, std::min(row, other), std::max(row, other)));
   }
 
-  /// Closes stretches, or parts of them, that lie between these two rows.
-  void settle(std::size_t first, std::size_t last, const std::vector<Stretch>& stretches) {
-    if (stretches.empty()) return;
+  /// Closes runs, or parts of them, that lie between these two rows.
+  void settle(std::size_t first, std::size_t last, const std::vector<OpenRun>& runs) {
+    if (runs.empty()) return;
     budget_->poll();
     if (last == first + 1) {
-      for (const Stretch& stretch : stretches)
-        if (asks_moves_ && !moves[first] && !closes(stretch)) moves[first] = true;
+      for (const OpenRun& run : runs)
+        if (asks_moves_ && !moves[first] && !closes(run)) moves[first] = true;
       return;
     }
     const std::size_t middle = (first + last) / 2;
-    std::vector<Stretch> before, after;
-    for (const Stretch& s : stretches) {
+    std::vector<OpenRun> before, after;
+    for (const OpenRun& s : runs) {
       if (s.last <= middle) {
         before.push_back(s);
       } else if (s.first >= middle) {
@@ -179,8 +179,8 @@ class OpenParts {
     settle(middle, last, after);
   }
 
-  /// Of a stretch of one move.
-  bool closes(const Stretch& s) {
+  /// Of a run of one move.
+  bool closes(const OpenRun& s) {
     const std::size_t k = s.first;
     if (reaches(s.pair, k, 1, s.clear_first, s.clear_last)) return true;
     const double need = travel(s.pair, k, k + 1);
