@@ -158,6 +158,22 @@ Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double m
   return prove_triangles(a, b, d, margin, witness);
 }
 
+bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+  return a.shape->triangles && b.shape->triangles && a.shape->beyond_triangles == 0 && b.shape->beyond_triangles == 0;
+}
+
+double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
+  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
+  const double surfaces = a.shape->triangles->distance(*b.shape->triangles, b_in_a, enough, limit, witness);
+  return surfaces > 0 && (one_inside_other(a, b) || one_inside_solid(a, b)) ? 0 : surfaces;
+}
+
+bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness) {
+  if (!are_triangles(a, b)) return prove(a, b, d, 0, witness).certificate == Certificate::kFree;
+  const double far = d + kTriangleBand;
+  return triangle_distance(a, b, far, far, witness) >= far;
+}
+
 bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness) {
   if (is_round(b) && !is_round(a)) {
     TrianglePair swapped{witness.b, witness.a};

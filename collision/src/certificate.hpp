@@ -25,6 +25,18 @@ struct Proof {
 };
 [[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness);
 
+/// What the distance of two surfaces of triangles may differ by between triangle_distance() and FCL, m: of meshes and boxes, both
+/// in closed form but for boxes, where FCL's GJK gives 0.05 um.
+inline constexpr double kTriangleBand = 1e-6;
+/// Whether both bodies are nothing but triangles: meshes and boxes.
+[[nodiscard]] bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b);
+/// Of such bodies: their clearance, m, where it lies in [enough, limit]; else as TriangleTree::distance. 0 where one holds the
+/// other.
+[[nodiscard]] double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit,
+                                       TrianglePair& witness);
+/// Whether the clearance is proved to be more than d > 0, m, by at least what FCL may differ by.
+[[nodiscard]] bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness);
+
 /// Proves by a point of one body near or inside the other that their clearance is below d - kVerdictBand; where d is below zero,
 /// that the point is by as much inside. A point is a corner or the middle of a triangle, the end of a capsule, the centre of a
 /// sphere; the other body a box, a cylinder, a capsule or a sphere. Where it finds none there may be one.

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
+
+#include "swivel/core/vertex_numbers.hpp"
 
 namespace swivel::detail {
 
@@ -91,14 +92,11 @@ bool ClosedMesh::contains(const Vector3d& point) const {
 }
 
 std::vector<Vector3d> one_point_per_part(const TriangleMesh& mesh) {
-  std::map<std::array<double, 3>, int> ids;
-  std::vector<int> id, leader;
-  for (const Vector3d& v : mesh.vertices) {
-    id.push_back(ids.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(ids.size())).first->second);
-    if (ids.size() > leader.size()) leader.push_back(id.back());
-  }
+  const std::vector<int> number = vertex_numbers(mesh);
+  std::vector<int> leader(number.size());
+  std::iota(leader.begin(), leader.end(), 0);
   const auto root = [&](int vertex) {
-    int v = id[vertex];
+    int v = number[vertex];
     while (leader[v] != v) {
       int& up = leader[v];
       up = leader[up];

@@ -5,10 +5,13 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/distance.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <limits>
 #include <memory>
+#include <queue>
+#include <tuple>
 
 #include "pair_test.hpp"
 
@@ -76,6 +79,43 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, c
     const Vector3d along = (to - from) / cores_apart;
     const Vector3d on_a = from + core_a.radius * along, on_b = to - core_b.radius * along;
     if (belongs(on_a, core_a) && belongs(on_b, core_b)) return std::array{on_a, on_b};
+  }
+  return std::nullopt;
+}
+
+std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+  PairTest test(PairTest::Meshes::kNear);
+  MeshStore none;
+  const FclShape dot = make_fcl_shape(Sphere{kTolerance / 2}, none);
+  // Of a point, how far it is from that of the two bodies which is further.
+  const auto apart = [&](const Vector3d& point) {
+    const Pose at(Eigen::Translation3d{point});
+    return std::max(test.clearance({&dot, &at}, a), test.clearance({&dot, &at}, b));
+  };
+  // Cubes in which a common point may lie, the one whose middle is nearest to both bodies first.
+  struct Cube {
+    double apart;
+    int order;
+    Vector3d middle;
+    double half;
+  };
+  const auto later = [](const Cube& x, const Cube& y) { return std::tie(x.apart, x.order) > std::tie(y.apart, y.order); };
+  std::priority_queue<Cube, std::vector<Cube>, decltype(later)> cubes(later);
+  const PlacedShapeRef& smaller = a.shape->bound.reach < b.shape->bound.reach ? a : b;
+  const Vector3d middle = *smaller.pose * smaller.shape->bound.center;
+  cubes.push({apart(middle), 0, middle, smaller.shape->bound.reach});
+  constexpr int kMost = 4000;
+  for (int asked = 1; !cubes.empty() && asked < kMost;) {
+    const Cube cube = cubes.top();
+    if (cube.apart <= kTolerance / 2) return cube.middle;
+    cubes.pop();
+    const double half = cube.half / 2;
+    for (int corner = 0; corner < 8; ++corner, ++asked) {
+      const Vector3d sign(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
+      const Vector3d point = cube.middle + half * sign;
+      const double far = apart(point);
+      if (far <= std::sqrt(3.0) * half) cubes.push({far, asked, point, half});
+    }
   }
   return std::nullopt;
 }

@@ -12,4 +12,8 @@ namespace swivel::detail {
 [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, const PlacedShapeRef& b,
                                                                     double clearance);
 
+/// A point of both, base frame: within 0.1 mm of each, or inside. None where they are further apart than that, and where none is
+/// found soon.
+[[nodiscard]] std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeRef& b);
+
 }  // namespace swivel::detail

@@ -19,10 +19,9 @@ namespace {
 constexpr double kTouching = 2 * kVerdictBand;
 
 /// Of the triangles of two bodies that have some, m.
-double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
-  TrianglePair anywhere;
+double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair& witness) {
   constexpr double kFar = 1e6;
-  return a.shape->triangles->distance(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, 0, kFar, anywhere);
+  return a.shape->triangles->distance(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, 0, kFar, witness);
 }
 
 bool is_round(const PlacedShapeRef& body) {
@@ -48,7 +47,7 @@ bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d)
   return near || one_inside_other(a, b);
 }
 
-double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
+double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* witness) {
   constexpr double kUnbounded = std::numeric_limits<double>::max();
   double found = 0;
   if (is_round(a)) {
@@ -57,7 +56,8 @@ double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b) {
     found = inflated_meets(b, a, false, 0) ? 0 : core_distance(b, a, false);
   } else {
     const bool some = meshes_ == Meshes::kNear && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
-    const double surfaces = some ? surface_distance(a, b) : 0;
+    TrianglePair anywhere;
+    const double surfaces = some ? surface_distance(a, b, witness ? *witness : anywhere) : 0;
     found = surfaces > kTouching ? near_distance(a, b, surfaces + kVerdictBand, kUnbounded) : whole_distance(a, b, kUnbounded);
   }
   return found <= 0 || one_inside_other(a, b) ? 0 : found;

@@ -21,8 +21,9 @@ class PairTest {
   explicit PairTest(Meshes meshes = Meshes::kWhole) : meshes_(meshes) {}
   /// clearance(a, b) < d; d >= 0. True also where FCL fails, which is counted.
   bool below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
-  /// Clearance, m; 0 when touching, inside each other, or where FCL fails.
-  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b);
+  /// Clearance, m; 0 when touching, inside each other, or where FCL fails. `witness`: triangles at which the search for the near
+  /// ones begins, and where it ended; the answer does not depend on it.
+  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* witness = nullptr);
   [[nodiscard]] const CollisionCounters& counters() const { return counters_; }
 
  private:

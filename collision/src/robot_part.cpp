@@ -15,6 +15,7 @@ namespace swivel::detail {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr double kFarAway = 1e6;  // m, beyond any robot, with a square
 constexpr int kSamples = 1000;
 /// The first of these, an odd number: what a pair keeps is half of a median, which needs no third digit.
 constexpr std::size_t kMedianSamples = 201;
@@ -132,15 +133,32 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     if (asked - near.size() > kHalf) return kFar;
   }
   PairTest fcl(PairTest::Meshes::kNear);
-  std::vector<double> clearances;
-  for (const auto* moved : near) {
+  TrianglePair witness;
+  const auto exact = [&](const std::array<Pose, kDof + 1>& moved) {
     budget.poll();
-    const PlacedPair placed(*this, pair, *moved);
-    clearances.push_back(fcl.clearance(placed.a(), placed.b()));
-  }
-  const auto middle = clearances.begin() + static_cast<std::ptrdiff_t>(kHalf);
-  std::nth_element(clearances.begin(), middle, clearances.end());
-  return *middle;
+    const PlacedPair placed(*this, pair, moved);
+    return fcl.clearance(placed.a(), placed.b(), &witness);
+  };
+  const auto own = [&](const std::array<Pose, kDof + 1>& moved) {
+    budget.poll();
+    const PlacedPair placed(*this, pair, moved);
+    return triangle_distance(placed.a(), placed.b(), 0, kFarAway, witness);
+  };
+  const auto middle_of = [&](std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(kHalf);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+  };
+  // Our own distances of triangles tell which ones FCL need not be asked about.
+  const PlacedPair first(*this, pair, *near.front());
+  const bool triangles = are_triangles(first.a(), first.b());
+  std::vector<double> clearances;
+  for (const auto* moved : near) clearances.push_back(triangles ? own(*moved) : exact(*moved));
+  const double middle = middle_of(clearances);
+  if (!triangles) return middle;
+  for (std::size_t k = 0; k < near.size(); ++k)
+    if (std::abs(clearances[k] - middle) <= 2 * kTriangleBand) clearances[k] = exact(*near[k]);
+  return middle_of(clearances);
 }
 
 std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<const RobotPart>& part, const Limits& limits,

@@ -420,7 +420,9 @@ struct World::Query::Impl {
 
   /// Without FCL: that the clearance of one of the pairs is more than this.
   [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
-    return certificates == Certificates::kOn && certify_pair(world->pairs[k], d, witness[k]) == Certificate::kFree;
+    const BodyPair& p = world->pairs[k];
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return true;
+    return certificates == Certificates::kOn && proves_beyond(placed(p.a), placed(p.b), d, witness[k]);
   }
 
   void move_on() {
@@ -476,6 +478,7 @@ struct World::Query::Impl {
     clear_by(std::max(bound_now, proof.bound));
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
+  std::optional<Clearance> nearest(const Clearance& so_far);
   double clear_by(std::size_t k, double least, double enough) {
     const BodyPair& p = world->pairs[k];
     place_body(p.a);
@@ -548,10 +551,20 @@ bool World::Query::surely_below(const Config& q, const BodyPair& pair, const Lev
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {
+  constexpr double kMost = std::numeric_limits<double>::max();
   impl_->move_to(q);
-  impl_->place_bodies();
-  const World::Impl& world = *impl_->world;
-  const auto& pairs = world.pairs;
+  return impl_->nearest({kMost, {}, 0, kMost});
+}
+
+std::optional<World::Query::Clearance> World::Query::clearance_below(const Config& q, const Clearance& so_far) {
+  impl_->move_to(q);
+  return impl_->nearest(so_far);
+}
+
+/// None where no pair is below `so_far`.
+std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearance& so_far) {
+  place_bodies();
+  const auto& pairs = world->pairs;
   struct Candidate {
     double bound;  ///< least possible distance, m
     std::size_t pair;
@@ -561,39 +574,46 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   order.reserve(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const BodyPair& p = pairs[k];
-    order.push_back({distance_bound(impl_->bound(p.a), impl_->placed_bound(p.a), impl_->bound(p.b), impl_->placed_bound(p.b)), k,
-                     world.required(k, Keep::kNode)});
+    order.push_back(
+        {distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k, world->required(k, Keep::kNode)});
   }
   std::sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
     return std::tuple(x.bound - x.required, x.pair) < std::tuple(y.bound - y.required, y.pair);
   });
 
-  constexpr double kMost = std::numeric_limits<double>::max();
-  std::tuple<bool, double, std::size_t> least{true, kMost, pairs.size()};  // does not touch, margin, pair
-  Clearance answer{kMost, {}, 0, kMost};
+  std::tuple<bool, double, std::size_t> least{true, so_far.margin(), pairs.size()};  // does not touch, margin, pair
+  Clearance answer{std::numeric_limits<double>::max(), {}, 0, so_far.least};
+  bool nearer = false;
   for (const Candidate& c : order) {
     const bool may_touch = c.bound <= kBoundSafety, may_be_nearest = c.bound - kBoundSafety <= answer.least;
     if (!may_touch && !may_be_nearest && c.bound - c.required - kBoundSafety > std::get<1>(least)) continue;
     // Neither the least margin nor the least clearance, where it is proved to be further than both.
     const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
-    if (std::get<0>(least) && beyond < kMost && impl_->proved_beyond(c.pair, beyond)) continue;
-    const double found = impl_->test.clearance(impl_->placed(pairs[c.pair].a), impl_->placed(pairs[c.pair].b));
+    if (std::get<0>(least) && beyond < std::numeric_limits<double>::max() && proved_beyond(c.pair, beyond)) continue;
+    const double found = test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &witness[c.pair]);
+    nearer = nearer || found < answer.least;
     answer.least = std::min(answer.least, found);
     if (const std::tuple mine{found > 0, found - c.required, c.pair}; mine < least) {
+      nearer = true;
       least = mine;
       answer.distance = found;
       answer.pair = pairs[c.pair];
       answer.required = c.required;
     }
   }
-  if (order.empty()) return std::nullopt;
-  return answer;
+  return nearer ? std::optional(answer) : std::nullopt;
 }
 
 std::optional<std::array<Vector3d, 2>> World::Query::nearest_points(const Config& q, const Clearance& clearance) {
   impl_->move_to(q);
   impl_->place_bodies();
   return detail::nearest_points(impl_->placed(clearance.pair.a), impl_->placed(clearance.pair.b), clearance.distance);
+}
+
+std::optional<Vector3d> World::Query::common_point(const Config& q, const BodyPair& pair) {
+  impl_->move_to(q);
+  impl_->place_bodies();
+  return detail::common_point(impl_->placed(pair.a), impl_->placed(pair.b));
 }
 
 CollisionCounters World::Query::counters() const {

@@ -2,32 +2,57 @@
 #include "swivel/core/shape.hpp"
 
 #include <algorithm>
-#include <map>
 #include <tuple>
+#include <utility>
+
+#include "swivel/core/vertex_numbers.hpp"
 
 namespace swivel {
 
-bool is_closed(const TriangleMesh& mesh) {
-  // STL stores every corner anew, so equal positions are one vertex.
-  std::map<std::tuple<double, double, double>, int> ids;
-  const auto id = [&](int v) {
-    const Vector3d& p = mesh.vertices[static_cast<std::size_t>(v)];
-    return ids.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(ids.size())).first->second;
+std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
+  struct Corner {
+    double x, y, z;
+    int vertex;
   };
-  std::map<std::pair<int, int>, int> balance;  // +1 for a directed edge, -1 for its reverse
-  std::map<std::pair<int, int>, int> uses;
+  std::vector<Corner> corners;
+  corners.reserve(mesh.vertices.size());
+  for (const Vector3d& p : mesh.vertices) corners.push_back({p.x(), p.y(), p.z(), static_cast<int>(corners.size())});
+  const auto position = [](const Corner& c) { return std::tie(c.x, c.y, c.z); };
+  std::sort(corners.begin(), corners.end(), [&](const Corner& s, const Corner& t) { return position(s) < position(t); });
+  std::vector<int> numbers(corners.size());
+  int number = 0;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    number += k > 0 && position(corners[k - 1]) != position(corners[k]);
+    numbers[static_cast<std::size_t>(corners[k].vertex)] = number;
+  }
+  return numbers;
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  const std::vector<int> number = vertex_numbers(mesh);
+  struct Edge {
+    std::pair<int, int> ends;  // the lesser one first
+    bool reversed;
+    bool operator<(const Edge& other) const { return std::tie(ends, reversed) < std::tie(other.ends, other.reversed); }
+  };
+  std::vector<Edge> edges;
+  edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
-    const std::array<int, 3> v{id(triangle[0]), id(triangle[1]), id(triangle[2])};
+    std::array<int, 3> v{};
+    for (std::size_t k = 0; k < 3; ++k) v[k] = number[static_cast<std::size_t>(triangle[k])];
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;  // a sliver has no area and bounds nothing
-    for (int k = 0; k < 3; ++k) {
-      const int from = v[static_cast<std::size_t>(k)], to = v[static_cast<std::size_t>((k + 1) % 3)];
-      const auto key = std::minmax(from, to);
-      balance[key] += from < to ? 1 : -1;
-      uses[key] += 1;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = v[k], to = v[(k + 1) % 3];
+      edges.push_back({std::minmax(from, to), from > to});
     }
   }
-  if (uses.empty()) return false;
-  return std::all_of(uses.begin(), uses.end(), [&](const auto& use) { return use.second == 2 && balance[use.first] == 0; });
+  if (edges.empty() || edges.size() % 2 != 0) return false;
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t k = 0; k < edges.size(); k += 2) {  // each once in each direction
+    if (edges[k].ends != edges[k + 1].ends || edges[k].reversed || !edges[k + 1].reversed) return false;
+    if (k > 0 && edges[k - 1].ends == edges[k].ends) return false;
+  }
+  return true;
 }
 
 std::vector<Ball> bounding_balls(const Shape& shape) {

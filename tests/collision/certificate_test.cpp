@@ -179,6 +179,7 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
   MeshStore store;
   PairTest fcl, near_parts(PairTest::Meshes::kNear);
   Verdicts round, solid, mesh, touching;
+  int triangles = 0;
   const int count = test::trials(5000);
   for (int k = 0; k < count; ++k) {
     const double small = random.coin(0.2) ? 0.005 : random.uniform(0.01, 0.15);
@@ -202,6 +203,14 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     if (clearance > 0 && kind > 2) {
       ASSERT_TRUE(near_parts.below(a, b, std::nextafter(clearance, 1))) << where << " kind " << kind;
       ASSERT_FALSE(near_parts.below(a, b, clearance)) << where << " kind " << kind;
+    }
+    if (are_triangles(a, b)) {
+      TrianglePair anywhere;
+      const double own = triangle_distance(a, b, 0, 10, anywhere);
+      ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand) << where << " kind " << kind;
+      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand; d > 0 && clearance > 0)
+        ASSERT_TRUE(!proves_beyond(a, b, d, anywhere) || clearance > d) << where;
+      ++triangles;
     }
     Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
     const double beyond = fa.beyond_triangles + fb.beyond_triangles;
@@ -234,6 +243,7 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     EXPECT_GT(tally.colliding, tally.all() / 10) << name;
   }
   EXPECT_EQ(touching.free, 0);
+  EXPECT_GT(triangles, count / 8);
   EXPECT_GT(round.free, round.all() / 4);
   EXPECT_EQ(fcl.counters().fcl_failures, 0);
   std::printf("%d pairs of bodies, %lld FCL calls\n", count, static_cast<long long>(fcl.counters().fcl_calls));

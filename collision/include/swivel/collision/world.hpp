@@ -214,9 +214,14 @@ class World {
       [[nodiscard]] double margin() const { return distance - required; }
     };
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
+    /// The same, but none where neither its margin nor its least is below that of `so_far`, whose bodies do not touch: a proof of
+    /// that will do. Where the least alone is, the distance is the largest number there is.
+    [[nodiscard]] std::optional<Clearance> clearance_below(const Config& q, const Clearance& so_far);
     /// A point of each of the two bodies of clearance(q), base frame, as far apart as the bodies are: within 0.1 mm. For drawing.
     /// None where they touch, and where FCL has no points that can be believed.
     [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const Config& q, const Clearance& clearance);
+    /// A point of both bodies, base frame, within 0.1 mm. For drawing. None where they do not touch, and where none is found soon.
+    [[nodiscard]] std::optional<Vector3d> common_point(const Config& q, const BodyPair& pair);
     [[nodiscard]] CollisionCounters counters() const;
 
    private:
