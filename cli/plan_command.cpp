@@ -166,7 +166,8 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
         PageMotion motion;
         if (plan.refinement && plan.refinement->refined) motion.refined = &result.trajectory;
         if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget, arguments.episode.words());
+        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget,
+                       {arguments.episode.words(), answer_text(result) + (advice ? advice_text(*advice) : "")});
       }
     } catch (const Stopped&) {
       map.reset();

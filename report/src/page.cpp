@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <sstream>
 #include <string_view>
 
+#include "drawing.hpp"
 #include "map_cells.hpp"
 #include "page_template.hpp"
 #include "scene_json.hpp"
@@ -161,7 +163,8 @@ std::string millimetres(double metres) {
   return text;
 }
 
-/// How near two bodies are that are too near, in words, and the line between their nearest points.
+/// How near two bodies are that are too near, in words, and the line between their nearest points; where they are inside each
+/// other, a point of both.
 struct Nearness {
   std::string words;
   Json line = nullptr;
@@ -173,6 +176,7 @@ Nearness nearness(const World& world, const std::array<std::string, 2>& names, c
   // The largest depth that is proved, by bisection: of a point of one inside the other.
   constexpr double kDeepest = 0.5, kTelling = 1e-4;  // m
   double depth = 0;
+  std::optional<BodyPair> deepest;
   const auto named = [&](const BodyPair& pair) {
     const auto own = world.names(pair);
     return own == names || (own[0] == names[1] && own[1] == names[0]);
@@ -183,11 +187,21 @@ Nearness nearness(const World& world, const std::array<std::string, 2>& names, c
       const double middle = (depth + above) / 2;
       (query.surely_below(q, pair, Level(-middle)) ? depth : above) = middle;
     }
+    deepest = pair;
   }
-  if (depth > 0) return {"at least " + millimetres(depth) + " inside each other"};
+  const auto meeting = [&](const BodyPair& pair, const std::string& words) {
+    Nearness meet{words};
+    if (const auto point = query.common_point(q, pair)) {
+      Json ends = vector_json(*point);
+      for (const double x : *point) ends.push_back(x);
+      meet.line = {{"points", std::move(ends)}, {"text", words}};
+    }
+    return meet;
+  };
+  if (deepest) return meeting(*deepest, "at least " + millimetres(depth) + " inside each other");
   const auto clearance = query.clearance(q);
   if (!clearance || !named(clearance->pair)) return {};
-  if (!(clearance->distance > 0)) return {"they touch"};
+  if (!(clearance->distance > 0)) return meeting(clearance->pair, "they touch");
   Nearness apart{millimetres(clearance->distance) + " apart, asked " + millimetres(clearance->required)};
   if (const auto points = query.nearest_points(q, *clearance)) {
     Json ends = vector_json((*points)[0]);
@@ -351,6 +365,13 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
           {"s", map.s}};
 }
 
+std::string escaped_lines(const std::string& text) {
+  std::istringstream lines(text);
+  std::string result;
+  for (std::string line; std::getline(lines, line);) result += escaped(line) + '\n';
+  return result;
+}
+
 }  // namespace
 
 bool page_available() {
@@ -358,7 +379,7 @@ bool page_available() {
 }
 
 std::string to_page(const PlanView& view, const LatticeMap& map, const std::string& result_json, const PageMotion& motion,
-                    const Budget& budget, const std::string& which) {
+                    const Budget& budget, const PageWords& words) {
   const Problem& problem = view.problem;
   const World& world = view.world;
   const Lattice& lattice = view.lattice;
@@ -371,9 +392,11 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
+  const std::string name = std::filesystem::path(problem.source).filename().string();
+  const std::string title = words.which.empty() ? name : name + ", " + words.which;
   const Json data = {
-      {"problem", std::filesystem::path(problem.source).filename().string()},
-      {"which", which},
+      {"problem", name},
+      {"which", words.which},
       {"result", result},
       {"settings",
        {{"ds", problem.resolution.ds},
@@ -392,7 +415,8 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                                : Json(nullptr)},
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, diagnosis) : Json(nullptr)},
       {"map", map_json(map, lattice, world, budget)}};
-  return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
+              {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
 }
 
 }  // namespace swivel

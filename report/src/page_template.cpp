@@ -48,15 +48,23 @@ std::string_view placement_template() {
 #endif
 }
 
-std::string fill(std::string_view page, const std::string& json) {
-  constexpr std::string_view kMark = "@@DATA@@";
-  const std::size_t mark = page.find(kMark);
-  if (mark == std::string_view::npos) throw std::logic_error("the page has no place for its data");
-  std::string filled(page.substr(0, mark));
+std::string fill(std::string_view page, const std::string& json,
+                 const std::vector<std::pair<std::string_view, std::string>>& besides) {
+  std::string filled;
+  const auto copy_up_to = [&](std::string_view mark) {
+    const std::size_t at = page.find(mark);
+    if (at == std::string_view::npos) throw std::logic_error("the page has no place for " + std::string(mark));
+    filled += page.substr(0, at);
+    page.remove_prefix(at + mark.size());
+  };
+  for (const auto& [mark, html] : besides) {
+    copy_up_to(mark);
+    filled += html;
+  }
+  copy_up_to("@@DATA@@");
   // "</script" would end the element that holds the data, "<!--" and "<script" hide its end.
   for (const char c : json) filled += c == '<' ? "\\u003c" : std::string(1, c);
-  filled += page.substr(mark + kMark.size());
-  return filled;
+  return filled += page;
 }
 
 }  // namespace swivel::detail
