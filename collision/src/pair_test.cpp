@@ -7,8 +7,11 @@
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <limits>
+
+#include "certificate.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel::detail {
@@ -40,6 +43,11 @@ bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d)
     // FCL skips subtrees that cannot beat the result it is given, so a result that starts just above d gives the verdict of a fresh
     // one without searching for a minimum that nobody asks for.
     constexpr double kAbove = 1e-5;
+    if (meshes_ == Meshes::kNear && are_triangles(a, b)) {
+      TrianglePair anywhere;
+      const double own = triangle_distance(a, b, d - kTriangleBand, d + kTriangleBand, anywhere);
+      if (std::abs(own - d) >= kTriangleBand) return own < d;
+    }
     const bool some = meshes_ == Meshes::kNear && d > kTouching && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
     const double found = some ? near_distance(a, b, d + kVerdictBand, d + kAbove) : whole_distance(a, b, d + kAbove);
     near = found < d || found <= 0;

@@ -2,57 +2,51 @@
 #include "swivel/core/shape.hpp"
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
 
 #include "swivel/core/vertex_numbers.hpp"
 
 namespace swivel {
 
 std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
-  struct Corner {
-    double x, y, z;
-    int vertex;
+  using Position = std::array<double, 3>;
+  struct Hash {
+    std::size_t operator()(const Position& p) const {
+      const std::hash<double> hash;  // one of 0 and -0, which are equal
+      return 31 * (31 * hash(p[0]) + hash(p[1])) + hash(p[2]);
+    }
   };
-  std::vector<Corner> corners;
-  corners.reserve(mesh.vertices.size());
-  for (const Vector3d& p : mesh.vertices) corners.push_back({p.x(), p.y(), p.z(), static_cast<int>(corners.size())});
-  const auto position = [](const Corner& c) { return std::tie(c.x, c.y, c.z); };
-  std::sort(corners.begin(), corners.end(), [&](const Corner& s, const Corner& t) { return position(s) < position(t); });
-  std::vector<int> numbers(corners.size());
-  int number = 0;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    number += k > 0 && position(corners[k - 1]) != position(corners[k]);
-    numbers[static_cast<std::size_t>(corners[k].vertex)] = number;
-  }
+  std::unordered_map<Position, int, Hash> known;
+  known.reserve(mesh.vertices.size());
+  std::vector<int> numbers;
+  numbers.reserve(mesh.vertices.size());
+  for (const Vector3d& p : mesh.vertices)
+    numbers.push_back(known.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(known.size())).first->second);
   return numbers;
 }
 
 bool is_closed(const TriangleMesh& mesh) {
   const std::vector<int> number = vertex_numbers(mesh);
-  struct Edge {
-    std::pair<int, int> ends;  // the lesser one first
-    bool reversed;
-    bool operator<(const Edge& other) const { return std::tie(ends, reversed) < std::tie(other.ends, other.reversed); }
+  struct Uses {
+    int forth = 0, back = 0;
   };
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangles.size());
+  std::unordered_map<std::uint64_t, Uses> edges;  // by both ends, the lesser one first
+  edges.reserve(3 * mesh.triangles.size() / 2);
   for (const auto& triangle : mesh.triangles) {
     std::array<int, 3> v{};
     for (std::size_t k = 0; k < 3; ++k) v[k] = number[static_cast<std::size_t>(triangle[k])];
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;  // a sliver has no area and bounds nothing
     for (std::size_t k = 0; k < 3; ++k) {
-      const int from = v[k], to = v[(k + 1) % 3];
-      edges.push_back({std::minmax(from, to), from > to});
+      const auto from = static_cast<std::uint32_t>(v[k]), to = static_cast<std::uint32_t>(v[(k + 1) % 3]);
+      Uses& uses = edges[std::uint64_t{std::min(from, to)} << 32 | std::max(from, to)];
+      ++(from < to ? uses.forth : uses.back);
     }
   }
-  if (edges.empty() || edges.size() % 2 != 0) return false;
-  std::sort(edges.begin(), edges.end());
-  for (std::size_t k = 0; k < edges.size(); k += 2) {  // each once in each direction
-    if (edges[k].ends != edges[k + 1].ends || edges[k].reversed || !edges[k + 1].reversed) return false;
-    if (k > 0 && edges[k - 1].ends == edges[k].ends) return false;
-  }
-  return true;
+  return !edges.empty() &&
+         std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second.forth == 1 && edge.second.back == 1; });
 }
 
 std::vector<Ball> bounding_balls(const Shape& shape) {

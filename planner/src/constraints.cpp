@@ -222,9 +222,9 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
 
 std::optional<double> Constraints::clearance(const BodyPair& pair, const Config& q, double most) {
   double low = 0, high = most;  // below `high`, not below `low`
-  constexpr double kContact = 1e-6;
+  constexpr double kContact = 1e-6, kTelling = 1e-5;
   if (query_.pair_below(q, pair, kContact)) return 0;
-  for (int k = 0; k < 12; ++k) {
+  while (high - low > kTelling) {
     const double middle = (low + high) / 2;
     (query_.pair_below(q, pair, middle) ? high : low) = middle;
   }
