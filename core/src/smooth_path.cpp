@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace swivel {
 
@@ -156,23 +157,38 @@ bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<
   return true;
 }
 
-/// The same inside the boxes: coordinates that would leave theirs end on the bound, and the others are solved for again.
+/// The same inside the boxes, by a primal-dual active set (Hintermueller, Ito and Kunisch 2002): coordinates that would leave their
+/// box end on the bound, and those whose bound holds them back no more are free again, all at once: one at a time would need as
+/// many steps as a path has layers on bounds. Where that does not settle, bounds are only added.
 bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, std::vector<bool> free,
                         double shift, const std::vector<double>& x, const std::vector<CoordinateBox>& boxes,
                         std::vector<double>& p) {
-  constexpr int kRounds = 10;
+  constexpr int kRounds = 40, kSettling = 25;
+  const std::size_t n = x.size();
   std::fill(p.begin(), p.end(), 0);
+  std::vector<std::size_t> change;
   for (int round = 0; round < kRounds; ++round) {
     if (!newton_step(H, g, free, shift, p)) return false;
-    bool leaves = false;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const double inside = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
-      if (!free[i] || inside == x[i] + p[i]) continue;
-      free[i] = false;
-      p[i] = inside - x[i];
-      leaves = true;
+    change.clear();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double low = boxes[i].low - x[i], high = boxes[i].high - x[i];
+      if (free[i]) {
+        if (p[i] < low || p[i] > high) change.push_back(i);
+        continue;
+      }
+      if (round >= kSettling || low >= high) continue;
+      double slope = g[i] + (H[0][i] + shift) * p[i];  // of the model, at p
+      if (i >= 1) slope += H[1][i - 1] * p[i - 1];
+      if (i >= 2) slope += H[2][i - 2] * p[i - 2];
+      if (i + 1 < n) slope += H[1][i] * p[i + 1];
+      if (i + 2 < n) slope += H[2][i] * p[i + 2];
+      if (p[i] <= low ? slope < 0 : slope > 0) change.push_back(i);
     }
-    if (!leaves) return true;
+    if (change.empty()) return true;
+    for (const std::size_t i : change) {
+      if (free[i]) p[i] = std::clamp(p[i], boxes[i].low - x[i], boxes[i].high - x[i]);
+      free[i] = !free[i];
+    }
   }
   return true;
 }
@@ -199,7 +215,8 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
   std::vector<bool> free(x.size());
   std::vector<Config> q;
   int small = 0;
-  for (int iteration = 0; iteration < kIterations && small < 2; ++iteration) {
+  bool done = false;
+  for (int iteration = 0; iteration < kIterations && small < 2 && !done; ++iteration) {
     budget.poll();
     if (!f.derive(x, here, g, H)) return x;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -207,6 +224,8 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
     bool better = false;
     while (!better && shift <= kLastShift) {
       if (newton_step_inside(H, g, free, shift, x, boxes, p)) {
+        // A step of Newton's gains half of that.
+        done = shift == 0 && std::abs(std::inner_product(g.begin(), g.end(), p.begin(), 0.0)) < kGain * (1 + value);
         for (std::size_t i = 0; i < x.size(); ++i) next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
         if (f.solve(next, q)) {
           const double there = f.value(next, q);
@@ -219,6 +238,7 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
             break;
           }
         }
+        if (done) break;
       }
       shift = std::max(kFirstShift, 4 * shift);
     }

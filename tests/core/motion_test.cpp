@@ -235,6 +235,45 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
   EXPECT_GT(at_bounds, 20);
 }
 
+/// The plane: travel along one joint, the coordinate along another.
+class Plane final : public LayerSolver {
+ public:
+  explicit Plane(int layers) : layers_(layers) {}
+  [[nodiscard]] int layers() const override { return layers_; }
+  [[nodiscard]] double travel(int layer) const override { return 0.1 * layer; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double x) const override {
+    Config q = Config::Zero();
+    q[0] = travel(layer);
+    q[1] = x;
+    return q;
+  }
+
+ private:
+  int layers_;
+};
+
+/// A path that lies on its bounds from end to end comes off them: the shortest way between two points past walls.
+TEST(SmoothMinimum, LongPathsComeOffTheirBounds) {
+  constexpr int kLayers = 201;
+  const Plane plane(kLayers);
+  SmoothObjective objective;
+  objective.weights.fill(1);
+  objective.bending = 1e-6;
+  objective.most_change = 1;
+  std::vector<CoordinateBox> boxes(kLayers, {-1, 1});
+  boxes.front() = {-1, -1};
+  boxes.back() = {0.5, 0.5};
+  // One wall that stands in the straight way, and one that does not.
+  for (std::size_t i = 95; i <= 105; ++i) boxes[i].low = 0;
+  for (std::size_t i = 45; i <= 55; ++i) boxes[i].high = 0.6;
+  const std::vector<double> found = smooth_minimum(plane, objective, boxes, std::vector<double>(kLayers, -1));
+  for (std::size_t i = 0; i < kLayers; ++i) {
+    const double k = static_cast<double>(i);
+    const double taut = i <= 95 ? -1 + k / 95 : 0.5 * (k - 95) / 105;
+    EXPECT_NEAR(found[i], taut, 2e-3) << i;
+  }
+}
+
 /// A path from a posture well inside the limits, and rows with arm angles that wander on a grid, as a lattice has them.
 struct Followed {
   Chain chain;

@@ -22,8 +22,8 @@ struct CoordinateBox {
   double low = 0, high = 0;
 };
 /// A local minimum inside the boxes, from x on; never worse than x. Newton's method with derivatives by central differences, a
-/// pentadiagonal Hessian, Levenberg's shift where it is not positive definite, bounds by an active set (Bertsekas 1982).
-/// Deterministic. Throws Stopped.
+/// pentadiagonal Hessian, Levenberg's shift where it is not positive definite, bounds by a primal-dual active set (Hintermueller,
+/// Ito and Kunisch 2002). Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
                                                  const std::vector<CoordinateBox>& boxes, std::vector<double> x,
                                                  const Budget& budget = {});
