@@ -173,14 +173,21 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
   return most;
 }
 
-/// One path given, refined at one weight of smoothness.
+/// One path given, whose nodes are valid, refined at one weight of smoothness.
 class Refinery {
  public:
-  Refinery(const Redundancy& redundancy, Judge& judge, const std::vector<TrajectoryRow>& given, bool fixed_start,
+  /// Whether the edges of the path given are known to be valid too.
+  enum class Edges { kValid, kUnknown };
+  Refinery(const Redundancy& redundancy, Judge& judge, const std::vector<TrajectoryRow>& given, Edges edges, bool fixed_start,
            const Budget& budget)
-      : judge_(&judge), given_(given), solver_(redundancy.solver(given_)), fixed_start_(fixed_start), budget_(budget) {}
+      : judge_(&judge),
+        given_(given),
+        solver_(redundancy.solver(given_)),
+        edges_(edges),
+        fixed_start_(fixed_start),
+        budget_(budget) {}
 
-  /// Valid rows, or none within the rounds.
+  /// Valid rows, or none within the rounds, or where an edge given is not valid and its nodes cannot move.
   std::optional<std::vector<TrajectoryRow>> run(const SmoothObjective& objective, int& rounds) {
     constexpr int kRounds = 40;
     const std::size_t n = given_.size();
@@ -210,12 +217,13 @@ class Refinery {
       }
       if (fails) continue;
       for (std::size_t i = 0; i + 1 < n; ++i) {
-        if ((x[i] == given_[i].phi && x[i + 1] == given_[i + 1].phi) || (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1]))
-          continue;
+        const bool verbatim = x[i] == given_[i].phi && x[i + 1] == given_[i + 1].phi;
+        if ((verbatim && edges_ == Edges::kValid) || (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1])) continue;
         if (judge_->edge(static_cast<int>(i), rows[i], rows[i + 1])) {
           edge_known[i] = {x[i], x[i + 1]};
           continue;
         }
+        if (verbatim) return std::nullopt;
         give_way(i, x, boxes);
         fails = true;
       }
@@ -277,13 +285,38 @@ class Refinery {
   Judge* judge_;
   std::vector<TrajectoryRow> given_;  // phi: the coordinate
   std::unique_ptr<LayerSolver> solver_;
+  Edges edges_;
   bool fixed_start_;
   Budget budget_;
 };
 
-/// A path of a lattice that is up to four times as coarse along the path and finer in its coordinate, laid over the layers. None
-/// where there is none, where even its optimum without obstacles is not cheaper than `to_beat`, and where it is not valid on the
-/// layers.
+/// Moves rows to the nearest nodes that keep what refinement keeps besides, or are valid at least; false where one has neither
+/// nearby. Edges are not asked.
+bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::vector<TrajectoryRow>& rows) {
+  constexpr double kNearby = 0.1;  // rad
+  constexpr int kSteps = 20;
+  const auto moved_clear = [&](int layer, TrajectoryRow& row) {
+    for (int step = 1; step <= kSteps; ++step)
+      for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
+        const auto q = solver.joints(layer, row.phi + by);
+        if (!q || !judge.node(*q, *q)) continue;
+        row.phi += by;
+        row.q = *q;
+        return true;
+      }
+    return false;
+  };
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const bool fixed = i == 0 && fixed_start;
+    if (!fixed && (judge.node(rows[i].q, rows[i].q) || moved_clear(static_cast<int>(i), rows[i]))) continue;
+    if (!judge.bare_node(rows[i].q)) return false;
+  }
+  return true;
+}
+
+/// A path of a lattice that is up to four times as coarse along the path and finer in its coordinate, laid over the layers; its
+/// nodes are valid, its edges need not be. None where there is none, where even its optimum without obstacles is not cheaper than
+/// `to_beat`, and where a layer has no valid node nearby.
 std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem,
                                                       const Redundancy& redundancy, Judge& judge, const SmoothObjective& objective,
                                                       double to_beat, const Budget& budget) {
@@ -340,8 +373,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   std::vector<TrajectoryRow> best = rows;
   for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
   if (cost_of(lattice, best) >= to_beat) return std::nullopt;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (!judge.bare_node(rows[i].q) || (i > 0 && !judge.edge(static_cast<int>(i) - 1, rows[i - 1], rows[i]))) return std::nullopt;
+  if (!move_clear(*solver, judge, problem.start.has_value(), rows)) return std::nullopt;
   return rows;
 }
 
@@ -368,10 +400,13 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   objective.most_change = 0.98 * redundancy.most_change();
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
-    Refinery refinery(redundancy, judge, from, problem.start.has_value(), budget);
+    Refinery refinery(redundancy, judge, from, second ? Refinery::Edges::kUnknown : Refinery::Edges::kValid,
+                      problem.start.has_value(), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
-    for (int attempt = 0; attempt < 3; ++attempt, objective.bending /= 10) {
+    // Less smoothness where that alone makes a path dearer than the lattice's.
+    const int attempts = result.refined ? 1 : 3;
+    for (int attempt = 0; attempt < attempts; ++attempt, objective.bending /= 10) {
       auto refined = refinery.run(objective, result.rounds);
       if (!refined) continue;
       const double cost = cost_of(lattice, *refined);
