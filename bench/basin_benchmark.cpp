@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How near refined paths come to the optimum of their basin, on random poses: their cost over that of a fine lattice about them
 // (basin_lattice.hpp).
-//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--about] [--margins]
+//   basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about] [--margins]
 // Episodes of seed 1, default 100; a problem without `vary` is planned once. --about: lattices that have the refined path in them;
 // --margins: nodes keep what refinement keeps besides. A second a pose, up to a minute near obstacles. One line for each pose,
 // median and percentiles below.
@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,16 @@ using namespace swivel;
 struct Options {
   std::string file;
   std::uint64_t episodes = 100, first = 0;
+  std::optional<CostMetric> metric;
   bench::BasinLattice::Rules rules;
 };
+
+CostMetric metric_of(const std::string& name) {
+  if (name == "l2") return CostMetric::kL2;
+  if (name == "max") return CostMetric::kMax;
+  if (name == "time") return CostMetric::kTime;
+  throw InputError("basin_benchmark: --metric " + name + ": allowed are l2, max, time");
+}
 
 Options options_of(int argc, char** argv) {
   Options options;
@@ -39,12 +48,15 @@ Options options_of(int argc, char** argv) {
       options.rules.margins = true;
     else if ((word == "--episodes" || word == "--first") && k + 1 < argc)
       (word == "--first" ? options.first : options.episodes) = std::strtoull(argv[++k], nullptr, 10);
+    else if (word == "--metric" && k + 1 < argc)
+      options.metric = metric_of(argv[++k]);
     else if (options.file.empty() && word[0] != '-')
       options.file = word;
     else
-      throw InputError("basin_benchmark: " + word + ": allowed are a problem, --episodes, --first, --about, --margins");
+      throw InputError("basin_benchmark: " + word + ": allowed are a problem, --episodes, --first, --metric, --about, --margins");
   }
-  if (options.file.empty()) throw InputError("basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--about] [--margins]");
+  if (options.file.empty())
+    throw InputError("basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about] [--margins]");
   return options;
 }
 
@@ -54,8 +66,8 @@ double percentile(std::vector<double> values, double share) {
 }
 
 void run(const Options& options) {
-  const Problem base = with_motion_defaults(io::load_problem(options.file));
-  if (base.cost.metric != CostMetric::kL2) throw InputError(options.file + ": cost.metric: allowed here is l2");
+  Problem base = with_motion_defaults(io::load_problem(options.file));
+  if (options.metric) base.cost.metric = *options.metric;
   const PreparedRobot robot(base);
   std::vector<double> ratios;
   for (std::uint64_t episode = options.first; episode < options.first + (base.vary.empty() ? 1 : options.episodes); ++episode) {

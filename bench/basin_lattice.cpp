@@ -88,7 +88,8 @@ void BasinLattice::price(std::size_t stride, int layer) {
       if (p.state == State::kBad || q.state == State::kBad ||
           std::abs(coordinate(from + 1, b) - coordinate(from, a)) > redundancy_->most_change())
         return;
-      sum += scale.cwiseProduct(q.q - p.q).norm();
+      const Config move = scale.cwiseProduct(q.q - p.q);
+      sum += lattice_->cost().metric == CostMetric::kL2 ? move.norm() : move.lpNorm<Eigen::Infinity>();
     }
     cost(e) = static_cast<float>(sum);
   });

@@ -15,7 +15,7 @@ namespace swivel::bench {
 
 /// What a refined path is held against: a fine lattice about it, over the same layers, with its labels. Arm angles (or lengths
 /// along the self-motion) up to 0.5 rad from the path's, 0.0025 rad apart; edges to the next layer, and straight over two and four,
-/// so that there are directions between those of the grid. Its cheapest path is valid by docs/model.md; metric l2.
+/// so that there are directions between those of the grid. Its cheapest path is valid by docs/model.md.
 ///
 /// A dynamic program over all edges, that knows limits alone. Collisions and errors between layers are asked of its path; what
 /// fails is taken out, with what fails beside it, and the program run again: the answer is that of asking all first.

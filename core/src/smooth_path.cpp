@@ -24,6 +24,12 @@ struct Bend {
   double h = 0;
 };
 
+/// The norm of a weighted move: its gradient is `way`, its Hessian (power - 1) (diag(spread) - way way^T) / length.
+struct Norm {
+  double length = 0;
+  Config way, spread;
+};
+
 class Objective {
  public:
   Objective(const LayerSolver& solver, const SmoothObjective& objective)
@@ -49,7 +55,7 @@ class Objective {
   [[nodiscard]] double value(const std::vector<double>& x, const std::vector<Config>& q) const {
     double sum = 0;
     for (int i = 0; i + 1 < n_; ++i) {
-      sum += norm(scale_.cwiseProduct(q[at(i + 1)] - q[at(i)]));
+      sum += length(scale_.cwiseProduct(q[at(i + 1)] - q[at(i)]));
       const double over = std::abs(x[at(i + 1)] - x[at(i)]) - objective_->most_change;
       if (over > 0) sum += kChange * over * over;
     }
@@ -73,16 +79,14 @@ class Objective {
     for (auto& diagonal : H) diagonal.assign(x.size(), 0);
     for (int i = 0; i + 1 < n_; ++i) {
       const std::size_t a = at(i), b = at(i + 1);
-      const Config r = scale_.cwiseProduct(l.q[b] - l.q[a]);
-      const double length = norm(r);
-      const Config way = r / length;
+      const Norm n = norm(scale_.cwiseProduct(l.q[b] - l.q[a]));
       const Config ja = scale_.cwiseProduct(l.first[a]), jb = scale_.cwiseProduct(l.first[b]);
-      const double wa = way.dot(ja), wb = way.dot(jb);
+      const double wa = n.way.dot(ja), wb = n.way.dot(jb), bent = (objective_->power - 1) / n.length;
       g[a] -= wa;
       g[b] += wb;
-      H[0][a] += (ja.squaredNorm() - wa * wa) / length - way.dot(scale_.cwiseProduct(l.second[a]));
-      H[0][b] += (jb.squaredNorm() - wb * wb) / length + way.dot(scale_.cwiseProduct(l.second[b]));
-      H[1][a] -= (ja.dot(jb) - wa * wb) / length;
+      H[0][a] += bent * (ja.cwiseProduct(n.spread).dot(ja) - wa * wa) - n.way.dot(scale_.cwiseProduct(l.second[a]));
+      H[0][b] += bent * (jb.cwiseProduct(n.spread).dot(jb) - wb * wb) + n.way.dot(scale_.cwiseProduct(l.second[b]));
+      H[1][a] -= bent * (ja.cwiseProduct(n.spread).dot(jb) - wa * wb);
       const double change = x[b] - x[a], over = std::abs(change) - objective_->most_change;
       if (over <= 0) continue;
       const double pull = 2 * kChange * std::copysign(over, change);
@@ -111,7 +115,28 @@ class Objective {
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
-  static double norm(const Config& r) { return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove); }
+  [[nodiscard]] double length(const Config& r) const {
+    const int power = objective_->power;
+    if (power == 2) return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove);
+    const double unit = std::max(r.lpNorm<Eigen::Infinity>(), kLeastMove);
+    return unit * std::pow(raised(r / unit, power).sum() + raised(Config::Constant(kLeastMove / unit), power)[0], 1.0 / power);
+  }
+  [[nodiscard]] Norm norm(const Config& r) const {
+    Norm n;
+    n.length = length(r);
+    n.spread = raised(r / n.length, objective_->power - 2);
+    n.way = n.spread.cwiseProduct(r / n.length);
+    return n;
+  }
+  /// Each to an even power, >= 0, by products alone.
+  static Config raised(const Config& r, int power) {
+    Config result = Config::Ones(), square = r.cwiseAbs2();
+    for (int left = power / 2; left > 0; left /= 2) {
+      if (left % 2 == 1) result = result.cwiseProduct(square);
+      square = square.cwiseAbs2();
+    }
+    return result;
+  }
   [[nodiscard]] Config bend(const std::vector<Config>& q, int i) const {
     const auto& c = bends_[at(i)].c;
     return c[0] * q[at(i - 1)] + c[1] * q[at(i)] + c[2] * q[at(i + 1)];

@@ -203,6 +203,7 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
     for (double& weight : objective.weights) weight = random.uniform(0.2, 2);
     objective.bending = random.coin() ? 0.1 : 1e-3;
     objective.most_change = random.coin() ? 0.15 : 10;
+    objective.power = random.coin() ? 2 : 16;
     std::vector<double> x;
     std::vector<CoordinateBox> boxes;
     for (int i = 0; i < n; ++i) {

@@ -8,10 +8,12 @@
 
 namespace swivel {
 
-/// What is to be least: sum |W dq_i| + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2, q'' the second divided
-/// difference of the joints over the travel, h the mean of the steps on both sides, x the coordinates.
+/// What is to be least: sum |W dq_i|_p + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2, |r|_p = (sum
+/// |r_j|^p)^(1/p), q'' the second divided difference of the joints over the travel, h the mean of the steps on both sides, x the
+/// coordinates.
 struct SmoothObjective {
   std::array<double, kDof> weights{};
+  int power = 2;           ///< p, even; a large one comes near the largest |r_j|
   double bending = 0;      ///< m^3
   double most_change = 0;  ///< rad, of the coordinate from a layer to the next
 };

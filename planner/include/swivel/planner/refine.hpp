@@ -20,10 +20,10 @@ struct RefineOptions {
 
 /// Makes a valid path of the lattice cheaper and smoother: the arm angles of its layers, off the grid, branches and joint images
 /// kept; of arms without one, the lengths along the self-motion from the joints given. Least is sum |W dq| + l^3 sum h |q''|^2, q''
-/// the second divided difference over the travel and l = Refinement::smoothing; metrics other than l2 are approached by it.
-/// Newton's method with a banded Hessian, Levenberg's shift and an active set of bounds (Nocedal & Wright 2006, 16.7). Nodes and
-/// motions are asked as the planners do, of the optimum alone: where one fails, the layers' intervals shrink towards the path
-/// given, which is valid, and the optimum is sought again.
+/// the second divided difference over the travel and l = Refinement::smoothing; |r| is Euclid's, or (sum |r_j|^16)^(1/16) for
+/// metrics of the largest move. By Newton's method (smooth_path.hpp). Nodes and motions are asked as the planners do, of the
+/// optimum alone: where one fails, the layers' intervals shrink towards the path given, which is valid, and the optimum is sought
+/// again.
 ///
 /// The result is valid and never dearer by the problem's metric; else it is the path given, and the reason. A given start is kept.
 /// `rows`: a trajectory of this problem that plan() found. Throws InputError and InvalidArgument as plan() does, and Stopped.
