@@ -67,6 +67,12 @@ class ArmAngleRedundancy final : public Redundancy {
     for (TrajectoryRow& row : rows) row.phi = wrap_angle(row.phi);
   }
   [[nodiscard]] double most_change() const override { return grid_.most_turn(); }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override {
+    std::vector<int> found;
+    for (std::size_t i = 0; i + 1 < rows.size(); ++i)
+      if (rows[i].branch != rows[i + 1].branch) found.push_back(static_cast<int>(i));
+    return found;
+  }
   [[nodiscard]] double singular_sine(const Config& q) const override {
     const SrsArm& arm = grid_.arm();
     return std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
@@ -106,6 +112,7 @@ class ArcLengthRedundancy final : public Redundancy {
     }
   }
   [[nodiscard]] double most_change() const override { return std::numeric_limits<double>::infinity(); }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>&) const override { return {}; }
   [[nodiscard]] double singular_sine(const Config& q) const override {
     double least = 1;
     for (const Alignment& a : alignments_) least = std::min(least, std::abs(std::sin(a.away(q))));

@@ -40,6 +40,7 @@ class Objective {
       const double h0 = solver.travel(i) - solver.travel(i - 1), h1 = solver.travel(i + 1) - solver.travel(i), h = (h0 + h1) / 2;
       bends_[at(i)] = {{1 / (h0 * h), -1 / (h0 * h) - 1 / (h1 * h), 1 / (h1 * h)}, h};
     }
+    for (const int jump : objective.jumps) bends_[at(jump)] = bends_[at(jump + 1)] = {};
   }
 
   [[nodiscard]] bool solve(const std::vector<double>& x, std::vector<Config>& q) const {

@@ -31,6 +31,10 @@ class EveryFew final : public LayerSolver {
   }
   [[nodiscard]] int layers() const override { return static_cast<int>(layer_.size()); }
   [[nodiscard]] int layer(int k) const { return layer_[static_cast<std::size_t>(k)]; }
+  /// The last of the few that is no later than a layer.
+  [[nodiscard]] int no_later(int layer) const {
+    return static_cast<int>(std::upper_bound(layer_.begin(), layer_.end(), layer) - layer_.begin()) - 1;
+  }
   [[nodiscard]] double travel(int k) const override { return all_->travel(layer(k)); }
   [[nodiscard]] std::optional<Config> joints(int k, double angle) const override { return all_->joints(layer(k), angle); }
 
@@ -49,6 +53,7 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   const EveryFew few(solver, stride);
   SmoothObjective coarse = objective;
   coarse.most_change *= stride;
+  for (int& jump : coarse.jumps) jump = few.no_later(jump);
   std::vector<double> start;
   std::vector<CoordinateBox> inside;
   for (int k = 0; k < few.layers(); ++k) {
@@ -83,9 +88,10 @@ class Judge {
         between_(world_, Certificates::kOn),
         budget_(budget) {}
 
-  /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded.
-  [[nodiscard]] bool node(const Config& q, const Config& given) {
-    if (!valid(q, given) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
+  /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded. `jumps`: the path
+  /// leads through a singularity to or from there, so that it had better be near.
+  [[nodiscard]] bool node(const Config& q, const Config& given, bool jumps = false) {
+    if (!valid(q, given, jumps) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
     // What the motions from and to it will have to keep: a node that is bisected ends where it should, a motion that fails only
     // where it had better.
     if (problem_->limits.edges == EdgeMode::kContinuous && at_.next_below(q, Keep::kMidpoint)) return false;
@@ -93,7 +99,7 @@ class Judge {
   }
   /// Without any clearance besides.
   [[nodiscard]] bool bare_node(const Config& q) {
-    return valid(q, q) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
+    return valid(q, q, false) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
   }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
@@ -121,13 +127,13 @@ class Judge {
 
  private:
   /// But for collisions.
-  [[nodiscard]] bool valid(const Config& q, const Config& given) {
+  [[nodiscard]] bool valid(const Config& q, const Config& given, bool jumps) {
     budget_.poll();
     ++nodes_asked;
     constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
-    if (redundancy_->singular_sine(q) <
-        std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
+    if (!jumps && redundancy_->singular_sine(q) <
+                      std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
       return false;
     return lattice_->manipulable(q);
   }
@@ -185,7 +191,11 @@ class Refinery {
         solver_(redundancy.solver(given_)),
         edges_(edges),
         fixed_start_(fixed_start),
-        budget_(budget) {}
+        jumps_(given.size()),
+        budget_(budget) {
+    for (const int jump : redundancy.jumps(given))
+      jumps_[static_cast<std::size_t>(jump)] = jumps_[static_cast<std::size_t>(jump) + 1] = true;
+  }
 
   /// Valid rows, or none within the rounds, or where an edge given is not valid and its nodes cannot move.
   std::optional<std::vector<TrajectoryRow>> run(const SmoothObjective& objective, int& rounds) {
@@ -209,7 +219,7 @@ class Refinery {
       bool fails = false;
       for (std::size_t i = 0; i < n; ++i) {
         if (x[i] == given_[i].phi || x[i] == node_known[i]) continue;
-        if (!judge_->node(rows[i].q, given_[i].q)) {
+        if (!judge_->node(rows[i].q, given_[i].q, jumps_[i])) {
           x[i] = shrink(i, x[i], boxes[i]);
           fails = true;
         }
@@ -252,7 +262,7 @@ class Refinery {
     for (int k = 0; k < kQueries; ++k) {
       const double middle = (good + bad) / 2;
       const auto q = solver_->joints(static_cast<int>(i), middle);
-      (q && judge_->node(*q, given_[i].q) ? good : bad) = middle;
+      (q && judge_->node(*q, given_[i].q, jumps_[i]) ? good : bad) = middle;
     }
     (x > given_[i].phi ? box.high : box.low) = good;
     return good;
@@ -287,6 +297,7 @@ class Refinery {
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
   bool fixed_start_;
+  std::vector<bool> jumps_;  // by layer: to it or from it
   Budget budget_;
 };
 
@@ -407,6 +418,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
                       problem.start.has_value(), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
+    objective.jumps = redundancy.jumps(from);
     // Less smoothness where that alone makes a path dearer than the lattice's.
     const int attempts = result.refined ? 1 : 3;
     for (int attempt = 0; attempt < attempts; ++attempt, objective.bending /= 10) {

@@ -207,6 +207,27 @@ TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
   }
 }
 
+/// Door poses whose cheapest path changes branch at the wrist's singularity: to lead past it at a distance costs a turn of the
+/// outer joints, and bends that no smoothing takes away.
+TEST(Refine, CrossesSingularitiesStraight) {
+  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  const PreparedRobot robot(base);
+  for (const unsigned episode : {60u, 88u}) {
+    SCOPED_TRACE(episode);
+    const Problem problem = episode_problem(base, 1, episode);
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    const PlanResult found = plan(robot, problem, options);
+    ASSERT_EQ(found.status, PlanStatus::kSolved);
+    ASSERT_NE(found.trajectory.front().branch, found.trajectory.back().branch);
+    const Refined refined = refine(robot, problem, found.trajectory);
+    EXPECT_LE(refined.cost, 0.8 * refined.cost_before);
+    EXPECT_LE(refined.bend, 0.2 * refined.bend_before);
+    EXPECT_TRUE(check_trajectory(robot, problem, refined.rows).passed);
+    for (std::size_t k = 0; k < refined.rows.size(); ++k) EXPECT_EQ(refined.rows[k].branch, found.trajectory[k].branch);
+  }
+}
+
 /// Refuses one joint beyond a bound.
 class Beyond final : public StateCheck {
  public:

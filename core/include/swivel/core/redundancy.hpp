@@ -30,6 +30,8 @@ class Redundancy {
   virtual void label(std::vector<TrajectoryRow>& rows) const = 0;
   /// Of the coordinate from a layer to the next, rad: what the lattice's window allows.
   [[nodiscard]] virtual double most_change() const = 0;
+  /// Layers from which the joints jump to the next: through a singularity, to another solution.
+  [[nodiscard]] virtual std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const = 0;
   /// Sine of the angle nearest to singular.
   [[nodiscard]] virtual double singular_sine(const Config& q) const = 0;
   /// Step error (docs/model.md) of the edge from `a`, at a layer, to `b`: the larger of both ends. Only where limits.step_error may

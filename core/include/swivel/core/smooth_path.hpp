@@ -16,6 +16,8 @@ struct SmoothObjective {
   int power = 2;           ///< p, even; a large one comes near the largest |r_j|
   double bending = 0;      ///< m^3
   double most_change = 0;  ///< rad, of the coordinate from a layer to the next
+  /// Layers from which the joints jump to the next: bends across that step do not count.
+  std::vector<int> jumps = {};
 };
 /// Infinite where a layer has no joints.
 [[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x);
