@@ -306,9 +306,11 @@ class Refinery {
 bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
+  int left = 1000;  // nodes to ask: in a narrow passage no layer has one
   const auto moved_clear = [&](int layer, TrajectoryRow& row) {
     for (int step = 1; step <= kSteps; ++step)
       for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
+        if (left-- <= 0) return false;
         const auto q = solver.joints(layer, row.phi + by);
         if (!q || !judge.node(*q, *q)) continue;
         row.phi += by;
