@@ -36,7 +36,7 @@ double squared_distance_over_inside(const Segment& s, const Triangle& t, double 
   return holds(t, foot) ? nearer * nearer : kNotInside;
 }
 
-/// A plane of one, or their boxes, part them by `limit`.
+/// A plane of one, their boxes, or the way from one middle to the other part them by `limit`.
 bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   const auto above = [limit](const Triangle& below, const Triangle& other) {
     const double h = below.normal.dot(other.a - below.a), hb = h + below.normal.dot(other.ab), hc = h + below.normal.dot(other.ac);
@@ -47,7 +47,11 @@ bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   const auto high = [](const Triangle& x) { return Vector3d(x.a + x.ab.cwiseMax(x.ac).cwiseMax(0)); };
   const Vector3d gap = (low(s) - high(t)).cwiseMax(low(t) - high(s)).cwiseMax(0);
   if (gap.squaredNorm() >= limit) return true;
-  return above(s, t) || above(t, s);
+  if (above(s, t) || above(t, s)) return true;
+  const Vector3d between = 3 * (t.a - s.a) + (t.ab + t.ac) - (s.ab + s.ac);
+  const double from = std::max({0.0, between.dot(s.ab), between.dot(s.ac)});
+  const double to = between.dot(t.a - s.a) + std::min({0.0, between.dot(t.ab), between.dot(t.ac)});
+  return to > from && (to - from) * (to - from) >= limit * between.squaredNorm();
 }
 
 }  // namespace
