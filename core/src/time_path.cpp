@@ -162,6 +162,44 @@ class Piece {
       }
     }
   }
+  /// Where the joints have room left, places are passed faster and accelerations along the path rise, as long as that gains time:
+  /// to slow down costs acceleration and jerk of its own, and the first answer pays for it with more slowing down than is needed.
+  int speed_up(const Budget& budget) {
+    constexpr double kNearIdeal = 1.02, kUse = 0.98;  // of the time at the speed asked for; of the room
+    constexpr double kFaster = 1.02, kHarder = 1.15;  // most that a round changes
+    constexpr double kHardest = 3;                    // times what one joint's acceleration allows: another bend may help
+    constexpr double kLittle = 1e-3;                  // of the time
+    constexpr int kRounds = 12, kRepairs = 6,
+                  kFew = 2;  // rounds in all; attempts to keep the rates again; gains of next to nothing
+    int rounds = 0, few = 0;
+    std::vector<double> slower = slower_, gentler = gentler_;
+    double least = end_;
+    while (duration() > kNearIdeal * ideal() && rounds < kRounds && few < kFew) {
+      for (std::size_t k = 0; k < n_; ++k) {
+        slower_[k] = std::min(1.0, slower_[k] * std::clamp(std::cbrt(kUse / used_[k]), 1.0, kFaster));
+        gentler_[k] = std::min(std::max(gentler_[k], kHardest), gentler_[k] * std::clamp(kUse / used_[k], 1.0, kHarder));
+      }
+      bool kept = false;
+      for (int repair = 0; repair < kRepairs && !kept; ++repair) {
+        ++rounds;
+        budget.poll();
+        profile();
+        kept = verify(false, true) <= 1;
+      }
+      if (!kept) break;
+      few = end_ < (1 - kLittle) * least ? 0 : few + 1;
+      if (end_ >= least) continue;
+      least = end_;
+      slower = slower_;
+      gentler = gentler_;
+    }
+    if (rounds == 0) return 0;
+    slower_ = std::move(slower);
+    gentler_ = std::move(gentler);
+    profile();
+    return rounds;
+  }
+
   /// Slower as a whole.
   void stretch(double factor) { stretch_ *= factor; }
   /// By factors of speeds and of accelerations along the path, one for each place; plan() again then.
@@ -172,8 +210,9 @@ class Piece {
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 
  private:
-  static constexpr double kShare = 0.9;   // of a joint's acceleration, for speeding up and slowing down along the path
-  static constexpr double kStill = 1e-9;  // m/m: the path only turns
+  static constexpr double kShare = 0.9;     // of a joint's acceleration, for speeding up and slowing down along the path
+  static constexpr double kNothing = 1e-3;  // of the rates
+  static constexpr double kStill = 1e-9;    // m/m: the path only turns
   struct Raw {
     double area = 0, x = 0, speed = 0, acceleration = 0;
   };
@@ -232,11 +271,12 @@ class Piece {
   }
 
   /// The factor by which the motion as a whole would have to be slower. Where a joint is beyond its rates, what lies within the
-  /// filter's window is slowed down: the speed where the path's own bends are the reason, else the acceleration along it; both
-  /// where that takes too many rounds.
+  /// filter's window is slowed down: accelerations along the path, to what the path's own bends leave; where these take nearly all,
+  /// the speed as well. Both by the whole excess where that takes too many rounds.
   double verify(bool both, bool may_slow_down) {
-    constexpr double kLeast = 0.5, kPath = 0.4;
+    constexpr double kLeast = 0.5, kPath = 0.9;  // kPath: share of a rate that bends may take
     std::vector<double> slower(n_, 1), gentler(n_, 1);
+    used_.assign(n_, kNothing);
     double worst = 1;
     const double step = std::min(1e-3, filter_ / 8);
     Walk walk(*this);
@@ -247,26 +287,34 @@ class Piece {
       const Derivatives d = derivatives(at.x, node);
       const double v = at.speed, a = at.acceleration, jerk = at.jerk;
       double path = 1, along = 1;  // factors of speed and of acceleration along the path
+      double used = kNothing;
       for (int j = 0; j < kDof; ++j) {
-        const double bend = d.second[j] * v * v, third = d.third[j] * v * v * v;
-        const double ratio[3] = {std::abs(d.first[j] * v) / (kTarget * rates_->speed[j]),
-                                 std::abs(bend + d.first[j] * a) / (kTarget * rates_->acceleration[j]),
-                                 std::abs(third + 3 * d.second[j] * v * a + d.first[j] * jerk) / (kTarget * rates_->jerk[j])};
-        // Shares of the limit that the speed alone takes.
-        const double of_path[3] = {ratio[0], std::abs(bend) / rates_->acceleration[j], std::abs(third) / rates_->jerk[j]};
+        const double speed = d.first[j] * v, bend = d.second[j] * v * v, third = d.third[j] * v * v * v;
+        const double limit[3] = {rates_->speed[j], rates_->acceleration[j], rates_->jerk[j]};
+        const double all[3] = {speed, bend + d.first[j] * a, third + 3 * d.second[j] * v * a + d.first[j] * jerk};
+        const double of_path[3] = {speed, bend, third};  // at a steady speed
         for (int n = 0; n < 3; ++n) {
-          if (ratio[n] <= 1) continue;
-          const double root = n == 0 ? ratio[n] : n == 1 ? std::sqrt(ratio[n]) : std::cbrt(ratio[n]);
-          worst = std::max(worst, root);
-          const bool of_speed = both || of_path[n] > kPath;
-          if (of_speed) path = std::min(path, 0.995 / root);
-          if (both || n > 0) along = std::min(along, 0.98 / ratio[n]);
-          if (of_speed) brake_[d.node] = {j, static_cast<JointRate>(n)};
+          const double ratio = std::abs(all[n]) / (kTarget * limit[n]), share = std::abs(of_path[n]) / (kTarget * limit[n]);
+          used = std::max(used, ratio);
+          if (ratio <= 1) continue;
+          const auto root = [n](double of) { return n == 0 ? of : n == 1 ? std::sqrt(of) : std::cbrt(of); };
+          worst = std::max(worst, root(ratio));
+          const bool of_speed = both || n == 0 || share > kPath;
+          if (of_speed) {
+            path = std::min(path, both || n == 0 ? 0.995 / root(ratio) : root(kPath / share));
+            brake_[d.node] = {j, static_cast<JointRate>(n)};
+          }
+          const double left = std::min(share, kPath);
+          if (both)
+            along = std::min(along, 0.98 / ratio);
+          else if (n > 0)
+            along = std::min(along, (0.98 - left) / (ratio - left));
         }
       }
-      if (path >= 1 && along >= 1) continue;
       seek(at.from, low);
       seek(at.to, high);
+      for (std::size_t k = low; k <= std::min(high + 1, n_ - 1); ++k) used_[k] = std::max(used_[k], used);
+      if (path >= 1 && along >= 1) continue;
       for (std::size_t k = low > 0 ? low - 1 : 0; k <= std::min(high + 2, n_ - 1); ++k) {
         slower[k] = std::min(slower[k], std::max(kLeast, path));
         gentler[k] = std::min(gentler[k], std::max(kLeast, along));
@@ -283,6 +331,7 @@ class Piece {
   std::vector<double> cap_, pull_;        // m/s and m/s^2: what the joints allow
   std::vector<double> slower_, gentler_;  // factors of both, from verifying
   std::vector<Brake> brake_;
+  std::vector<double> used_;                 // most that a joint uses of its rates near each place, as verified last
   std::vector<double> speed_, time_, area_;  // of the unfiltered motion, which is of constant acceleration between places
   double filter_ = 0, end_ = 0, stretch_ = 1;
 };
@@ -620,7 +669,8 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
     result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
-    out.rounds = std::max(out.rounds, pieces.back().plan(budget));
+    const int rounds = pieces.back().plan(budget);
+    out.rounds = std::max(out.rounds, rounds + pieces.back().speed_up(budget));
     out.ideal += pieces.back().ideal();
   }
   Samples samples(motion, rates, options, pieces, budget);

@@ -446,6 +446,18 @@ TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
   EXPECT_EQ(jumps, 2);
 }
 
+/// The path bends sharply in the joints at s = 0.16 m; the tool can pass there at 240 of 250 mm/s.
+TEST(Motion, SlowsDownNoMoreThanBendsAsk) {
+  Planner planner(with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = 1000});
+  ASSERT_TRUE(plan.motion && plan.motion->motion);
+  const TimedPath& motion = *plan.motion->motion;
+  EXPECT_LE(motion.duration, 1.05 * 2.2525);  // s: the shortest that bench/evidence/yardstick.py finds on this path
+  for (const TimedPath::Slow& slow : motion.slow) EXPECT_GE(slow.share, 0.9) << slow.from_s;
+}
+
 TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
   const Problem problem = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
   // Stopped as soon as the lattice's path is known.
