@@ -13,11 +13,13 @@ void MotionOptions::add_to(CLI::App& command) {
   command.add_option("--speed", speed, "speed of the tool along its path, m/s");
   command.add_option("--turn-speed", turn_speed, "its speed of rotation, rad/s");
   command.add_option("--rate", rate, "samples a second, default 250");
+  command.add_option("--chord", chord, "slow down where the tool would leave its path by more between samples, m");
 }
 
 std::optional<TimingOptions> MotionOptions::asked_timing(const Problem& problem) const {
   if (speed) return timing(problem);
-  for (const auto& [given, option] : {std::pair(turn_speed, "--turn-speed"), std::pair(rate, "--rate")})
+  for (const auto& [given, option] :
+       {std::pair(turn_speed, "--turn-speed"), std::pair(rate, "--rate"), std::pair(chord, "--chord")})
     if (given) throw InputError(std::string(option) + ": is of motions: allowed with --speed");
   return std::nullopt;
 }
@@ -29,6 +31,7 @@ TimingOptions MotionOptions::timing(const Problem& problem) const {
   options.speed = speed ? positive(*speed, "--speed") : *problem.limits.tool_speed;
   options.turn_speed = problem.limits.tool_turn_speed;
   if (turn_speed) options.turn_speed = positive(*turn_speed, "--turn-speed");
+  if (chord) options.chord = positive(*chord, "--chord");
   constexpr double kMostRate = 1e5;
   if (rate) options.rate = *rate;
   if (!(options.rate > 0 && options.rate <= kMostRate))

@@ -12,9 +12,9 @@ namespace swivel::cli {
 /// How fast, and how a motion is written: the same words for `time` and `plan`.
 struct MotionOptions {
   std::optional<double> speed, turn_speed;
-  std::optional<double> rate;
+  std::optional<double> rate, chord;
   void add_to(CLI::App& command);
-  /// What is asked for where --speed is given; the other two are bad input without it.
+  /// What is asked for where --speed is given; the others are bad input without it.
   [[nodiscard]] std::optional<TimingOptions> asked_timing(const Problem& problem) const;
   /// The problem's tool speeds where none are given. Throws InputError where there is no speed.
   [[nodiscard]] TimingOptions timing(const Problem& problem) const;

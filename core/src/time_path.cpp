@@ -50,6 +50,7 @@ struct Place {
   double x = 0;  // m of travel
   Config q, first, second, third;
   double along = 0, turning = 0;  // m/m and rad/m
+  double chord = 0;               // 1/m: over a straight move of the joints, so much of its travel squared is what the tool strays
 };
 
 /// What slows a place down.
@@ -79,6 +80,7 @@ class Piece {
       const Place& place = places_[k];
       asked_[k] = r(options.speed, place.along > kStill ? place.along : 0);
       if (options.turn_speed) asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
+      if (options.chord) asked_[k] = std::min(asked_[k], options.rate * std::sqrt(kTarget * r(*options.chord, place.chord)));
       cap_[k] = asked_[k];
       pull_[k] = kInfinity;
       double joint_speed = kInfinity;
@@ -383,7 +385,7 @@ std::vector<double> places_between(const PathMotion& motion, double from, double
 }
 
 /// Joints and tool at the places, and their derivatives by the travel.
-std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, std::vector<Place>& places) {
+std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, bool chords, std::vector<Place>& places) {
   const std::size_t n = xs.size();
   places.resize(n);
   std::vector<Pose> tool(n);
@@ -413,6 +415,13 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
     place.along = along.norm();
     const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, n - 1);
     place.turning = angle_between(tool[a], tool[b]) / (xs[b] - xs[a]);
+    if (!chords) continue;
+    // Half way along a straight move over a travel of h the joints are off by q'' h^2 / 8. Along the path that is a matter of time.
+    const double least = 1e-4 / std::max(1.0, place.second.norm());
+    const auto moved = [&](double by) -> Vector3d { return motion.chain().tool(place.q + by * place.second).translation(); };
+    Vector3d off = (moved(least) - moved(-least)) / (2 * least);
+    if (place.along > 0) off -= off.dot(along) / along.squaredNorm() * along;
+    place.chord = off.norm() / 8;
   }
   return std::nullopt;
 }
@@ -468,6 +477,7 @@ class Samples {
       out.rows[i].a = ((q2 - q1) - (q1 - q0)) / (dt * dt);
     }
     out.duration = before;
+    if (options_->chord) measure_between(out);
     return std::nullopt;
   }
 
@@ -489,6 +499,8 @@ class Samples {
           peak = {ratio, j, row.t, row.row.s};
           if (const double by = slower_by(ratio, order); by > worst.by) worst = {by, row.row.s};
         }
+    for (std::size_t k = 0; k < out.rows.size(); ++k)
+      if (const double by = slower_for_chord(k); by > worst.by) worst = {by, out.rows[k].row.s};
     return worst;
   }
 
@@ -507,6 +519,8 @@ class Samples {
             speed = std::min(speed, std::max(kLeast, 0.995 / slower_by(ratio, order)));
             if (order > 0) pull = std::min(pull, std::max(kLeast, 0.98 / ratio));
           }
+      if (const double by = slower_for_chord(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
+        speed = std::min(speed, std::max(kLeast, 0.995 / by));
       if (speed == 1) continue;
       const Asked &from = asked_[static_cast<std::size_t>(std::clamp(k - 3, 0LL, n - 1))],
                   &to = asked_[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))];
@@ -528,8 +542,10 @@ class Samples {
     }
   }
 
-  void measure_between(TimedPath& out) const {
+  void measure_between(TimedPath& out) {
     const ToolPath& path = motion_->path();
+    out.between_position = out.between_angle = 0;
+    strayed_.assign(out.rows.size(), 0);
     for (std::size_t k = 1; k < out.rows.size(); ++k) {
       const double middle = (travel_[k - 1] + travel_[k]) / 2, h = travel_[k] - travel_[k - 1];
       if (h <= 0) continue;
@@ -539,7 +555,8 @@ class Samples {
       // Not along the path: that is a matter of time.
       const Vector3d way = path.at_travel(travel_[k]).translation() - path.at_travel(travel_[k - 1]).translation();
       if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
-      out.between_position = std::max(out.between_position, off.norm());
+      strayed_[k] = off.norm();
+      out.between_position = std::max(out.between_position, strayed_[k]);
       out.between_angle = std::max(out.between_angle, angle_between(tool, there));
     }
   }
@@ -578,6 +595,10 @@ class Samples {
     const double before = q(k - 1) - q(k - 2);
     if (order == 1) return std::abs((step - before) / (dt * dt)) / rates_->acceleration[j];
     return std::abs((step - 2 * before + (q(k - 2) - q(k - 3))) / (dt * dt * dt)) / rates_->jerk[j];
+  }
+  /// By how much the move that ends at a sample would have to be slower for the tool to stay as near its path as asked.
+  [[nodiscard]] double slower_for_chord(std::size_t k) const {
+    return options_->chord && strayed_[k] > *options_->chord ? std::sqrt(strayed_[k] / *options_->chord) : 1;
   }
   static double slower_by(double ratio, int order) { return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio); }
 
@@ -632,6 +653,7 @@ class Samples {
   bool near_;  // samples tell speeds and accelerations
   std::vector<double> travel_;
   std::vector<Asked> asked_;
+  std::vector<double> strayed_;  // m, of the tool between each sample and the one before
 };
 
 }  // namespace
@@ -666,7 +688,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   std::vector<Piece> pieces;
   for (std::size_t k = 1; k < rests.size(); ++k) {
     std::vector<Place> places;
-    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), places);
+    result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), options.chord.has_value(), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
     const int rounds = pieces.back().plan(budget);
@@ -695,7 +717,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
     t += pieces[k].duration();
     out.stops.push_back({path.layer(at[k]).s, t, path.layer(at[k]).waypoint});
   }
-  samples.measure_between(out);
+  if (!options.chord) samples.measure_between(out);
   samples.find_slow(out);
   out.warnings = rates.assumed;
   if (out.between_position > 10e-6) {

@@ -226,7 +226,8 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
                {"at_s", timed.failure ? Json(timed.failure->s) : Json(nullptr)},
                {"speed", asked.speed},
                {"turn_speed", or_null(asked.turn_speed)},
-               {"rate", asked.rate}};
+               {"rate", asked.rate},
+               {"chord", or_null(asked.chord)}};
   if (!timed.motion) return json;
   const TimedPath& motion = *timed.motion;
   Json slow = Json::array(), stops = Json::array();

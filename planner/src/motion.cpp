@@ -82,6 +82,7 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   positive(options.speed, "speed");
   positive(options.turn_speed.value_or(1), "turn_speed");
   positive(options.rate, "rate");
+  positive(options.chord.value_or(1), "chord");
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain, budget, PathSmoothing{});
   const JointRates rates = joint_rates(chain, problem.limits, problem.source);

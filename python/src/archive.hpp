@@ -290,8 +290,8 @@ void serialize(A& archive, Refined& x) {
 }
 template <class A>
 void serialize(A& archive, TimingOptions& x) {
-  auto& [speed, turn_speed, rate] = x;
-  archive(speed, turn_speed, rate);
+  auto& [speed, turn_speed, rate, chord] = x;
+  archive(speed, turn_speed, rate, chord);
 }
 template <class A>
 void serialize(A& archive, TimedRow& x) {

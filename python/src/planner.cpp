@@ -139,7 +139,8 @@ struct PlanKeywords {
   }
 };
 
-TimingOptions timing_of(const Problem& problem, std::optional<double> speed, std::optional<double> turn_speed, double rate) {
+TimingOptions timing_of(const Problem& problem, std::optional<double> speed, std::optional<double> turn_speed, double rate,
+                        std::optional<double> chord) {
   TimingOptions options;
   if (!speed && !problem.limits.tool_speed)
     throw py::value_error("speed: is not given, nor limits.tool_speed: allowed is the speed of the tool in m/s");
@@ -149,6 +150,8 @@ TimingOptions timing_of(const Problem& problem, std::optional<double> speed, std
   if (!(options.speed > 0)) throw py::value_error("speed: not a positive number: allowed are values above 0, m/s");
   if (options.turn_speed && !(*options.turn_speed > 0))
     throw py::value_error("turn_speed: not a positive number: allowed are values above 0, rad/s");
+  options.chord = chord;
+  if (chord && !(*chord > 0)) throw py::value_error("chord: not a positive number: allowed are values above 0, m");
   if (!(rate > 0 && rate <= 1e5)) throw py::value_error("rate: allowed are numbers > 0, at most 100000");
   return options;
 }
@@ -217,14 +220,17 @@ class SharedPlanner {
     change(planner_);
   }
   Plan plan(const PlanKeywords& keywords, bool refined, std::optional<double> speed, std::optional<double> turn_speed,
-            std::optional<double> rate) {
+            std::optional<double> rate, std::optional<double> chord) {
     const Use use(*this);
     Plan plan;
     PlanOptions options = keywords.options();
     planner_.set_task(task_);
-    if (!speed && (turn_speed || rate))
-      throw py::value_error(std::string(turn_speed ? "turn_speed" : "rate") + ": is of motions: allowed with speed");
-    if (speed) plan.timing = timing_of(planner_.problem(), speed, turn_speed, rate.value_or(TimingOptions().rate));
+    if (!speed && (turn_speed || rate || chord))
+      throw py::value_error(std::string(turn_speed ? "turn_speed"
+                                        : rate     ? "rate"
+                                                   : "chord") +
+                            ": is of motions: allowed with speed");
+    if (speed) plan.timing = timing_of(planner_.problem(), speed, turn_speed, rate.value_or(TimingOptions().rate), chord);
     if (plan.timing) {
       planner_.set_task(with_motion_defaults(planner_.problem()));
     } else if (refined) {
@@ -263,9 +269,9 @@ class SharedPlanner {
     return {std::make_shared<const Refined>(std::move(refined)), trajectory.joint_names};
   }
   python::Motion time(const Trajectory& trajectory, std::optional<double> speed, std::optional<double> turn_speed, double rate,
-                      std::optional<double> timeout) {
+                      std::optional<double> chord, std::optional<double> timeout) {
     const Problem held = problem();
-    const TimingOptions options = timing_of(held, speed, turn_speed, rate);
+    const TimingOptions options = timing_of(held, speed, turn_speed, rate, chord);
     TimingResult timing = prepared(
         [&](const PreparedRobot& robot, const Problem& problem, const Budget& budget) -> TimingResult {
           return time_trajectory(robot, problem, *trajectory.rows, options, budget);
@@ -355,16 +361,16 @@ void bind_planner(py::module_& m) {
           "plan",
           [](SharedPlanner& self, py::object planner, int threads, std::optional<double> timeout, bool evidence, py::object check,
              py::object check_motions, py::object cost, py::object progress, bool refine, std::optional<double> speed,
-             std::optional<double> turn_speed, std::optional<double> rate) {
+             std::optional<double> turn_speed, std::optional<double> rate, std::optional<double> chord) {
             const PlanKeywords keywords{
                 std::move(planner), threads, timeout, evidence, std::move(check), std::move(check_motions), std::move(cost),
                 std::move(progress)};
-            return self.plan(keywords, refine, speed, turn_speed, rate);
+            return self.plan(keywords, refine, speed, turn_speed, rate, chord);
           },
           py::kw_only(), py::arg("planner") = "parallel", py::arg("threads") = 0, py::arg("timeout") = py::none(),
           py::arg("evidence") = false, py::arg("check") = py::none(), py::arg("check_motions") = py::none(),
           py::arg("cost") = py::none(), py::arg("progress") = py::none(), py::arg("refine") = false, py::arg("speed") = py::none(),
-          py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(),
+          py::arg("turn_speed") = py::none(), py::arg("rate") = py::none(), py::arg("chord") = py::none(),
           "Plans; no path is a Plan, not an exception. Other threads of Python run meanwhile; Ctrl-C stops it.\n"
           "\n"
           "planner: PlannerKind or its name. threads: 0 for all cores. timeout: s, for everything. evidence: find all measures, "
@@ -377,7 +383,9 @@ void bind_planner(py::module_& m) {
           "the\n"
           "states alone. progress(stage, done, of): now and then.\n"
           "refine: move the arm angles off the grid: cheaper and smoother, never dearer. speed (m/s), turn_speed (rad/s), rate\n"
-          "(samples a second, default 250): make it a motion in time. Both keep the whole clearance between layers.\n"
+          "(samples a second, default 250), chord (m: slower where the tool would leave its path by more between samples): make it "
+          "a\n"
+          "motion in time. Both keep the whole clearance between layers.\n"
           "Raises InputError, InvalidArgument, and what a function raised.")
       .def("check", py::overload_cast<const Trajectory&>(&SharedPlanner::check), py::arg("trajectory"),
            "Proves a trajectory, or a motion in time, from the problem alone, or says what is wrong with it: a Check.")
@@ -387,10 +395,11 @@ void bind_planner(py::module_& m) {
       .def("refine", &SharedPlanner::refine, py::arg("trajectory"), py::kw_only(), py::arg("timeout") = py::none(),
            "Moves the arm angles of a trajectory that plan() found off the grid: Refined. Raises TimeoutError.")
       .def("time", &SharedPlanner::time, py::arg("trajectory"), py::kw_only(), py::arg("speed") = py::none(),
-           py::arg("turn_speed") = py::none(), py::arg("rate") = TimingOptions().rate, py::arg("timeout") = py::none(),
+           py::arg("turn_speed") = py::none(), py::arg("rate") = TimingOptions().rate, py::arg("chord") = py::none(),
+           py::arg("timeout") = py::none(),
            "Makes a trajectory a motion in time: Motion. speed: m/s, of the tool; default limits.tool_speed. turn_speed: rad/s. "
            "rate:\n"
-           "samples a second. Raises TimeoutError.")
+           "samples a second. chord: m; slower where the tool would leave its path by more between samples. Raises TimeoutError.")
       .def("advise", &SharedPlanner::advise, py::arg("plan"), py::kw_only(), py::arg("timeout") = 1.0,
            "What would help a problem that has no path, found by planning it for so many seconds: a list of Advice, what helps "
            "first.")

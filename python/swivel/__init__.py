@@ -53,9 +53,9 @@ def refine(problem, trajectory, *, timeout=None):
     return _planner(problem).refine(trajectory, timeout=timeout)
 
 
-def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, timeout=None):
+def time(problem, trajectory, *, speed=None, turn_speed=None, rate=250.0, chord=None, timeout=None):
     """Makes a trajectory a motion in time: Planner.time()."""
-    return _planner(problem).time(trajectory, speed=speed, turn_speed=turn_speed, rate=rate, timeout=timeout)
+    return _planner(problem).time(trajectory, speed=speed, turn_speed=turn_speed, rate=rate, chord=chord, timeout=timeout)
 
 
 def advise(problem, plan, *, timeout=1.0):

@@ -738,6 +738,7 @@ class Planner:
         speed: float | None = None,
         turn_speed: float | None = None,
         rate: float | None = None,
+        chord: float | None = None,
     ) -> Plan: ...
     def check(self, trajectory: Trajectory | Motion) -> Check: ...
     def measure(self, trajectory: Trajectory) -> Measures: ...
@@ -749,6 +750,7 @@ class Planner:
         speed: float | None = None,
         turn_speed: float | None = None,
         rate: float = 250.0,
+        chord: float | None = None,
         timeout: float | None = None,
     ) -> Motion: ...
     def advise(self, plan: Plan, *, timeout: float = 1.0) -> list[Advice]: ...
@@ -919,6 +921,7 @@ def time(
     speed: float | None = None,
     turn_speed: float | None = None,
     rate: float = 250.0,
+    chord: float | None = None,
     timeout: float | None = None,
 ) -> Motion: ...
 def advise(problem: Problem | _File, plan: Plan, *, timeout: float = 1.0) -> list[Advice]: ...

@@ -458,6 +458,35 @@ TEST(Motion, SlowsDownNoMoreThanBendsAsk) {
   for (const TimedPath::Slow& slow : motion.slow) EXPECT_GE(slow.share, 0.9) << slow.from_s;
 }
 
+TEST(Motion, SlowsDownWhereTheToolWouldStrayBetweenSamples) {
+  Planner planner(with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_b.yaml")));
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const auto motion = [&](double rate, std::optional<double> chord) {
+    const MotionPlan plan =
+        plan_motion(planner, options, true, TimingOptions{.speed = 0.25, .turn_speed = {}, .rate = rate, .chord = chord});
+    EXPECT_TRUE(plan.motion && plan.motion->motion);
+    // Measured again: joints half way, against the straight line that the path is.
+    double most = 0;
+    const Chain& chain = planner.view().robot.arm().chain;
+    const std::vector<TimedRow>& rows = plan.motion->motion->rows;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      const Vector3d tool = chain.tool((rows[k - 1].row.q + rows[k].row.q) / 2).translation();
+      most = std::max(most, std::hypot(tool.x() - 0.6, tool.z() - 0.9));
+    }
+    EXPECT_NEAR(most, plan.motion->motion->between_position, 1e-9);
+    return *plan.motion->motion;
+  };
+  for (const double rate : {250.0, 50.0}) {
+    const TimedPath free = motion(rate, {}), exact = motion(rate, 1e-6 * 250 / rate);
+    EXPECT_GT(free.between_position, 1.1e-6 * 250 / rate);
+    EXPECT_LE(exact.between_position, 1e-6 * 250 / rate);
+    EXPECT_GT(exact.between_position, 0.8e-6 * 250 / rate);
+    EXPECT_GT(exact.duration, free.duration);
+    EXPECT_LT(exact.duration, (rate == 250 ? 1.02 : 2) * free.duration);
+  }
+}
+
 TEST(Motion, KeepsThePathWhenTheTimeIsUp) {
   const Problem problem = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_a.yaml"));
   // Stopped as soon as the lattice's path is known.
@@ -499,7 +528,8 @@ TEST(Motion, RefusesSpeedsThatMakeNoSense) {
   for (const TimingOptions& options :
        {TimingOptions{.speed = 0, .turn_speed = {}, .rate = 250},
         TimingOptions{.speed = std::nan(""), .turn_speed = {}, .rate = 250},
-        TimingOptions{.speed = 0.1, .turn_speed = -1, .rate = 250}, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 0}})
+        TimingOptions{.speed = 0.1, .turn_speed = -1, .rate = 250}, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 0},
+        TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250, .chord = 0}})
     EXPECT_THROW(static_cast<void>(time_trajectory(robot, some, {}, options)), InvalidArgument);
 }
 

@@ -22,9 +22,10 @@ struct JointRates {
 [[nodiscard]] JointRates joint_rates(const Chain& chain, const Limits& limits, const std::string& source);
 
 struct TimingOptions {
-  double speed = 0;                  ///< m/s, of the tool along its path; > 0
-  std::optional<double> turn_speed;  ///< rad/s; unset: as fast as the joints allow where the path only turns
-  double rate = 250;                 ///< samples a second; > 0
+  double speed = 0;                            ///< m/s, of the tool along its path; > 0
+  std::optional<double> turn_speed;            ///< rad/s; unset: as fast as the joints allow where the path only turns
+  double rate = 250;                           ///< samples a second; > 0
+  std::optional<double> chord = std::nullopt;  ///< m: slower where the tool would leave its path by more between samples; > 0
 };
 
 /// A sample of a motion: what a controller is sent.
