@@ -8,8 +8,8 @@
 namespace swivel {
 
 ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
-                     double apart, double off_limits)
-    : PathMotion(chain, path, rows, apart), lock_(lock), newton_(chain), alignments_(alignments_of(chain)) {
+                     double apart, double off_limits, const std::vector<BetweenRow>& between)
+    : PathMotion(chain, path, rows, apart, between), lock_(lock), newton_(chain), alignments_(alignments_of(chain)) {
   // The roll is aligned with nothing that would have to move fast.
   if (chain.roll) std::erase_if(alignments_, [](const Alignment& a) { return a.joint + 2 == kDof; });
   move_off_limits(off_limits);
@@ -30,7 +30,7 @@ void ArcMotion::move_off_limits(double by) {
       const auto joint = static_cast<Eigen::Index>(j);
       const double value = rows_[k].q[joint], inside = std::clamp(value, limit.lower + by, limit.upper - by);
       if (inside == value) continue;
-      const auto moved = newton_.with_joint_at(rows_[k].q, path_->layer(layer_[k]).tool, static_cast<int>(j), inside);
+      const auto moved = newton_.with_joint_at(rows_[k].q, pose_of(k), static_cast<int>(j), inside);
       if (moved && (moved->q - rows_[k].q).lpNorm<Eigen::Infinity>() < kFarthest) rows_[k].q = moved->q;
     }
 }

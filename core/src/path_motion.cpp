@@ -10,7 +10,8 @@
 
 namespace swivel {
 
-PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart)
+PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+                       const std::vector<BetweenRow>& between)
     : chain_(&chain), path_(&path) {
   constexpr double kSame = 1e-9;  // m
   int layer = 0;
@@ -39,6 +40,21 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vect
   }
   if (rows.size() < 2 || layer + 1 != path.size())
     throw InputError("the rows end before the path: allowed are rows from its first layer to its last");
+  for (const BetweenRow& one : between) {
+    const auto after = std::upper_bound(travel_.begin(), travel_.end(), one.travel);
+    if (after == travel_.begin() || after == travel_.end()) continue;
+    const auto k = after - travel_.begin();
+    TrajectoryRow row = rows_[static_cast<std::size_t>(k) - 1];
+    row.s = place(one.travel).s;
+    row.q = one.q;
+    travel_.insert(after, one.travel);
+    layer_.insert(layer_.begin() + k, -1);
+    rows_.insert(rows_.begin() + k, row);
+  }
+}
+
+Pose PathMotion::pose_of(std::size_t row) const {
+  return layer_[row] < 0 ? path_->at_travel(travel_[row]) : path_->layer(layer_[row]).tool;
 }
 
 PathMotion::Between PathMotion::between(double travel) const {
@@ -55,9 +71,10 @@ PathMotion::Place PathMotion::place(double travel) const {
 }
 
 std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass& arm, const ToolPath& path,
-                                             const std::vector<TrajectoryRow>& rows, double apart, double off_limits) {
-  if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsMotion>(chain, *arm.srs, path, rows, apart);
-  return std::make_unique<ArcMotion>(chain, arm.lock, path, rows, apart, off_limits);
+                                             const std::vector<TrajectoryRow>& rows, double apart, double off_limits,
+                                             const std::vector<BetweenRow>& between) {
+  if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsMotion>(chain, *arm.srs, path, rows, apart, between);
+  return std::make_unique<ArcMotion>(chain, arm.lock, path, rows, apart, off_limits, between);
 }
 
 }  // namespace swivel

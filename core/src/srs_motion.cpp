@@ -31,11 +31,14 @@ Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
 }  // namespace
 
 SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
-                     double apart)
-    : PathMotion(chain, path, rows, apart), arm_(&arm), planes_(carried_planes(arm, path)), still_(clearest_direction(planes_)) {
+                     double apart, const std::vector<BetweenRow>& between)
+    : PathMotion(chain, path, rows, apart, between),
+      arm_(&arm),
+      planes_(carried_planes(arm, path)),
+      still_(clearest_direction(planes_)) {
   std::vector<double> angles;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
-    const double angle = still_plane(path.layer(layer_[k]).tool).angle_of(arm.elbow_axis(rows_[k].q));
+    const double angle = still_plane(pose_of(k)).angle_of(arm.elbow_axis(rows_[k].q));
     angles.push_back(k == 0 ? angle : angles.back() + wrap_angle(angle - angles.back()));
   }
   for (std::size_t k = 1; k < rows.size(); ++k)

@@ -9,7 +9,8 @@ namespace swivel {
 /// Of S-R-S arms (path_motion.hpp): a spline of the arm angle.
 class SrsMotion final : public PathMotion {
  public:
-  SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart);
+  SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+            const std::vector<BetweenRow>& between);
   [[nodiscard]] std::optional<Config> joints(double travel) const override;
   [[nodiscard]] TrajectoryRow row(double travel, const Config& q) const override;
   [[nodiscard]] std::optional<Singular> nearest_singular(const Config& q) const override;

@@ -13,6 +13,7 @@
 #include "between_samples.hpp"
 #include "first_too_near.hpp"
 #include "measure_rows.hpp"
+#include "posture_beside.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
@@ -26,13 +27,13 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A joint's limits and the manipulability at a sample.
-std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits, const TrajectoryRow& row) {
+/// A joint's limits and the manipulability at a sample. Limits are narrower by `inside`, rad.
+std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits, const TrajectoryRow& row, double inside = 0) {
   constexpr double kLimit = 1e-9;  // rad
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
-    const double q = row.q[static_cast<Eigen::Index>(j)];
-    if (!limit.continuous && !(q >= limit.lower + limits.joint_margin - kLimit && q <= limit.upper - limits.joint_margin + kLimit))
+    const double q = row.q[static_cast<Eigen::Index>(j)], margin = limits.joint_margin + inside;
+    if (!limit.continuous && !(q >= limit.lower + margin - kLimit && q <= limit.upper - margin + kLimit))
       return NoMotion{row.s, "joint '" + chain.joint_names[j] + "' leaves its limits between layers"};
   }
   if (limits.manipulability > 0 && chain.manipulability(row.q) < limits.manipulability - 1e-9)
@@ -40,12 +41,17 @@ std::optional<NoMotion> fault_of_joints(const Chain& chain, const Limits& limits
   return std::nullopt;
 }
 
+struct Fault {
+  NoMotion what;
+  std::size_t row = 0;
+};
+
 /// What is wrong with a motion first.
-std::optional<NoMotion> first_fault(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
-                                    const Budget& budget) {
+std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
+                                 const Budget& budget) {
   std::vector<Config> samples;
   for (const TimedRow& row : rows) {
-    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row)) return fault;
+    if (auto fault = fault_of_joints(robot.arm().chain, problem.limits, row.row)) return Fault{*fault, samples.size()};
     samples.push_back(row.row.q);
   }
   const World world(robot.world(), problem, budget, kVerdictBand);
@@ -55,8 +61,61 @@ std::optional<NoMotion> first_fault(const PreparedRobot& robot, const Problem& p
   NoMotion fault{rows[found->row].row.s,
                  "'" + names[0] + "' and '" + names[1] + "' come too near" + (found->between ? " between samples" : "")};
   fault.too_near = true;
-  return fault;
+  return Fault{std::move(fault), found->row};
 }
+
+/// Where on the path s is, m of travel; none where the path only turns there.
+std::optional<double> travel_at(const ToolPath& path, double s) {
+  for (int i = 0; i + 1 < path.size(); ++i) {
+    const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
+    if (s < to.s && from.step_length > 0)
+      return from.travel + std::max(0.0, (s - from.s) / (to.s - from.s)) * (to.travel - from.travel);
+  }
+  return std::nullopt;
+}
+
+/// Finds postures for the stretches between layers on which a motion is at fault.
+class Bisection {
+ public:
+  Bisection(const PreparedRobot& robot, const Problem& of_samples, const ToolPath& path, const Budget& budget)
+      : chain_(&robot.arm().chain),
+        problem_(&of_samples),
+        path_(&path),
+        world_(robot.world(), of_samples, budget),
+        query_(world_) {}
+
+  /// In the middle of the samples at fault, one after the other, from this one on: the posture nearest to the sample there that
+  /// keeps what is asked, and a little more. None where there is none, or one is there already.
+  std::optional<BetweenRow> posture(const std::vector<TimedRow>& rows, std::size_t first) {
+    constexpr double kFarthest = 0.5, kSame = 1e-6;  // rad, m
+    std::size_t last = first;
+    while (last + 1 < rows.size() && !allowed(rows[last + 1].row.q)) ++last;
+    const TrajectoryRow& middle = rows[(first + last) / 2].row;
+    const auto travel = travel_at(*path_, middle.s);
+    if (!travel) return std::nullopt;
+    for (const double other : found_)
+      if (std::abs(*travel - other) < kSame) return std::nullopt;
+    const auto q = posture_beside(*chain_, middle.q, kFarthest, [this](const Config& one) { return allowed(one); });
+    if (!q) return std::nullopt;
+    found_.push_back(*travel);
+    return BetweenRow{*travel, *q};
+  }
+
+ private:
+  bool allowed(const Config& q) {
+    constexpr double kInside = 1e-4, kClear = 1e-4;  // rad, m: so that samples beside are allowed as well
+    TrajectoryRow row;
+    row.q = q;
+    return !fault_of_joints(*chain_, problem_->limits, row, kInside) && !query_.first_below(q, Level(Keep::kNode, kClear));
+  }
+
+  const Chain* chain_;
+  const Problem* problem_;
+  const ToolPath* path_;
+  World world_;
+  World::Query query_;
+  std::vector<double> found_;  // m of travel
+};
 
 }  // namespace
 
@@ -70,8 +129,11 @@ Problem with_motion_defaults(Problem problem) {
   return problem;
 }
 
-MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                             const TimingOptions& options, const Budget& budget) {
+namespace {
+
+/// `between_layers`: where the motion through the rows is at fault between them, it may be led through postures of its own there.
+MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                       const TimingOptions& options, bool between_layers, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   const auto positive = [&](double value, const char* name) {
@@ -91,28 +153,63 @@ MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem,
   struct Tried {
     std::optional<NoMotion> failure;
     bool all_rows = false, jumps = false;
+    std::vector<TimedRow> samples;  // the one at fault with what comes before it and after
+    std::optional<std::size_t> at_fault;
   };
-  const auto try_it = [&](double apart, double off_limits) {
+  const auto try_it = [&](double apart, double off_limits, const std::vector<BetweenRow>& between = {}) {
     auto start = std::chrono::steady_clock::now();
-    const auto motion = make_path_motion(chain, robot.arm_class(), path, rows, apart, problem.limits.joint_margin + off_limits);
+    const auto motion =
+        make_path_motion(chain, robot.arm_class(), path, rows, apart, problem.limits.joint_margin + off_limits, between);
     TimingResult timed = time_path(*motion, rates, options, budget);
     result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-    Tried tried{std::move(timed.failure), motion->knots().size() == rows.size(), !motion->jumps().empty()};
-    if (timed.motion) tried.failure = first_fault(robot, of_samples, timed.motion->rows, budget);
+    Tried tried{std::move(timed.failure), motion->knots().size() == rows.size(), !motion->jumps().empty(), {}, {}};
+    if (timed.motion) {
+      if (const auto fault = first_fault(robot, of_samples, timed.motion->rows, budget)) {
+        tried.failure = fault->what;
+        tried.at_fault = fault->row;
+        tried.samples = std::move(timed.motion->rows);
+      }
+    }
     result.check_ms += ms_since(start);
     if (!tried.failure) result.motion = std::move(timed.motion);
     return tried;
   };
   constexpr double kApart = 0.005, kOffLimits = 1e-3, kFarOff = 0.03;  // m, rad
   Tried tried = try_it(kApart, kOffLimits);
+  Tried bisected = between_layers && tried.at_fault ? tried : Tried{};
   // Through every row only where the smoother motion will not do.
   if (tried.failure && !tried.all_rows && !tried.jumps) tried = try_it(0, kOffLimits);
   // Rows as far off limits as splines through a jagged path overshoot.
   if (tried.failure && !tried.failure->too_near && !tried.jumps && !robot.arm_class().srs) {
     if (const Tried last = try_it(kApart, kFarOff); !last.failure) tried = last;
   }
+  if (tried.failure && bisected.at_fault) {
+    constexpr std::size_t kMost = 64;
+    Bisection bisection(robot, of_samples, path, budget);
+    std::vector<BetweenRow> between;
+    while (bisected.at_fault && between.size() < kMost) {
+      const auto one = bisection.posture(bisected.samples, *bisected.at_fault);
+      if (!one) break;
+      between.push_back(*one);
+      bisected = try_it(kApart, kOffLimits, between);
+    }
+    if (!bisected.failure) {
+      char text[160];
+      std::snprintf(text, sizeof text, "at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
+      result.motion->warnings.push_back(text + tried.failure->reason + "): it is led through " + std::to_string(between.size()) +
+                                        " other posture" + (between.size() == 1 ? "" : "s") + " there");
+    }
+    tried = std::move(bisected);
+  }
   result.failure = std::move(tried.failure);
   return result;
+}
+
+}  // namespace
+
+MotionResult time_trajectory(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                             const TimingOptions& options, const Budget& budget) {
+  return time_rows(robot, problem, rows, options, true, budget);
 }
 
 namespace {
@@ -218,9 +315,14 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
         result.time_ms["refine"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
       }
       if (!timing) break;
-      plan.motion = time_trajectory(view.robot, view.problem, refined ? plan.refinement->rows : plan.lattice_path, *timing, budget);
+      const std::vector<TrajectoryRow>& rows = refined ? plan.refinement->rows : plan.lattice_path;
+      // More clearance at the layers makes smoother motions than postures between them: these come last.
+      const bool last = !refined || margins.extra_clearance > kMostExtra;
+      plan.motion = time_rows(view.robot, view.problem, rows, *timing, last, budget);
+      if (!last && plan.motion->failure && !plan.motion->failure->too_near)
+        plan.motion = time_rows(view.robot, view.problem, rows, *timing, true, budget);
       result.time_ms["time"] += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
-      if (!refined || !plan.motion->failure || !plan.motion->failure->too_near || margins.extra_clearance > kMostExtra) break;
+      if (!refined || !plan.motion->failure || !plan.motion->failure->too_near || last) break;
     }
   } catch (const Stopped&) {
     stop(plan, refined && !plan.refinement, timing && (!plan.motion || !plan.motion->motion));

@@ -419,6 +419,75 @@ TEST(Motion, KeepsTheClearanceAskedForBetweenSamplesToo) {
   EXPECT_LE(refused, executed / 4);
 }
 
+std::string said_of_postures(const TimedPath& motion) {
+  for (const std::string& warning : motion.warnings)
+    if (warning.find("between layers (") != std::string::npos) return warning;
+  return "";
+}
+
+/// The lattice's path runs along the limit of a joint, which leaves it between two layers.
+TEST(Motion, IsLedThroughOtherPosturesWhereItIsAtFaultBetweenLayers) {
+  const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
+  Planner planner(episode_problem(base, 1, 25));
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  const MotionPlan plan = plan_motion(planner, options, false, TimingOptions{.speed = 0.05, .turn_speed = {}, .rate = 250});
+  ASSERT_TRUE(plan.motion && plan.motion->motion) << plan.motion->failure->reason;
+  const TimedPath& motion = *plan.motion->motion;
+  EXPECT_NE(said_of_postures(motion).find("'arm_left_joint_6_b' leaves its limits"), std::string::npos) << said_of_postures(motion);
+  const CheckResult check = check_motion(planner.view().robot, planner.view().problem, motion.rows);
+  EXPECT_TRUE(check.passed) << check.failures[0];
+  EXPECT_LT(motion.duration, 1.05 * motion.ideal);
+  const JointLimit& limit = planner.view().robot.arm().chain.limit[5];
+  double least = 1;
+  for (const TimedRow& row : motion.rows) least = std::min(least, std::min(row.row.q[5] - limit.lower, limit.upper - row.row.q[5]));
+  EXPECT_GE(least, -1e-9);
+}
+
+/// Layers that lie far apart before a ball, and nothing asked between them: motions of the lattice's own path.
+TEST(Motion, OfCoarseLayersIsFreeOrNamesThePair) {
+  int executed = 0, led = 0, refused = 0;
+  const std::uint64_t base = seed("Coarse");
+  const std::vector<TestRobot> robots = all_robots();
+  for (int trial = 0; trial < trials(40); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    problem = with_motion_defaults(problem);
+    problem.limits.edges = EdgeMode::kNodes;
+    problem.resolution.ds = 0.06;
+    problem.limits.tool_path_error.reset();
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    double solvable = 0.02, blocked = 0.2;
+    for (int k = 0; k < 5; ++k) {
+      problem.scene[0].shape = Sphere{(solvable + blocked) / 2};
+      (swivel::plan(problem, options).status == PlanStatus::kSolved ? solvable : blocked) = (solvable + blocked) / 2;
+    }
+    problem.scene[0].shape = Sphere{solvable};
+    Planner planner(problem);
+    const MotionPlan plan = plan_motion(planner, options, false, TimingOptions{.speed = 0.1, .turn_speed = 0.5, .rate = 250});
+    if (plan.result.status != PlanStatus::kSolved) continue;
+    ASSERT_TRUE(plan.motion);
+    if (!plan.motion->motion) {
+      ++refused;
+      const NoMotion& failure = *plan.motion->failure;
+      std::printf("trial %d: %s at s = %.4f\n", trial, failure.reason.c_str(), failure.s);
+      EXPECT_GE(failure.s, 0);
+      EXPECT_LE(failure.s, plan.lattice_path.back().s);
+      EXPECT_FALSE(failure.reason.empty());
+      continue;
+    }
+    ++executed;
+    led += !said_of_postures(*plan.motion->motion).empty();
+    const CheckResult check = check_motion(planner.view().robot, planner.view().problem, plan.motion->motion->rows);
+    EXPECT_TRUE(check.passed) << "trial " << trial << ": " << check.failures[0];
+  }
+  std::printf("%d executed, %d of them led through other postures, %d refused\n", executed, led, refused);
+  EXPECT_GE(executed, at_least(15));
+  EXPECT_GE(led, at_least(1));
+  EXPECT_LE(refused, executed / 2);
+}
+
 TEST(Motion, PlansAgainWhatJumpsFromBranchToBranch) {
   const Problem base = with_motion_defaults(io::load_problem(std::string(SWIVEL_DATA_DIR) + "/problems/experiment_c.yaml"));
   int jumps = 0;

@@ -18,6 +18,12 @@ struct NoMotion {
   bool too_near = false;  ///< bodies come too near: other joints might do
 };
 
+/// Joints at a travel of the tool, m, between two rows of a trajectory.
+struct BetweenRow {
+  double travel = 0;
+  Config q = Config::Zero();
+};
+
 /// The joints of an arm as a function of the tool's travel along its path, through the rows of a trajectory: the tool is exactly on
 /// the path, and joints are as smooth as tool path and cubic splines are, twice continuously differentiable. How the coordinate
 /// that the arm has to spare goes on between rows is the business of the classes derived from it (make_path_motion).
@@ -48,7 +54,10 @@ class PathMotion {
   [[nodiscard]] virtual std::optional<Singular> nearest_singular(const Config& q) const = 0;
 
  protected:
-  PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart);
+  PathMotion(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
+             const std::vector<BetweenRow>& between);
+  /// The path's pose at a row.
+  [[nodiscard]] Pose pose_of(std::size_t row) const;
   /// The rows around a travel, by number, and how far between them it is: 0 to 1.
   struct Between {
     std::size_t from = 0;
@@ -65,7 +74,7 @@ class PathMotion {
   const Chain* chain_;
   const ToolPath* path_;
   std::vector<TrajectoryRow> rows_;
-  std::vector<int> layer_;      // of rows
+  std::vector<int> layer_;      // of rows; -1: between layers
   std::vector<double> travel_;  // of rows
   std::vector<NoMotion> jumps_;
 };
@@ -74,7 +83,7 @@ class PathMotion {
 /// among them; labels and joint images are those of the rows. Rows need not be at the poses of the path exactly: the coordinate to
 /// spare counts. Throws InputError where a row is at no layer. Refers to chain, arm and path. Rows less than `apart` after the one
 /// before, m of travel, are left out, the last aside: where rows are dense the digits that they do not agree in would bend the
-/// joints.
+/// joints. The motion leads through the postures `between` as well, wherever on the path they stand.
 ///
 /// S-R-S arms: a spline through the arm angles of the rows, in closed form. The angle is measured from a direction that stands
 /// still, the one of 26 that shoulder and wrist keep clearest of: the carried arm angle has kinks at layers, from the area that its
@@ -86,6 +95,6 @@ class PathMotion {
 /// stand on limits, and a spline through them would leave these.
 [[nodiscard]] std::unique_ptr<PathMotion> make_path_motion(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                                            const std::vector<TrajectoryRow>& rows, double apart = 0,
-                                                           double off_limits = 0);
+                                                           double off_limits = 0, const std::vector<BetweenRow>& between = {});
 
 }  // namespace swivel
