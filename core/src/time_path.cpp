@@ -164,15 +164,16 @@ class Piece {
       }
     }
   }
-  /// Where the joints have room left, places are passed faster and accelerations along the path rise, as long as that gains time:
-  /// to slow down costs acceleration and jerk of its own, and the first answer pays for it with more slowing down than is needed.
+  /// After plan(). Where the joints have room left, places are passed faster and accelerations along the path rise, as long as that
+  /// gains time: to slow down costs acceleration and jerk of its own, and the first answer pays for it with more slowing down than
+  /// is needed. Returns the rounds.
   int speed_up(const Budget& budget) {
-    constexpr double kNearIdeal = 1.02, kUse = 0.98;  // of the time at the speed asked for; of the room
+    constexpr double kNearIdeal = 1.02, kUse = 0.99;  // of the time at the speed asked for; of the room
     constexpr double kFaster = 1.02, kHarder = 1.15;  // most that a round changes
     constexpr double kHardest = 3;                    // times what one joint's acceleration allows: another bend may help
-    constexpr double kLittle = 1e-3;                  // of the time
-    constexpr int kRounds = 12, kRepairs = 6,
-                  kFew = 2;  // rounds in all; attempts to keep the rates again; gains of next to nothing
+    constexpr double kLittle = 3e-4;                  // of the time
+    constexpr int kRounds = 12, kRepairs = 6;         // rounds in all; attempts to keep the rates again
+    constexpr int kFew = 2;                           // gains that are next to nothing
     int rounds = 0, few = 0;
     std::vector<double> slower = slower_, gentler = gentler_;
     double least = end_;

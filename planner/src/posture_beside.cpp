@@ -8,8 +8,8 @@ namespace swivel {
 
 namespace {
 
-/// One step along the self-motion: the way that leads on in the direction of `way`, brought back to the pose by Newton steps of least
-/// norm. `way` becomes the tangent at its end.
+/// One step along the self-motion: the way that leads on in the direction of `way`, brought back to the pose by Newton steps of
+/// least norm. `way` becomes the tangent at its end.
 std::optional<Config> step(const Chain& chain, const Pose& tool, const Config& from, double length, Config& way) {
   constexpr int kSteps = 6;
   constexpr double kClosed = 1e-12, kSingular = 1e-6;  // m and rad; of the Jacobian's singular values

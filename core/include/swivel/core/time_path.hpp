@@ -44,7 +44,7 @@ struct TimedPath {
   double rate = 0;
   bool roll = false;    ///< the last joint of rows is the roll of the tool (Chain::roll), which no controller moves
   double duration = 0;  ///< s, until the tool rests at the end; less than the last row's t by less than a sample
-  double ideal = 0;     ///< s, at the speeds asked for from the first moment to the last
+  double ideal = 0;     ///< s, at the speeds asked for (less where `chord` asks for less) from the first moment to the last
   /// The largest of a joint's differences between samples, by what the joint can do.
   struct Peak {
     double ratio = 0;
@@ -78,7 +78,8 @@ struct TimedPath {
 /// The fastest motion that was found at the tool speed asked for, within the rates of the joints, from rest to rest: as fast as
 /// speeds, accelerations and jerks of the path's geometry allow, forward and backward passes for the acceleration along the path
 /// (Bobrow, Dubowsky, Gibson 1985), a moving average over time for its jerk (Biagiotti & Melchiorri 2008, "trajectories by FIR
-/// filters"), then verified, and slowed down where it is too fast, until it is not. Samples are exact solutions on the path.
+/// filters"), then verified, and slowed down where it is too fast, until it is not; what was slowed down too much is sped up again.
+/// Samples are exact solutions on the path.
 /// Deterministic. Throws InputError for rates that are missing, Stopped; returns NoMotion where the arm has no solution or jumps.
 struct TimingResult {
   std::optional<TimedPath> motion;
