@@ -13,9 +13,9 @@
 #include "between_samples.hpp"
 #include "first_too_near.hpp"
 #include "measure_rows.hpp"
-#include "posture_beside.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/posture_beside.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/refine.hpp"
 

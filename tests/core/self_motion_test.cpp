@@ -8,6 +8,7 @@
 
 #include "arms.hpp"
 #include "seed.hpp"
+#include "swivel/core/posture_beside.hpp"
 
 namespace swivel {
 namespace {
@@ -229,6 +230,38 @@ TEST(SelfMotion, MissesNoArcAlongPaths) {
     EXPECT_EQ(coverage.poses, 8 * trials(1));
     EXPECT_EQ(coverage.missed, 0) << table.name;
   }
+}
+
+/// What is allowed lies where a joint has moved by so much, to either side.
+TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
+  const std::uint64_t base = seed("PostureBeside");
+  Random random(base);
+  constexpr double kFarthest = 0.5;
+  int found = 0, none = 0;
+  for (const ArmTable& arm : arms()) {
+    const Chain chain = chain_of(arm);
+    for (int k = 0; k < trials(40); ++k) {
+      Config q;
+      for (int j = 0; j < kDof; ++j) q[j] = random.uniform(-2, 2);
+      const int joint = random.below(kDof);
+      const double by = random.uniform(0, 0.1);
+      const auto moved = [&](const Config& x) { return std::abs(x[joint] - q[joint]); };
+      const auto beside = posture_beside(chain, q, kFarthest, [&](const Config& x) { return moved(x) >= by; });
+      const std::string where = arm.name + ", SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
+      if (!beside) {
+        ++none;
+        continue;
+      }
+      ++found;
+      EXPECT_LT(pose_distance(chain.tool(*beside), chain.tool(q)), 1e-9) << where;
+      EXPECT_GE(moved(*beside), by) << where;
+      EXPECT_LT((*beside - q).norm(), 1.1 * kFarthest * 1.3) << where;
+      // Steps grow by three tenths, so it is not gone by much more than was asked for.
+      EXPECT_LT(moved(*beside), 1.4 * by + 1e-3) << where;
+    }
+  }
+  std::printf("  %d found, %d without\n", found, none);
+  EXPECT_GT(found, 3 * none);
 }
 
 }  // namespace
