@@ -462,7 +462,7 @@ class Errors(unittest.TestCase):
         self.raises(TypeError, "'clearence', nearest is 'clearance'", swivel.Limits, clearence=1)
         self.raises(ValueError, "EdgeMode: 'some': allowed are continuous, nodes", swivel.Limits, edges="some")
         self.raises(ValueError, "allowed are eager, eager_dp, lazy, parallel", swivel.plan, experiment("b"), planner="lasy")
-        for keywords in ({"threads": -1}, {"timeout": 0}, {"rate": 100}, {"speed": 0}, {"speed": 0.1, "rate": 0}, {"speed": float("nan")}):
+        for keywords in ({"threads": -1}, {"timeout": 0}, {"rate": 100}, {"chord": 1e-6}, {"speed": 0}, {"speed": 0.1, "rate": 0}, {"speed": 0.1, "chord": -1}, {"speed": float("nan")}):
             self.raises(ValueError, next(iter(reversed(keywords))) + ".*allowed", swivel.plan, experiment("b"), **keywords)
         self.raises(ValueError, r"pose of shape \(2,\)", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), [1, 2])
         self.raises(ValueError, "no rigid transform", swivel.SceneObject, "box", swivel.Box([1, 1, 1]), 2 * np.eye(4))
