@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have: paths of two to five
-// waypoints, up to four obstacles, meshes among them, with and without a start, with random limits; feasible and not.
+// How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have: paths of two to
+// five waypoints, up to four obstacles, meshes among them, with and without a start, with random limits; feasible and not.
 //   eager_ratios [--count N] [--first N] [--seed N] PROBLEM.yaml...    default 500 problems from the first on, robots in turn
-// Prepared robots, one thread, medians of three in turn: until the verdict, and the whole call, which explains why there is no path,
-// the same way for both. Prints each problem on which the verdict of `lazy` comes later, and percentiles.
+// Prepared robots, one thread, medians of three in turn: until the verdict, and the whole call, which explains why there is no
+// path, the same way for both. Prints each problem on which the verdict of `lazy` comes later, and percentiles.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -156,7 +156,9 @@ Options options_of(int argc, char** argv) {
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
     if ((word == "--count" || word == "--first" || word == "--seed") && k + 1 < argc)
-      (word == "--count" ? options.count : word == "--first" ? options.first : options.seed) = std::strtoull(argv[++k], nullptr, 10);
+      (word == "--count"   ? options.count
+       : word == "--first" ? options.first
+                           : options.seed) = std::strtoull(argv[++k], nullptr, 10);
     else if (word[0] != '-')
       options.files.push_back(word);
     else
