@@ -138,12 +138,20 @@ bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& b
   return low > 0 && finds_deeper(low, solid, body, first);
 }
 
+}  // namespace
+
+double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
+  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
+  return a.shape->triangles->distance(*b.shape->triangles, b_in_a, enough, limit, witness);
+}
+
+namespace {
+
 Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
   if (!a.shape->triangles || !b.shape->triangles) return {};
   const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
   if (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)) return kCollides;
-  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  const Proof surface = range.of(a.shape->triangles->distance(*b.shape->triangles, b_in_a, range.low, range.far, witness));
+  const Proof surface = range.of(surface_distance(a, b, range.low, range.far, witness));
   if (surface.certificate == Certificate::kColliding) return surface;
   const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
   const bool inside = one_inside_other(a, b) || (surfaces_apart && one_inside_solid(a, b));
@@ -163,8 +171,7 @@ bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {
 }
 
 double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
-  const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  const double surfaces = a.shape->triangles->distance(*b.shape->triangles, b_in_a, enough, limit, witness);
+  const double surfaces = surface_distance(a, b, enough, limit, witness);
   return surfaces > 0 && (one_inside_other(a, b) || one_inside_solid(a, b)) ? 0 : surfaces;
 }
 

@@ -28,10 +28,12 @@ struct Proof {
 /// What the distance of two surfaces of triangles may differ by between triangle_distance() and FCL, m: of meshes and boxes, both
 /// in closed form but for boxes, where FCL's GJK gives 0.05 um.
 inline constexpr double kTriangleBand = 1e-6;
+/// Of the triangles of two bodies that have some, m, where it lies in [enough, limit]; else as TriangleTree::distance.
+[[nodiscard]] double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit,
+                                      TrianglePair& witness);
 /// Whether both bodies are nothing but triangles: meshes and boxes.
 [[nodiscard]] bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b);
-/// Of such bodies: their clearance, m, where it lies in [enough, limit]; else as TriangleTree::distance. 0 where one holds the
-/// other.
+/// Of such bodies: surface_distance, but 0 where one holds the other.
 [[nodiscard]] double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit,
                                        TrianglePair& witness);
 /// Whether the clearance is proved to be more than d > 0, m, by at least what FCL may differ by.

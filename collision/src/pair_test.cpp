@@ -21,12 +21,6 @@ namespace {
 /// Surfaces that are nearer are left to FCL as a whole, m: there it matters what is inside what.
 constexpr double kTouching = 2 * kVerdictBand;
 
-/// Of the triangles of two bodies that have some, m.
-double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair& witness) {
-  constexpr double kFar = 1e6;
-  return a.shape->triangles->distance(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, 0, kFar, witness);
-}
-
 bool is_round(const PlacedShapeRef& body) {
   return body.shape->kind == FclShape::Kind::kRound;
 }
@@ -64,8 +58,9 @@ double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, Tri
     found = inflated_meets(b, a, false, 0) ? 0 : core_distance(b, a, false);
   } else {
     const bool some = meshes_ == Meshes::kNear && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
+    constexpr double kFarAway = 1e6;  // m
     TrianglePair anywhere;
-    const double surfaces = some ? surface_distance(a, b, witness ? *witness : anywhere) : 0;
+    const double surfaces = some ? surface_distance(a, b, 0, kFarAway, witness ? *witness : anywhere) : 0;
     found = surfaces > kTouching ? near_distance(a, b, surfaces + kVerdictBand, kUnbounded) : whole_distance(a, b, kUnbounded);
   }
   return found <= 0 || one_inside_other(a, b) ? 0 : found;

@@ -27,10 +27,14 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     budget.poll(Stage::kMeasuring, looked_at++, count);
     const Config& q = rows[static_cast<std::size_t>(row)].q;
     if (nearest && is_further(row, q)) return;
-    const bool apart = nearest && nearest->clearance.distance > 0;
-    const auto here = apart ? query.clearance_below(q, {nearest->clearance.distance, nearest->clearance.pair,
-                                                        nearest->clearance.required, nearest->least})
-                            : query.clearance(q);
+    std::optional<World::Query::Clearance> here;
+    if (nearest && nearest->clearance.distance > 0) {
+      World::Query::Clearance so_far = nearest->clearance;
+      so_far.least = nearest->least;
+      here = query.clearance_below(q, so_far);
+    } else {
+      here = query.clearance(q);
+    }
     if (!here) return;
     const double least = nearest ? std::min(nearest->least, here->least) : here->least;
     if (!nearest || std::tuple(here->margin(), row) <= std::tuple(nearest->clearance.margin(), nearest->row))

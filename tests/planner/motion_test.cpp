@@ -188,6 +188,12 @@ TEST(Refine, TheResolutionStopsMattering) {
   EXPECT_GT(dearest_before, 5);
 }
 
+PlanResult planned(const PreparedRobot& robot, const Problem& problem) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  return plan(robot, problem, options);
+}
+
 /// Door poses where refinement used to end dearer than it need: its path lay on bounds over most of its length (4, 73), or the
 /// cheaper way past an obstacle began with a path that is not valid between its own layers (83). Costs are those of fine lattices
 /// about the best path known (bench/basin_benchmark data/problems/experiment_c.yaml --episodes 1 --first 4).
@@ -197,9 +203,7 @@ TEST(Refine, EndsWithinAThousandthOfItsBasinsOptimum) {
   for (const auto& [episode, fine_lattice] : {std::pair(4u, 1.98137), std::pair(73u, 3.35499), std::pair(83u, 2.22246)}) {
     SCOPED_TRACE(episode);
     const Problem problem = episode_problem(base, 1, episode);
-    PlanOptions options;
-    options.planner = PlannerKind::kLazy;
-    const PlanResult found = plan(robot, problem, options);
+    const PlanResult found = planned(robot, problem);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     const Refined refined = refine(robot, problem, found.trajectory);
     EXPECT_LE(refined.cost, 1.001 * fine_lattice);
@@ -215,9 +219,7 @@ TEST(Refine, CrossesSingularitiesStraight) {
   for (const unsigned episode : {60u, 88u}) {
     SCOPED_TRACE(episode);
     const Problem problem = episode_problem(base, 1, episode);
-    PlanOptions options;
-    options.planner = PlannerKind::kLazy;
-    const PlanResult found = plan(robot, problem, options);
+    const PlanResult found = planned(robot, problem);
     ASSERT_EQ(found.status, PlanStatus::kSolved);
     ASSERT_NE(found.trajectory.front().branch, found.trajectory.back().branch);
     const Refined refined = refine(robot, problem, found.trajectory);
