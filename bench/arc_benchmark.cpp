@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the time of a plan goes on arms without an arm angle: random straight paths of 0.5 m at 5 mm, without obstacles, one
+// thread, planner `lazy`.
+//   arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...    default 20 paths that are solved, seed 1, 3 rounds
+// A problem gives robot, roll, limits and cost. A path begins at random joints within the limits and turns by at most 0.5 rad. Of
+// each path the round with the least whole time; medians over paths, ms: `arcs` is the making of nodes, `sweep` every node against
+// those of the next layer, first and where nodes fell out, `questions` validity, `rest` what is left of the plan. A hash of all
+// rows tells whether answers changed.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/timeline.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace {
+
+using namespace swivel;
+
+constexpr double kLength = 0.5, kSpacing = 0.005, kLargestTurn = 0.5;  // m, m, rad
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double uniform(double low, double high) { return low + (high - low) * (static_cast<double>(engine_() >> 11) * 0x1.0p-53); }
+  Vector3d direction() {
+    const double z = uniform(-1, 1), turn = uniform(-kPi, kPi), r = std::sqrt(1 - z * z);
+    return {r * std::cos(turn), r * std::sin(turn), z};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+Problem random_problem(const Problem& base, const Chain& chain, Random& random) {
+  Problem problem = base;
+  problem.scene.clear();
+  problem.vary.clear();
+  problem.start.reset();
+  problem.start_at.reset();
+  problem.path_frame.clear();
+  Config q;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+    q[j] = limit.continuous ? random.uniform(-kPi, kPi) : random.uniform(limit.lower, limit.upper);
+  }
+  const Pose tool = chain.tool(q);
+  const Quaterniond first = Quaterniond(tool.linear()).normalized();
+  const Eigen::AngleAxisd turn(random.uniform(0, kLargestTurn), random.direction());
+  problem.waypoints = {{tool.translation(), first},
+                       {tool.translation() + kLength * random.direction(), (Quaterniond(turn) * first).normalized()}};
+  problem.resolution.ds = kSpacing;
+  return problem;
+}
+
+struct Times {
+  std::map<std::string, double> ms;
+  [[nodiscard]] double whole() const { return ms.at("whole"); }
+};
+
+Times timed(const PreparedRobot& robot, const Problem& problem, PlanResult& result) {
+  PlanOptions options;
+  options.planner = PlannerKind::kLazy;
+  options.threads = 1;
+  Times times;
+  const Timeline timeline;
+  const auto start = std::chrono::steady_clock::now();
+  result = plan(robot, problem, options);
+  times.ms["whole"] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  const std::map<std::string, std::string> kParts = {
+      {"arcs", "arcs"}, {"sweep", "sweep"}, {"repair", "sweep"}, {"nodes asked", "questions"}, {"edges asked", "questions"}};
+  for (const auto& [span, part] : kParts) times.ms[part];
+  double rest = times.ms["whole"];
+  for (const Timeline::Event& event : timeline.events()) {
+    const auto part = kParts.find(event.name);
+    if (part == kParts.end()) continue;
+    const double ms = 1e-6 * static_cast<double>(event.end_ns - event.begin_ns);
+    times.ms[part->second] += ms;
+    rest -= ms;
+  }
+  times.ms["rest"] = rest;
+  return times;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+struct Options {
+  std::uint64_t count = 20, seed = 1, rounds = 3;
+  std::vector<std::string> files;
+};
+Options options_of(int argc, char** argv) {
+  Options options;
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k];
+    if ((word == "--count" || word == "--seed" || word == "--rounds") && k + 1 < argc)
+      (word == "--count"  ? options.count
+       : word == "--seed" ? options.seed
+                          : options.rounds) = std::strtoull(argv[++k], nullptr, 10);
+    else if (word[0] != '-')
+      options.files.push_back(word);
+    else
+      throw InputError("arc_benchmark: " + word + ": allowed are --count N, --seed N, --rounds N and problems");
+  }
+  if (options.files.empty()) throw InputError("arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...");
+  return options;
+}
+
+void run(const Options& options, const std::string& file) {
+  constexpr std::uint64_t kMostTries = 1000;  // of each path asked for
+  const Problem base = io::load_problem(file);
+  const PreparedRobot robot(base);
+  Random random(options.seed);
+  std::map<std::string, std::vector<double>> parts;
+  double nodes = 0;
+  std::uint64_t hash = 14695981039346656037u;  // FNV-1a
+  std::uint64_t solved = 0, tries = 0;
+  for (; solved < options.count && tries < kMostTries * options.count; ++tries) {
+    const Problem problem = random_problem(base, robot.arm().chain, random);
+    PlanResult result;
+    Times best = timed(robot, problem, result);
+    if (result.status != PlanStatus::kSolved) continue;
+    for (std::uint64_t round = 1; round < options.rounds; ++round)
+      if (Times times = timed(robot, problem, result); times.whole() < best.whole()) best = std::move(times);
+    for (const auto& [part, ms] : best.ms) parts[part].push_back(ms);
+    nodes += static_cast<double>(result.lattice.nodes) / static_cast<double>(result.lattice.layers);
+    for (const TrajectoryRow& row : result.trajectory)
+      for (const double value : row.q) {
+        std::array<unsigned char, sizeof value> bytes;
+        std::memcpy(bytes.data(), &value, sizeof value);
+        for (const unsigned char byte : bytes) hash = (hash ^ byte) * 1099511628211u;
+      }
+    ++solved;
+  }
+  std::printf("%s: %llu of %llu paths", file.c_str(), static_cast<unsigned long long>(solved),
+              static_cast<unsigned long long>(tries));
+  if (solved > 0) {
+    std::printf(", %.0f nodes a layer; ms: whole %.1f", nodes / static_cast<double>(solved), median(parts["whole"]));
+    for (const char* part : {"arcs", "sweep", "questions", "rest"}) std::printf(", %s %.1f", part, median(parts[part]));
+    std::printf("; rows %016llx", static_cast<unsigned long long>(hash));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const Options options = options_of(argc, argv);
+    for (const std::string& file : options.files) run(options, file);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+}
