@@ -33,12 +33,6 @@ void ExplicitCostToGo::relax(int step_layer, int layer, int other_layer, const V
   const std::size_t count = from[0].size(), partners = others.size();
   out.assign(count, kUnreachable);
   if (partners == 0 || count == 0) return;
-  // The kernel joins node k to the partners k, k + 1, ...: with the partners repeated, every node meets each of them once.
-  const auto repeat = [&](const Values& once, Values& around) {
-    around.resize(count + partners - 1);
-    for (std::size_t at = 0; at < around.size(); at += partners)
-      std::copy_n(once.begin(), std::min(partners, around.size() - at), around.begin() + static_cast<std::ptrdiff_t>(at));
-  };
   RelaxTask<double> task;
   task.n = static_cast<int>(count);
   task.offsets = static_cast<int>(partners);
@@ -50,16 +44,14 @@ void ExplicitCostToGo::relax(int step_layer, int layer, int other_layer, const V
     task.turn[k] = turns ? kTwoPi : 0;
     task.scale[k] = lattice_->cost_scale()[k];
     task.bound[k] = lattice_->step_bound(step_layer)[static_cast<Eigen::Index>(k)];
-    repeat(to[k], around_[k]);
     task.from[k] = from[k].data();
-    task.to[k] = around_[k].data();
+    task.to[k] = to[k].data();
   }
-  repeat(others, around_value_);
   task.unit = lattice_->cost_unit();
-  task.value = around_value_.data();
+  task.value = others.data();
   task.best = out.data();
   edges_ += static_cast<std::int64_t>(count * partners);
-  relax_kernels().relax(task);
+  relax_kernels().relax_all(task);
 }
 
 double ExplicitCostToGo::relax_one(int layer, int slot) {

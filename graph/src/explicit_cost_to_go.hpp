@@ -43,8 +43,6 @@ class ExplicitCostToGo final : public CostToGo {
   std::vector<std::array<Values, kDof>> joints_;  // [layer][joint][slot]
   std::vector<Values> value_;                     // [layer]
   std::tuple<int, std::vector<Values>> saved_;
-  std::array<Values, kDof> around_;  // scratch of relax: partners, once around and on
-  Values around_value_;
 };
 
 }  // namespace swivel

@@ -148,15 +148,16 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   EXPECT_GT(tightest, 0.99);
 }
 
-/// What a relaxation is: every pair in turn.
-std::vector<double> relaxed_plainly(const RelaxTask<double>& task) {
+/// What a relaxation is: every pair in turn. Partners of node k: from k on, or the same of all nodes.
+std::vector<double> relaxed_plainly(const RelaxTask<double>& task, bool all = false) {
   std::vector<double> best(static_cast<std::size_t>(task.n), kUnreachable);
   for (int k = 0; k < task.n; ++k)
     for (int offset = 0; offset < task.offsets; ++offset) {
+      const int partner = all ? offset : k + offset;
       double squares[kDof], most = 0;
       bool allowed = true;
       for (int j = 0; j < kDof; ++j) {
-        double d = task.to[j][k + offset] - task.from[j][k];
+        double d = task.to[j][partner] - task.from[j][k];
         d -= task.turn[j] * std::round(d / kTwoPi);
         allowed = allowed && std::abs(d) <= task.bound[j];
         const double x = task.scale[j] * d;
@@ -168,19 +169,24 @@ std::vector<double> relaxed_plainly(const RelaxTask<double>& task) {
       const double cost = task.metric == RelaxMetric::kL2 ? norm : most;
       if (allowed)
         best[static_cast<std::size_t>(k)] =
-            std::min(best[static_cast<std::size_t>(k)], cost + 6144.0 * task.unit - 6144.0 * task.unit + task.value[k + offset]);
+            std::min(best[static_cast<std::size_t>(k)], cost + 6144.0 * task.unit - 6144.0 * task.unit + task.value[partner]);
     }
   return best;
 }
 
-TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
-  Random random(seed("RelaxKernels"));
+std::vector<const RelaxKernels*> vector_units() {
   std::vector<const RelaxKernels*> units{&scalar_relax_kernels()};
 #ifdef SWIVEL_X86_KERNELS
   if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_relax_kernels());
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
     units.push_back(&avx512_relax_kernels());
 #endif
+  return units;
+}
+
+TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
+  Random random(seed("RelaxKernels"));
+  const std::vector<const RelaxKernels*> units = vector_units();
   int runs = 0, reached = 0, barred = 0, idle_runs = 0;
   for (int trial = 0; trial < trials(4000); ++trial) {
     const int n = 1 + random.below(40), offsets = 1 + random.below(9);
@@ -260,6 +266,66 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
   EXPECT_GT(reached, runs);
   EXPECT_GT(barred, runs / 10);
   EXPECT_GT(idle_runs, runs / 60);
+}
+
+/// Nodes in runs along which joints change little, as on arcs, or anywhere; partners near some of them.
+TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
+  Random random(seed("RelaxAll"));
+  const std::vector<const RelaxKernels*> units = vector_units();
+  int runs = 0, reached = 0, barred = 0, turned = 0;
+  for (int trial = 0; trial < trials(4000); ++trial) {
+    const int n = 1 + random.below(60), partners = 1 + random.below(random.coin(0.1) ? 600 : 40);
+    const double turns = random.coin() ? kPi : 20;  // joints go so far from 0
+    std::array<std::vector<double>, kDof> from, to;
+    const double spacing = random.uniform(0, 0.5);
+    for (int k = 0; k < n; ++k) {
+      const bool jump = k == 0 || random.coin(0.1);
+      for (auto& joint : from)
+        joint.push_back(jump ? random.uniform(-turns, turns) : joint.back() + random.uniform(-spacing, spacing));
+    }
+    RelaxTask<double> task{};
+    task.n = n;
+    task.offsets = partners;
+    task.unit = random.coin() ? 1 : std::exp2(random.below(41) - 20);
+    task.metric = random.coin() ? RelaxMetric::kL2 : RelaxMetric::kMax;
+    task.wraps = random.coin();
+    for (std::size_t j = 0; j < kDof; ++j) {
+      task.turn[j] = task.wraps && random.coin() ? kTwoPi : 0;
+      task.bound[j] = random.coin(0.05) ? 0 : random.uniform(0.1, 1);
+      task.scale[j] = random.coin(0.1) ? 0 : task.unit * random.uniform(0, 3);
+    }
+    for (int k = 0; k < partners; ++k) {
+      const auto near = static_cast<std::size_t>(random.below(n));
+      const double share = random.coin() ? 1 : 1.1;  // of the bounds: some partners stand on them to the bit
+      for (std::size_t j = 0; j < kDof; ++j) {
+        const double away = random.coin(0.2) ? std::copysign(1.0, random.uniform(-1, 1)) : random.uniform(-1, 1);
+        const double whole = task.turn[j] > 0 ? kTwoPi * (random.below(3) - 1) : 0;
+        turned += whole != 0;
+        to[j].push_back(from[j][near] + share * away * task.bound[j] + whole);
+      }
+    }
+    std::vector<double> value;
+    for (int k = 0; k < partners; ++k) value.push_back(random.coin(0.2) ? kUnreachable : task.unit * random.uniform(0, 5));
+    task.value = value.data();
+    for (std::size_t j = 0; j < kDof; ++j) {
+      task.from[j] = from[j].data();
+      task.to[j] = to[j].data();
+    }
+    const std::vector<double> plain = relaxed_plainly(task, true);
+    for (const double found : plain) (found == kUnreachable ? barred : reached) += 1;
+    for (const RelaxKernels* kernels : units) {
+      std::vector<double> best(static_cast<std::size_t>(n), kUnreachable);
+      task.best = best.data();
+      kernels->relax_all(task);
+      ASSERT_EQ(best, plain);
+      ++runs;
+    }
+  }
+  std::printf("%zu units, %d runs, %d nodes reached, %d not, %d joints a turn further\n", units.size(), runs, reached, barred,
+              turned);
+  EXPECT_GT(reached, runs / 4);
+  EXPECT_GT(barred, runs / 4);
+  EXPECT_GT(turned, runs / 4);
 }
 
 }  // namespace

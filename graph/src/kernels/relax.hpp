@@ -25,6 +25,8 @@ struct RelaxTask {
 
 struct RelaxKernels {
   void (*relax)(const RelaxTask<double>&);
+  /// Every node with every one of the partners 0 ... offsets - 1; those out of reach by `bound` are left by groups.
+  void (*relax_all)(const RelaxTask<double>&);
   void (*coarse)(const RelaxTask<float>&);
 };
 const RelaxKernels& relax_kernels();

@@ -119,51 +119,57 @@ inline V move(V from, V to, float turn) {
   return d - turn * ((turns + 12582912.0F) - 12582912.0F);  // to the nearest whole
 }
 
-/// As many nodes as V has lanes, from the run's node `at`. Partners that better no lane's best are left before the root is drawn;
-/// the middle one, first, is mostly the best. `sure`: a measure of the move up to which every joint stays within its bound;
-/// negative where no measure tells.
+/// `best`, or what a partner with the value gives where that is less. Partners that better no lane's best are left before the root
+/// is drawn. `sure`: a measure of the move up to which every joint stays within its bound; negative where no measure tells.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
-inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
+inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V value, V best, T sure) {
   const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;  // far above what the sum may lose
   const T shift = T(6144) * task.unit;
+  const V room = larger(V(best - value + rounding), V{});
+  V step[7], x[7];
+  for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], to[j], task.turn[j]);
+  for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
+  V measure, limit;  // what the cost grows with, and of a cost as large as the room
+  if constexpr (kMetric == RelaxMetric::kL2) {
+    measure = ((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6]);
+    limit = room * room;
+  } else {
+    for (V& part : x) part = magnitude(part);
+    measure = larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
+    limit = room;
+  }
+  if (!any_less(measure, limit)) return best;
+  V cost = measure;
+  if constexpr (kMetric == RelaxMetric::kL2) cost = root(measure);
+  if constexpr (!kSingle<T>) cost = (cost + shift) - shift;
+  V total = cost + value;
+  if constexpr (!kSingle<T>)
+    if (any_less(V{} + sure, measure)) {
+      V excess = magnitude(step[0]) - task.bound[0];
+      for (int j = 1; j < 7; ++j) excess = larger(excess, V(magnitude(step[j]) - task.bound[j]));
+      total = excess > T(0) ? V{} + T(__builtin_inf()) : total;
+    }
+  return total < best ? total : best;
+}
+
+/// As many nodes as V has lanes, from the run's node `at`. The middle partner, first, is mostly the best.
+template <class V, RelaxMetric kMetric, bool kWraps, class T>
+inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
   V from[7];
   for (int j = 0; j < 7; ++j) from[j] = load<V>(task.from[j] + at);
   V best = load<V>(task.best + at);
   for (int turn = 0; turn < task.offsets; ++turn) {
     const int offset = task.offsets / 2 + (turn % 2 == 0 ? turn / 2 : -(turn + 1) / 2), partner = at + offset;
-    const V value = load<V>(task.value + partner), room = larger(V(best - value + rounding), V{});
-    V step[7], x[7];
-    for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], load<V>(task.to[j] + partner), task.turn[j]);
-    for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
-    V measure, limit;  // what the cost grows with, and of a cost as large as the room
-    if constexpr (kMetric == RelaxMetric::kL2) {
-      measure = ((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6]);
-      limit = room * room;
-    } else {
-      for (V& part : x) part = magnitude(part);
-      measure = larger(larger(larger(x[0], x[1]), larger(x[2], x[3])), larger(larger(x[4], x[5]), x[6]));
-      limit = room;
-    }
-    if (!any_less(measure, limit)) continue;
-    V cost = measure;
-    if constexpr (kMetric == RelaxMetric::kL2) cost = root(measure);
-    if constexpr (!kSingle<T>) cost = (cost + shift) - shift;
-    V total = cost + value;
-    if constexpr (!kSingle<T>)
-      if (any_less(V{} + sure, measure)) {
-        V excess = magnitude(step[0]) - task.bound[0];
-        for (int j = 1; j < 7; ++j) excess = larger(excess, V(magnitude(step[j]) - task.bound[j]));
-        total = excess > T(0) ? V{} + T(__builtin_inf()) : total;
-      }
-    best = total < best ? total : best;
+    V to[7];
+    for (int j = 0; j < 7; ++j) to[j] = load<V>(task.to[j] + partner);
+    best = with_partner<V, kMetric, kWraps>(task, from, to, load<V>(task.value + partner), best, sure);
   }
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
 
-template <RelaxMetric kMetric, bool kWraps, class T>
-void relax_run(const RelaxTask<T>& task) {
-  using Lanes = typename Widest<T>::Lanes;
-  constexpr int kLanes = sizeof(Lanes) / sizeof(T);
+/// A measure of a move up to which every joint stays within its bound; negative where no measure tells.
+template <RelaxMetric kMetric, class T>
+T sure_measure(const RelaxTask<T>& task) {
   T sure = 0;
   for (int j = 0; j < 7; ++j) {
     const T least = task.scale[j] * task.bound[j];
@@ -172,7 +178,14 @@ void relax_run(const RelaxTask<T>& task) {
   sure *= T(1 - 1e-12);
   if (kMetric == RelaxMetric::kL2) sure *= sure;
   // A joint of weight 0 moves at no cost, and a tiny product underflows: the measure then says nothing of the moves.
-  if (!(sure > T(1e-280))) sure = -1;
+  return sure > T(1e-280) ? sure : T(-1);
+}
+
+template <RelaxMetric kMetric, bool kWraps, class T>
+void relax_run(const RelaxTask<T>& task) {
+  using Lanes = typename Widest<T>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(T);
+  const T sure = sure_measure<kMetric>(task);
   int at = 0;
   for (; at + kLanes <= task.n; at += kLanes) relax_lanes<Lanes, kMetric, kWraps>(task, at, sure);
   if (at < task.n && task.n >= kLanes) {  // nodes relaxed twice come out the same
@@ -180,6 +193,101 @@ void relax_run(const RelaxTask<T>& task) {
     return;
   }
   for (; at < task.n; ++at) relax_lanes<T, kMetric, kWraps>(task, at, sure);
+}
+
+/// Bounds of the moves from the nodes first ... last - 1 that any edge may make: of each joint a middle and how far from it a
+/// partner may stand.
+template <bool kWraps>
+struct Reach {
+  double middle[7], radius[7];
+  int last;
+  /// Takes nodes for as long as they stay together, at most `most`.
+  Reach(const RelaxTask<double>& task, int first, int most) : last(first + 1) {
+    constexpr double kTogether = 1;     // rad: nodes further apart are better looked at by themselves
+    constexpr double kRounding = 1e-9;  // far above that of a few operations on angles
+    double low[7] = {}, high[7] = {};
+    for (; last < first + most; ++last) {
+      double step[7];
+      bool together = true;
+      for (int j = 0; j < 7; ++j) {
+        step[j] = move<kWraps>(task.from[j][first], task.from[j][last], task.turn[j]);
+        together = together && magnitude(step[j]) < kTogether;
+      }
+      if (!together) break;
+      for (int j = 0; j < 7; ++j) {
+        low[j] = step[j] < low[j] ? step[j] : low[j];
+        high[j] = step[j] > high[j] ? step[j] : high[j];
+      }
+    }
+    for (int j = 0; j < 7; ++j) {
+      middle[j] = task.from[j][first] + (low[j] + high[j]) / 2;
+      radius[j] = task.bound[j] + (high[j] - low[j]) / 2 + kRounding;
+    }
+  }
+  /// Above 0 where a joint of the partner is out of every node's reach.
+  template <class V>
+  V excess(const RelaxTask<double>& task, int partner) const {
+    V most = magnitude(move<kWraps>(V{} + middle[0], load<V>(task.to[0] + partner), task.turn[0])) - radius[0];
+    for (int j = 1; j < 7; ++j)
+      most = larger(most, V(magnitude(move<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner), task.turn[j])) - radius[j]));
+    return most;
+  }
+};
+
+/// Nodes from `at` on, as many as V has lanes, with one partner each of those listed.
+template <class V, RelaxMetric kMetric, bool kWraps>
+inline void relax_with(const RelaxTask<double>& task, int at, const int* partners, int count, double sure) {
+  V from[7];
+  for (int j = 0; j < 7; ++j) from[j] = load<V>(task.from[j] + at);
+  V best = load<V>(task.best + at);
+  for (int k = 0; k < count; ++k) {
+    V to[7];
+    for (int j = 0; j < 7; ++j) to[j] = V{} + task.to[j][partners[k]];
+    best = with_partner<V, kMetric, kWraps>(task, from, to, V(V{} + task.value[partners[k]]), best, sure);
+  }
+  __builtin_memcpy(task.best + at, &best, sizeof best);
+}
+
+/// Runs of nodes near each other, as long as a vector at most, with the partners in their reach. A vector may reach into the next
+/// run, whose nodes meet all of theirs then.
+template <RelaxMetric kMetric, bool kWraps>
+void relax_all_run(const RelaxTask<double>& task) {
+  using Lanes = typename Widest<double>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kChunk = 256;
+  const double sure = sure_measure<kMetric>(task);
+  int near[kChunk];
+  for (int at = 0; at < task.n;) {
+    const Reach<kWraps> reach(task, at, task.n - at < kLanes ? task.n - at : kLanes);
+    for (int first = 0; first < task.offsets; first += kChunk) {
+      const int end = task.offsets - first < kChunk ? task.offsets : first + kChunk;
+      int count = 0, partner = first;
+      for (; partner + kLanes <= end; partner += kLanes) {
+        const Lanes excess = reach.template excess<Lanes>(task, partner);
+        double lane[kLanes];
+        __builtin_memcpy(lane, &excess, sizeof excess);
+        for (int k = 0; k < kLanes; ++k) {
+          near[count] = partner + k;
+          count += !(lane[k] > 0);
+        }
+      }
+      for (; partner < end; ++partner) {
+        near[count] = partner;
+        count += !(reach.template excess<double>(task, partner) > 0);
+      }
+      if (task.n >= kLanes)
+        relax_with<Lanes, kMetric, kWraps>(task, at + kLanes <= task.n ? at : task.n - kLanes, near, count, sure);
+      else
+        for (int node = at; node < reach.last; ++node) relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
+    }
+    at = reach.last;
+  }
+}
+
+void relax_all(const RelaxTask<double>& task) {
+  if (task.metric == RelaxMetric::kL2)
+    task.wraps ? relax_all_run<RelaxMetric::kL2, true>(task) : relax_all_run<RelaxMetric::kL2, false>(task);
+  else
+    task.wraps ? relax_all_run<RelaxMetric::kMax, true>(task) : relax_all_run<RelaxMetric::kMax, false>(task);
 }
 
 template <class T>

@@ -5,7 +5,7 @@
 
 namespace swivel {
 const RelaxKernels& avx2_relax_kernels() {
-  static constexpr RelaxKernels kernels{&avx2::relax<double>, &avx2::relax<float>};
+  static constexpr RelaxKernels kernels{&avx2::relax<double>, &avx2::relax_all, &avx2::relax<float>};
   return kernels;
 }
 }  // namespace swivel

@@ -5,7 +5,7 @@
 
 namespace swivel {
 const RelaxKernels& avx512_relax_kernels() {
-  static constexpr RelaxKernels kernels{&avx512::relax<double>, &avx512::relax<float>};
+  static constexpr RelaxKernels kernels{&avx512::relax<double>, &avx512::relax_all, &avx512::relax<float>};
   return kernels;
 }
 }  // namespace swivel
