@@ -66,10 +66,39 @@ std::optional<Place> nearest_on(const SelfMotionArc& arc, int number, int chord,
   return Place{number, chord, u, length_at(arc, chord, u), away};
 }
 
+/// A box about a chord's cubic, on the circle of each joint.
+struct Box {
+  int arc, chord;
+  Config middle, radius;
+  /// False where the cubic is surely further than `within` from q.
+  [[nodiscard]] bool maybe_near(const Config& q, double within) const {
+    for (int j = 0; j < kDof; ++j) {
+      const double apart = std::abs(q[j] - middle[j]), reach = radius[j] + within;
+      if (apart > reach && apart < kTwoPi - reach) return false;
+    }
+    return true;
+  }
+};
+
+/// A cubic lies in the hull of its four control points (Farin 2002, Bezier's form).
+Box box_of(const SelfMotionArc& arc, int number, int chord) {
+  constexpr double kRounding = 1e-9;  // rad: far above that of a few operations on angles
+  const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
+  const Config d = difference(arc.q[next], arc.q[k]);
+  const double third = d.norm() / 3;
+  const Config first = third * arc.tangent[k], second = d - third * arc.tangent[next];
+  const Config low = first.cwiseMin(second).cwiseMin(d).cwiseMin(0), high = first.cwiseMax(second).cwiseMax(d).cwiseMax(0);
+  return {number, chord, arc.q[k] + (low + high) / 2, ((high - low) / 2).array() + kRounding};
+}
+
 /// Finds the nearest points of a layer's arcs.
 class Finder {
  public:
-  explicit Finder(const std::vector<SelfMotionArc>& arcs) : arcs_(arcs) {}
+  explicit Finder(const std::vector<SelfMotionArc>& arcs) : arcs_(arcs) {
+    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number)
+      for (int chord = 0; chord < arcs_[static_cast<std::size_t>(number)].chords(); ++chord)
+        boxes_.push_back(box_of(arcs_[static_cast<std::size_t>(number)], number, chord));
+  }
   /// Near where the last question was answered first: nodes are asked about in the order of their arcs.
   [[nodiscard]] std::optional<Place> find(const Config& q) {
     if (last_.arc >= 0) {
@@ -84,12 +113,11 @@ class Finder {
       }
     }
     std::optional<Place> best;
-    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number) {
-      const SelfMotionArc& arc = arcs_[static_cast<std::size_t>(number)];
-      for (int chord = 0; chord < arc.chords(); ++chord) {
-        const auto place = nearest_on(arc, number, chord, q, best ? best->away : kCatch);
-        if (place && (!best || place->away < best->away)) best = place;
-      }
+    for (const Box& box : boxes_) {
+      const double within = best ? best->away : kCatch;
+      if (!box.maybe_near(q, within)) continue;
+      const auto place = nearest_on(arcs_[static_cast<std::size_t>(box.arc)], box.arc, box.chord, q, within);
+      if (place && (!best || place->away < best->away)) best = place;
     }
     if (best) last_ = *best;
     return best;
@@ -98,6 +126,7 @@ class Finder {
  private:
   static bool inner(const Place& place) { return place.u > 0 && place.u < 1; }
   const std::vector<SelfMotionArc>& arcs_;
+  std::vector<Box> boxes_;  // of all chords, arc by arc
   Place last_;
 };
 
