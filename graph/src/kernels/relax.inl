@@ -248,16 +248,16 @@ inline void relax_with(const RelaxTask<double>& task, int at, const int* partner
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
 
-/// Runs of nodes near each other, as long as a vector at most, with the partners in their reach. A vector may reach into the next
-/// run, whose nodes meet all of theirs then.
+/// Runs of nodes near each other with the partners in their reach. A vector may reach into the next run, whose nodes meet all of
+/// theirs then.
 template <RelaxMetric kMetric, bool kWraps>
 void relax_all_run(const RelaxTask<double>& task) {
   using Lanes = typename Widest<double>::Lanes;
-  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kChunk = 256;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(double), kMost = 8, kChunk = 256;
   const double sure = sure_measure<kMetric>(task);
   int near[kChunk];
   for (int at = 0; at < task.n;) {
-    const Reach<kWraps> reach(task, at, task.n - at < kLanes ? task.n - at : kLanes);
+    const Reach<kWraps> reach(task, at, task.n - at < kMost ? task.n - at : kMost);
     for (int first = 0; first < task.offsets; first += kChunk) {
       const int end = task.offsets - first < kChunk ? task.offsets : first + kChunk;
       int count = 0, partner = first;
@@ -275,7 +275,8 @@ void relax_all_run(const RelaxTask<double>& task) {
         count += !(reach.template excess<double>(task, partner) > 0);
       }
       if (task.n >= kLanes)
-        relax_with<Lanes, kMetric, kWraps>(task, at + kLanes <= task.n ? at : task.n - kLanes, near, count, sure);
+        for (int node = at; node < reach.last; node += kLanes)
+          relax_with<Lanes, kMetric, kWraps>(task, node + kLanes <= task.n ? node : task.n - kLanes, near, count, sure);
       else
         for (int node = at; node < reach.last; ++node) relax_with<double, kMetric, kWraps>(task, node, near, count, sure);
     }
