@@ -28,7 +28,8 @@ struct Place {
 };
 
 double difference(double a, double b) {
-  return wrap_angle(a - b);
+  const double d = a - b;
+  return std::abs(d) < 3 ? d : wrap_angle(d);  // the same, without its division
 }
 
 Config difference(const Config& a, const Config& b) {
@@ -95,9 +96,11 @@ Box box_of(const SelfMotionArc& arc, int number, int chord) {
 class Finder {
  public:
   explicit Finder(const std::vector<SelfMotionArc>& arcs) : arcs_(arcs) {
-    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number)
+    for (int number = 0; number < static_cast<int>(arcs_.size()); ++number) {
+      first_.push_back(boxes_.size());
       for (int chord = 0; chord < arcs_[static_cast<std::size_t>(number)].chords(); ++chord)
         boxes_.push_back(box_of(arcs_[static_cast<std::size_t>(number)], number, chord));
+    }
   }
   /// Near where the last question was answered first: nodes are asked about in the order of their arcs.
   [[nodiscard]] std::optional<Place> find(const Config& q) {
@@ -109,6 +112,7 @@ class Finder {
           if (!arc.closed) break;
           chord %= arc.chords();
         }
+        if (!boxes_[first_[static_cast<std::size_t>(last_.arc)] + static_cast<std::size_t>(chord)].maybe_near(q, kOnArc)) continue;
         if (const auto place = nearest_on(arc, last_.arc, chord, q, kOnArc); place && inner(*place)) return last_ = *place;
       }
     }
@@ -126,7 +130,8 @@ class Finder {
  private:
   static bool inner(const Place& place) { return place.u > 0 && place.u < 1; }
   const std::vector<SelfMotionArc>& arcs_;
-  std::vector<Box> boxes_;  // of all chords, arc by arc
+  std::vector<Box> boxes_;          // of all chords, arc by arc
+  std::vector<std::size_t> first_;  // box of each arc
   Place last_;
 };
 
@@ -264,9 +269,11 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     budget.poll();
     const Pose& tool = path.layer(i).tool;
     // Without a closed form the arcs of the layer before are followed.
-    std::vector<Config> followed;
-    for (std::size_t slot = 0; method.best < 0 && slot < before.size(); ++slot)
-      if (const auto q = motion.image(before[slot].q, tool)) followed.push_back(*q);
+    std::vector<Config> nodes, followed;
+    for (const Point& point : before) nodes.push_back(point.q);
+    const std::vector<std::optional<Config>> moved = motion.images(nodes, tool);
+    for (const auto& q : moved)
+      if (method.best < 0 && q) followed.push_back(*q);
     std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed);
     std::vector<std::vector<Image>> images;
     std::vector<Config> strays;
@@ -275,7 +282,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       strays.clear();
       Finder finder(arcs);
       for (std::size_t slot = 0; slot < before.size(); ++slot) {
-        auto q = motion.image(before[slot].q, tool);
+        auto q = moved[slot];
         if (!q) continue;
         const bool inside = motion.canonical(*q);
         const auto place = finder.find(*q);

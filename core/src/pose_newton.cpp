@@ -1,54 +1,53 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "pose_newton.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "swivel/core/isa.hpp"
 
 namespace swivel {
 
 namespace {
 
-constexpr double kRank = 1e-9;      // pivot below which the Jacobian has lost rank
 constexpr double kSettled = 4e-6;   // rad: after so small a step the error is its square
 constexpr double kParallel = 1e-9;  // sine below which neighbouring axes have no common normal of their own
 constexpr double kLongest = 1;      // rad, of one step
-constexpr std::size_t kLanes = 8;   // joints and one more, for vector units
+constexpr int kLockedSteps = 8;
 
-/// Sines and cosines of angles of some turns, to about 1 ulp: a loop without branches, which compilers turn into vector code.
-/// Reduction to an eighth of a turn in two parts (Cody & Waite 1980), polynomials of fdlibm's k_sin and k_cos.
-void sines_cosines(const std::array<double, kLanes>& angle, std::array<double, kLanes>& sine, std::array<double, kLanes>& cosine) {
-  constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
-  constexpr double kHigh = 0x1.921fb544p0,
-                   kLow = 0x1.0b4611a626331p-34;  // of half pi; times a small integer the high part is exact
-  for (std::size_t k = 0; k < kLanes; ++k) {
-    const double x = angle[k], quarters = (x * (2 / kPi) + kRound) - kRound;
-    const double r = (x - quarters * kHigh) - quarters * kLow, z = r * r;
-    const double s =
-        r + r * z *
-                (-1.66666666666666324348e-01 +
-                 z * (8.33333333332248946124e-03 +
-                      z * (-1.98412698298579493134e-04 +
-                           z * (2.75573137070700676789e-06 + z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-    const double c = 1 - (0.5 * z - z * z *
-                                        (4.16666666666666019037e-02 +
-                                         z * (-1.38888888888741095749e-03 +
-                                              z * (2.48015872894767294178e-05 +
-                                                   z * (-2.75573143513906633035e-07 +
-                                                        z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11))))));
-    const double m = quarters - 4 * ((quarters * 0.25 + kRound) - kRound);  // -2 ... 2
-    const bool odd = m * m == 1;
-    const double a = odd ? c : s, b = odd ? s : c;
-    sine[k] = m == -1 || m * m == 4 ? -a : a;
-    cosine[k] = m > 0 || m == -2 ? -b : b;
-  }
+void put(const Vector3d& v, double (&to)[3]) {
+  for (std::size_t r = 0; r < 3; ++r) to[r] = v[static_cast<Eigen::Index>(r)];
+}
+
+void put(const Pose& pose, double (&to)[4][3]) {
+  for (std::size_t c = 0; c < 3; ++c) put(pose.linear().col(static_cast<Eigen::Index>(c)), to[c]);
+  put(pose.translation(), to[3]);
 }
 
 }  // namespace
 
+const NewtonKernels& newton_kernels() {
+#ifdef SWIVEL_X86_KERNELS
+  switch (active_isa()) {
+    case Isa::kAvx2:
+      return avx2_newton_kernels();
+    case Isa::kAvx512:
+      return avx512_newton_kernels();
+    case Isa::kScalar:
+      break;
+  }
+#endif
+  return scalar_newton_kernels();
+}
+
 PoseNewton::PoseNewton(const Chain& chain) {
   Vector3d origin = chain.point[0], z = chain.axis[0];
   Vector3d x = z.unitOrthogonal();
-  first_.linear() << x, z.cross(x), z;
-  first_.translation() = origin;
+  put(x, chain_.first[0]);
+  put(z.cross(x), chain_.first[1]);
+  put(z, chain_.first[2]);
+  put(origin, chain_.first[3]);
+  chain_.link[kDof - 1] = {0, 0, 0, 1, 0};
   for (std::size_t k = 0; k + 1 < kDof; ++k) {
     const Vector3d &p = chain.point[k + 1], &b = chain.axis[k + 1], d = p - origin;
     Vector3d from = origin, to = p, n = z.cross(b);
@@ -65,7 +64,7 @@ PoseNewton::PoseNewton(const Chain& chain) {
     }
     // `to` lies on axis k + 1 at the height of the foot of the common normal.
     const Vector3d y = z.cross(x);
-    Link& link = link_[k];
+    NewtonChain::Link& link = chain_.link[k];
     link.turn = std::atan2(n.dot(y), n.dot(x));
     link.height = z.dot(to - origin);
     link.width = n.dot(to - origin);
@@ -78,91 +77,86 @@ PoseNewton::PoseNewton(const Chain& chain) {
   Pose frame = Pose::Identity();
   frame.linear() << x, z.cross(x), z;
   frame.translation() = origin;
-  last_ = product(frame.inverse(Eigen::Isometry), chain.home);
+  put(product(frame.inverse(Eigen::Isometry), chain.home), chain_.last);
+}
+
+NewtonTask PoseNewton::task(const Pose& tool, NewtonMove move, int steps) const {
+  NewtonTask task{};
+  task.chain = &chain_;
+  put(tool, task.tool);
+  task.move = move;
+  task.steps = steps;
+  task.longest = kLongest;
+  task.settled = kSettled;
+  return task;
+}
+
+void PoseNewton::run(NewtonTask& task, std::span<const Config> starts, Points& out) {
+  static_assert(sizeof(Config) == kDof * sizeof(double));  // so an array of them is one of numbers
+  out.q.resize(starts.size());
+  out.tangent.resize(starts.size());
+  out.found.resize(starts.size());
+  if (starts.empty()) return;
+  task.n = static_cast<int>(starts.size());
+  task.start = starts.front().data();
+  task.q = task.particular = out.q.front().data();
+  task.null = out.tangent.front().data();
+  task.found = out.found.data();
+  newton_kernels().solve(task);
+}
+
+std::optional<PoseNewton::Point> PoseNewton::run(NewtonTask& task, const Config& start) {
+  Point point;
+  unsigned char found = 0;
+  task.n = 1;
+  task.start = start.data();
+  task.q = task.particular = point.q.data();
+  task.null = point.tangent.data();
+  task.found = &found;
+  newton_kernels().solve(task);
+  if (found == 0) return std::nullopt;
+  return point;
 }
 
 bool PoseNewton::linear(const Config& q, const Pose& tool, Linear& out) const {
-  std::array<double, kLanes> angle{}, sine, cosine;
-  for (std::size_t k = 0; k < kDof; ++k) angle[k] = q[static_cast<Eigen::Index>(k)] + link_[k].turn;
-  sines_cosines(angle, sine, cosine);
-  Vector3d X = first_.linear().col(0), Y = first_.linear().col(1), Z = first_.linear().col(2), P = first_.translation();
-  std::array<Vector3d, kDof> axis, point;
-  for (std::size_t k = 0; k < kDof; ++k) {
-    axis[k] = Z;
-    point[k] = P;
-    const Link& link = link_[k];
-    const Vector3d x = cosine[k] * X + sine[k] * Y, y = cosine[k] * Y - sine[k] * X;
-    P += link.height * Z + link.width * x;
-    X = x;
-    Y = link.twist_cosine * y + link.twist_sine * Z;
-    Z = link.twist_cosine * Z - link.twist_sine * y;
-  }
-  const Matrix3d& L = last_.linear();
-  const Vector3d& p = last_.translation();
-  P += p.x() * X + p.y() * Y + p.z() * Z;
-  const Vector3d tx = L(0, 0) * X + L(1, 0) * Y + L(2, 0) * Z, ty = L(0, 1) * X + L(1, 1) * Y + L(2, 1) * Z,
-                 tz = L(0, 2) * X + L(1, 2) * Y + L(2, 2) * Z;
-  const Vector3d miss = tool.translation() - P;
-  const Vector3d turn = 0.5 * (tx.cross(tool.linear().col(0)) + ty.cross(tool.linear().col(1)) + tz.cross(tool.linear().col(2)));
+  NewtonTask one = task(tool, NewtonMove::kNone, 0);
+  const auto found = run(one, q);
+  if (found) out = {found->q, found->tangent};
+  return found.has_value();
+}
 
-  using Row = Eigen::Array<double, kLanes, 1>;
-  std::array<Row, 6> A;  // the Jacobian and what is missing
-  for (std::size_t k = 0; k < kDof; ++k) {
-    const Vector3d v = axis[k].cross(P - point[k]);
-    const auto column = static_cast<Eigen::Index>(k);
-    for (std::size_t r = 0; r < 3; ++r) {
-      A[r][column] = v[static_cast<Eigen::Index>(r)];
-      A[r + 3][column] = axis[k][static_cast<Eigen::Index>(r)];
-    }
-  }
-  for (std::size_t r = 0; r < 3; ++r) {
-    A[r][kDof] = miss[static_cast<Eigen::Index>(r)];
-    A[r + 3][kDof] = turn[static_cast<Eigen::Index>(r)];
-  }
-  // Gauss; each row takes the largest column that is left.
-  std::array<int, 6> pivot;
-  Row left;
-  left << 1, 1, 1, 1, 1, 1, 1, 0;
-  for (std::size_t r = 0; r < 6; ++r) {
-    const Row size = A[r].abs() * left;
-    int column = 0;
-    for (int c = 1; c < kDof; ++c) column = size[c] > size[column] ? c : column;
-    if (!(size[column] > kRank)) return false;
-    left[column] = 0;
-    pivot[r] = column;
-    A[r] *= 1 / A[r][column];
-    for (std::size_t i = r + 1; i < 6; ++i) A[i] -= A[i][column] * A[r];
-  }
-  int free = 0;
-  while (left[free] == 0) ++free;
-  out.particular[free] = 0;
-  out.null[free] = 1;
-  for (std::size_t r = 6; r-- > 0;) {
-    double particular = A[r][kDof], null = -A[r][free];
-    for (std::size_t i = r + 1; i < 6; ++i) {
-      const double a = A[r][pivot[i]];
-      particular -= a * out.particular[pivot[i]];
-      null -= a * out.null[pivot[i]];
-    }
-    out.particular[pivot[r]] = particular;
-    out.null[pivot[r]] = null;
-  }
-  return true;
+void PoseNewton::tangents(std::span<const Config> q, const Pose& tool, Points& out) const {
+  NewtonTask all = task(tool, NewtonMove::kNone, 0);
+  run(all, q, out);
+  std::copy(q.begin(), q.end(), out.q.begin());
+  for (Config& tangent : out.tangent) tangent /= tangent.norm();
 }
 
 std::optional<PoseNewton::Point> PoseNewton::nearest(const Config& start, const Pose& tool, const Config& scale2, int steps) const {
-  Config q = start;
-  Linear at;
-  for (int step = 0; step < steps; ++step) {
-    if (!linear(q, tool, at)) return std::nullopt;
-    const Config weighted = scale2.cwiseProduct(at.null);
-    const Config move = at.particular - (weighted.dot(at.particular) / weighted.dot(at.null)) * at.null;
-    const double length2 = move.squaredNorm();
-    if (!(length2 < kLongest * kLongest)) return std::nullopt;
-    q += move;
-    if (length2 < kSettled * kSettled) return Point{q, at.null / at.null.norm()};
-  }
-  return std::nullopt;
+  NewtonTask one = task(tool, NewtonMove::kNearest, steps);
+  std::copy(scale2.begin(), scale2.end(), one.scale2);
+  return run(one, start);
+}
+
+void PoseNewton::nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps, Points& out) const {
+  NewtonTask all = task(tool, NewtonMove::kNearest, steps);
+  std::copy(scale2.begin(), scale2.end(), all.scale2);
+  run(all, starts, out);
+}
+
+std::optional<PoseNewton::Point> PoseNewton::with_joint_at(const Config& start, const Pose& tool, int joint, double value) const {
+  NewtonTask one = task(tool, NewtonMove::kLocked, kLockedSteps);
+  one.joint = joint;
+  one.value = &value;
+  return run(one, start);
+}
+
+void PoseNewton::with_joint_at(std::span<const Config> starts, const Pose& tool, int joint, std::span<const double> values,
+                               Points& out) const {
+  NewtonTask all = task(tool, NewtonMove::kLocked, kLockedSteps);
+  all.joint = joint;
+  all.value = values.data();
+  run(all, starts, out);
 }
 
 std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const Pose& tool, int steps) const {
@@ -176,22 +170,6 @@ std::optional<PoseNewton::Point> PoseNewton::approach(const Config& start, const
     if (!(length2 < 1e12)) return std::nullopt;
     if (length2 > kStride * kStride) move *= kStride / std::sqrt(length2);
     q += move;
-    if (length2 < kSettled * kSettled) return Point{q, at.null / at.null.norm()};
-  }
-  return std::nullopt;
-}
-
-std::optional<PoseNewton::Point> PoseNewton::with_joint_at(const Config& start, const Pose& tool, int joint, double value) const {
-  constexpr int kSteps = 8;
-  Config q = start;
-  Linear at;
-  for (int step = 0; step < kSteps; ++step) {
-    if (!linear(q, tool, at) || at.null[joint] == 0) return std::nullopt;
-    const Config move = at.particular + ((value - q[joint] - at.particular[joint]) / at.null[joint]) * at.null;
-    const double length2 = move.squaredNorm();
-    if (!(length2 < kLongest * kLongest)) return std::nullopt;
-    q += move;
-    q[joint] = value;
     if (length2 < kSettled * kSettled) return Point{q, at.null / at.null.norm()};
   }
   return std::nullopt;

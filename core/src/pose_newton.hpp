@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
+#include "kernels/newton.hpp"
 #include "swivel/core/arm.hpp"
 
 namespace swivel {
 
 /// Newton's method for the six equations "the tool stands at a pose" in seven joints, made for very many small calls: the chain as
-/// frames along common normals (Denavit & Hartenberg 1955), one elimination for the step and the null vector.
+/// frames along common normals (Denavit & Hartenberg 1955), one elimination for the step and the null vector, a vector's lanes for
+/// points.
 class PoseNewton {
  public:
   explicit PoseNewton(const Chain& chain);
@@ -32,13 +35,31 @@ class PoseNewton {
   /// `nearest` with the joint at the value, bit for bit.
   [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
 
- private:
-  struct Link {  // from the frame of a joint to that of the next: Rz(q + turn) Tz(height) Tx(width) Rx(twist)
-    double turn = 0, height = 0, width = 0, twist_cosine = 1, twist_sine = 0;
+  // --- of many points at once, in vector code: the bits are those of one after the other
+  /// False where that takes as long.
+  [[nodiscard]] static bool sooner_at_once() { return newton_kernels().lanes > 1; }
+  struct Points {
+    std::vector<Config> q, tangent;
+    std::vector<unsigned char> found;  // 0: none, and what stands in its place is no point
+    [[nodiscard]] std::optional<Point> at(std::size_t k) const {
+      if (found[k] == 0) return std::nullopt;
+      return Point{q[k], tangent[k]};
+    }
   };
-  Pose first_ = Pose::Identity();  // frame of joint 1 in base
-  std::array<Link, kDof> link_;    // the last has a turn only
-  Pose last_ = Pose::Identity();   // tool in the frame of joint 7
+  /// Of points that reach the pose, as they are.
+  void tangents(std::span<const Config> q, const Pose& tool, Points& out) const;
+  void nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps, Points& out) const;
+  void with_joint_at(std::span<const Config> starts, const Pose& tool, int joint, std::span<const double> values,
+                     Points& out) const;
+
+  /// What the kernels are asked, without the points.
+  [[nodiscard]] NewtonTask task(const Pose& tool, NewtonMove move, int steps) const;
+
+ private:
+  static void run(NewtonTask& task, std::span<const Config> starts, Points& out);
+  static std::optional<Point> run(NewtonTask& task, const Config& start);
+
+  NewtonChain chain_{};
 };
 
 }  // namespace swivel

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "pose_newton.hpp"
@@ -31,6 +32,7 @@ constexpr double kLeastWeight = 1e-2;  // of the largest
 constexpr int kStarts = 96;            // of Newton, where there is no closed form
 constexpr int kApproachSteps = 30;     // from such a start
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
+constexpr int kCloseSteps = 4;         // and from a guess on a curve
 const Config kPlain = Config::Ones();
 
 double difference(double a, double b) {
@@ -45,10 +47,22 @@ Config difference(const Config& a, const Config& b) {
   return d;
 }
 
+/// wrap_angle() without its division where there is nothing to wrap.
+double wrapped(double angle) {
+  return std::abs(angle) < 3 ? angle : wrap_angle(angle);
+}
+
 /// False only where they are further apart than `within` in this joint alone: cheap, and true of few.
 bool maybe_near(const Config& a, const Config& b, int joint, double within) {
   const double apart = std::abs(a[joint] - b[joint]);
   return apart < within || apart > kTwoPi - within;
+}
+
+/// The same of any joint.
+bool maybe_near(const Config& a, const Config& b, double within) {
+  for (int j = 0; j < kDof; ++j)
+    if (!maybe_near(a, b, j, within)) return false;
+  return true;
 }
 
 /// The cubic with the tangents of its ends, as long as its chord: relative to its first point, at + u (b + u (c + u d)).
@@ -89,10 +103,10 @@ struct SelfMotionData {
   std::vector<Config> starts;                        // of Newton, without a lock
 
   [[nodiscard]] double image(double angle, std::size_t j) const {
-    if (circle[j]) return wrap_angle(angle);
+    if (circle[j]) return wrapped(angle);
     if (angle >= lower[j] && angle <= upper[j]) return angle;  // ends stand on limits bit for bit
     const double middle = (lower[j] + upper[j]) / 2;
-    return middle + wrap_angle(angle - middle);
+    return middle + wrapped(angle - middle);
   }
   [[nodiscard]] bool inside(const Config& q) const {
     for (std::size_t j = 0; j < kDof; ++j) {
@@ -146,52 +160,108 @@ class Curves {
     vertices_.push_back(v);
     return static_cast<int>(vertices_.size()) - 1;
   }
+  void add_end(int half) { open_.push_back({half, at(half).q}); }
   void add_seeds();
   void join_neighbours();
   /// How badly a smooth curve fits the move from a half-edge to another; none where it does not.
   [[nodiscard]] std::optional<double> misfit(int half, int other) const;
+  /// Of the free points of a lock value the one that fits the curve ahead of a best; -1: none.
+  template <class Free>
+  [[nodiscard]] int partner(int a, std::size_t group, const Free& free) const;
+  [[nodiscard]] bool straight(int half, int other, const Config& chord) const;
+  [[nodiscard]] Config middle(int half, int other) const;
   /// Links two half-edges, with points between where the chord bends.
   bool join(int half, int other, int depth);
-  [[nodiscard]] std::optional<Point> advance(const Point& p, const Config* before, double& step) const;
-  void trace(int half);
+  /// The same over the point to which Newton leads from `guess`.
+  bool join(int half, int other, int depth, const Config& chord, const Config& guess, const std::optional<Point>& middle);
+
+  /// A point on its way along a curve.
+  struct Walk {
+    Point here;
+    Config bend = Config::Zero();  // curvature from the point before
+    bool bent = false;
+    [[nodiscard]] Config guess(double step) const {
+      const Config ahead = here.q + step * here.tangent;
+      return bent ? Config(ahead + (step * step / 2) * bend) : ahead;
+    }
+    void go(const Point& next) {
+      bend = (next.tangent - here.tangent) / std::sqrt((next.q - here.q).squaredNorm());
+      bent = true;
+      here = next;
+    }
+  };
+  /// Points that tracing from an open half-edge comes to, and the steps that led there.
+  struct Trail {
+    int half;
+    std::vector<Point> points{};
+    std::vector<double> steps{};
+    int met = -1;        // the open half-edge that the last step passes
+    bool ended = false;  // the curve cannot be followed further
+  };
+  [[nodiscard]] double first_step(const Point& p, double step) const;
+  /// `next` with its tangent turned along the curve; none where it is no good step from p.
+  [[nodiscard]] std::optional<Point> accepted(const Point& p, const Config& guess, double step, std::optional<Point> next) const;
+  [[nodiscard]] std::optional<Point> advance(const Walk& walk, double& step) const;
+  /// The first open half-edge that a move from p passes, `count` points after the half-edge `from`; -1: none.
+  [[nodiscard]] int met(int from, int count, const Point& p, const Config& move) const;
+  void trace(int half, const Trail* trail);
+  /// Follows all trails at once, links nothing.
+  void follow(std::vector<Trail>& trails) const;
+  void trace_all();
   [[nodiscard]] bool known(const Config& q, const Config& tangent) const;
-  void add_hidden(const Config& q);
+  void add_hidden(std::span<const Config> points);
 
   const SelfMotionData& data_;
   const Pose& tool_;
   std::vector<Vertex> vertices_;
   std::vector<int> first_;  // vertex of each lock value, and the end
   std::vector<char> few_;   // lock values with fewer solutions than there may be
-  std::vector<int> open_;   // half-edges of seeds that tracing may meet
+  struct End {
+    int half;
+    Config q;  // again, side by side
+  };
+  std::vector<End> open_;  // half-edges that tracing may meet
 };
 
 void Curves::add_seeds() {
   vertices_.reserve(1024);
-  for (std::size_t k = 0; k < data_.forms.size(); ++k) {
-    const auto& [value, form] = data_.forms[k];
-    first_.push_back(static_cast<int>(vertices_.size()));
-    // Newton on the exact chain is left to seven joints.
+  // Of a closed form that is the chain's own, solutions; else starts of Newton on the exact chain.
+  struct {
+    std::vector<Config> q;
+    std::vector<double> lock;
+    PoseNewton::Points found;
+  } solved, started;
+  std::vector<std::size_t> counts;  // by lock value
+  for (const auto& [value, form] : data_.forms) {
     const bool exact = form.fit().exact;
-    const auto solutions = exact ? form.solve(tool_) : form.starts(tool_, 1e-2);
+    auto& list = exact ? solved : started;
+    const std::size_t before = list.q.size();
+    for (const Config6& six : exact ? form.solve(tool_) : form.starts(tool_, 1e-2)) {
+      list.q.push_back(with_joint(six, data_.lock, value));
+      list.lock.push_back(value);
+    }
+    counts.push_back(list.q.size() - before);
+  }
+  data_.newton.tangents(solved.q, tool_, solved.found);
+  data_.newton.with_joint_at(started.q, tool_, data_.lock, started.lock, started.found);
+  std::array<std::size_t, 2> next{};
+  for (std::size_t k = 0; k < data_.forms.size(); ++k) {
+    const bool exact = data_.forms[k].second.fit().exact;
+    const PoseNewton::Points& found = exact ? solved.found : started.found;
+    std::size_t& at = next[exact ? 0 : 1];
+    first_.push_back(static_cast<int>(vertices_.size()));
     int count = 0;
-    for (const Config6& six : solutions) {
-      Config q = with_joint(six, data_.lock, value);
-      Point p;
-      if (exact) {
-        PoseNewton::Linear at;
-        if (data_.aligned(q) || !data_.newton.linear(q, tool_, at)) continue;
-        p = {q, at.null / at.null.norm()};
-      } else {
-        auto found = data_.newton.with_joint_at(q, tool_, data_.lock, value);
-        if (!found || data_.aligned(found->q)) continue;
-        p = *found;
+    for (const std::size_t end = at + counts[k]; at < end; ++at) {
+      auto p = found.at(at);
+      if (!p || data_.aligned(p->q)) continue;
+      if (!exact) {
         bool twice = false;
         for (std::size_t other = static_cast<std::size_t>(first_.back()); other < vertices_.size(); ++other)
-          twice = twice || difference(vertices_[other].q, p.q).squaredNorm() < 1e-12;
+          twice = twice || difference(vertices_[other].q, p->q).squaredNorm() < 1e-12;
         if (twice) continue;
       }
-      if (p.tangent[data_.lock] < 0) p.tangent = -p.tangent;
-      add(p, static_cast<int>(k));
+      if (p->tangent[data_.lock] < 0) p->tangent = -p->tangent;
+      add(*p, static_cast<int>(k));
       ++count;
     }
     few_.push_back(count < 8);
@@ -202,7 +272,7 @@ void Curves::add_seeds() {
 std::optional<double> Curves::misfit(int half, int other) const {
   constexpr double kBend = 0.06;    // 1 - cosine of tangent and chord: 0.35 rad
   constexpr double kUneven = 0.02;  // part of the chord by which a parabola with the tangents may miss it
-  if (!maybe_near(at(other).q, at(half).q, data_.other, kLongChord)) return std::nullopt;
+  if (!maybe_near(at(other).q, at(half).q, kLongChord)) return std::nullopt;
   const Config chord = difference(at(other).q, at(half).q);
   const double length2 = chord.squaredNorm();
   if (!(length2 > 0 && length2 < kLongChord * kLongChord)) return std::nullopt;
@@ -214,118 +284,244 @@ std::optional<double> Curves::misfit(int half, int other) const {
   return miss;
 }
 
-bool Curves::join(int half, int other, int depth) {
+bool Curves::straight(int half, int other, const Config& chord) const {
   constexpr double kStraight = 0.02;  // 1 - cosine between the ends: 0.2 rad
   constexpr double kLong = 0.3;       // rad
-  const Config t0 = outward(half), t1 = -outward(other);
+  return chord.norm() < kLong && outward(half).dot(-outward(other)) > 1 - kStraight;
+}
+
+Config Curves::middle(int half, int other) const {
+  const Cubic cubic({at(half).q, outward(half)}, {at(other).q, -outward(other)}, 1);
+  return at(half).q + cubic.at(0.5);
+}
+
+bool Curves::join(int half, int other, int depth) {
   const Config chord = difference(at(other).q, at(half).q);
-  if (depth == 0 || (chord.norm() < kLong && t0.dot(t1) > 1 - kStraight)) {
+  if (depth == 0 || straight(half, other, chord)) {
     link(half, other);
     return true;
   }
-  const Cubic cubic({at(half).q, t0}, {at(other).q, t1}, 1);
-  const Config guess = at(half).q + cubic.at(0.5);
-  const auto middle = data_.newton.nearest(guess, tool_, kPlain, 4);
+  const Config guess = middle(half, other);
+  return join(half, other, depth, chord, guess, data_.newton.nearest(guess, tool_, kPlain, kCloseSteps));
+}
+
+bool Curves::join(int half, int other, int depth, const Config& chord, const Config& guess, const std::optional<Point>& middle) {
   if (!middle || (middle->q - guess).norm() > 0.1 * chord.norm() || data_.aligned(middle->q)) return false;
   Point p = *middle;
   if (p.tangent.dot(chord) < 0) p.tangent = -p.tangent;
   const int v = add(p, -1);
   if (misfit(half, 2 * v) && misfit(2 * v + 1, other) && join(half, 2 * v, depth - 1)) {
     if (join(2 * v + 1, other, depth - 1)) return true;
-    open_.push_back(2 * v + 1);  // tracing goes on from here
+    add_end(2 * v + 1);  // tracing goes on from here
     return true;
   }
   return false;
 }
 
+template <class Free>
+int Curves::partner(int a, std::size_t group, const Free& free) const {
+  int best = -1;
+  double least = 0;
+  for (int b = first_[group]; b < first_[group + 1]; ++b) {
+    if (!free(b)) continue;
+    const auto miss = misfit(2 * a + 1, 2 * b);
+    if (miss && (best < 0 || *miss < least)) {
+      best = b;
+      least = *miss;
+    }
+  }
+  return best;
+}
+
 void Curves::join_neighbours() {
-  const std::size_t count = data_.forms.size();
+  constexpr int kDepth = 3;
+  const std::size_t count = data_.forms.size(), seeds = vertices_.size();
+  // As it goes where every join succeeds: what Newton is asked then is asked at once.
+  std::vector<int> partners(seeds, -1), question(seeds, -1);
+  std::vector<char> taken(seeds, 0);
+  std::vector<Config> chords, guesses;
+  for (std::size_t k = 0; k < count; ++k)
+    for (int a = first_[k]; a < first_[k + 1]; ++a) {
+      const int b = partners[static_cast<std::size_t>(a)] =
+          partner(a, (k + 1) % count, [&](int other) { return taken[static_cast<std::size_t>(other)] == 0; });
+      if (b < 0) continue;
+      taken[static_cast<std::size_t>(b)] = 1;
+      const Config chord = difference(at(2 * b).q, at(2 * a).q);
+      if (straight(2 * a + 1, 2 * b, chord)) continue;
+      question[static_cast<std::size_t>(a)] = static_cast<int>(guesses.size());
+      chords.push_back(chord);
+      guesses.push_back(middle(2 * a + 1, 2 * b));
+    }
+  PoseNewton::Points middles;
+  data_.newton.nearest(guesses, tool_, kPlain, kCloseSteps, middles);
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t next = (k + 1) % count;
+    bool failed = false;  // a join of this group did: others may have another partner
     for (int a = first_[k]; a < first_[k + 1]; ++a) {
-      int best = -1;
-      double least = 0;
-      for (int b = first_[next]; b < first_[next + 1]; ++b) {
-        if (!open(2 * b)) continue;
-        const auto miss = misfit(2 * a + 1, 2 * b);
-        if (miss && (best < 0 || *miss < least)) {
-          best = b;
-          least = *miss;
-        }
+      const auto number = static_cast<std::size_t>(a);
+      const int b = failed ? partner(a, next, [&](int other) { return open(2 * other); }) : partners[number];
+      if (b < 0) continue;
+      if (const int known = question[number]; b == partners[number] && known >= 0) {
+        const auto at = static_cast<std::size_t>(known);
+        join(2 * a + 1, 2 * b, kDepth, chords[at], guesses[at], middles.at(at));
+      } else {
+        join(2 * a + 1, 2 * b, kDepth);
       }
-      if (best >= 0) join(2 * a + 1, 2 * best, 3);
+      failed = failed || open(2 * b);
     }
   }
 }
 
-std::optional<Point> Curves::advance(const Point& p, const Config* before, double& step) const {
+double Curves::first_step(const Point& p, double step) const {
   step = std::min(kStep, 2 * step);
   for (const Alignment& a : data_.alignments) {
     const double apart = std::abs(wrap_angle(p.q[a.joint] - a.angle)), rate = std::abs(p.tangent[a.joint]);
     if (rate * step > 0.7 * apart) step = std::max(kLeastStep, 0.7 * apart / rate);
   }
-  // Curvature from the point before.
-  Config bend = Config::Zero();
-  if (before != nullptr) bend = *before;
-  for (; step >= kLeastStep; step /= 2) {
-    const Config guess = p.q + step * p.tangent + (step * step / 2) * bend;
-    auto next = data_.newton.nearest(guess, tool_, kPlain, 4);
-    if (!next) continue;
-    const Config move = next->q - p.q;
-    const double length = move.norm();
-    if (length > 1.3 * step || (next->q - guess).norm() > 0.1 * step) continue;
-    if (next->tangent.dot(p.tangent) < 0) next->tangent = -next->tangent;
-    if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03) continue;
-    if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length) continue;
-    if (data_.passes_alignment(p.q, move)) continue;
-    return next;
+  return step;
+}
+
+std::optional<Point> Curves::accepted(const Point& p, const Config& guess, double step, std::optional<Point> next) const {
+  if (!next) return std::nullopt;
+  const Config move = next->q - p.q;
+  const double length = move.norm();
+  if (length > 1.3 * step || (next->q - guess).norm() > 0.1 * step) return std::nullopt;
+  if (next->tangent.dot(p.tangent) < 0) next->tangent = -next->tangent;
+  if (next->tangent.dot(p.tangent) < 0.965 || turned_away(p.tangent, move, length) > 0.03) return std::nullopt;
+  if ((move - (length / 2) * (p.tangent + next->tangent)).norm() > 0.02 * length) return std::nullopt;
+  if (data_.passes_alignment(p.q, move)) return std::nullopt;
+  return next;
+}
+
+std::optional<Point> Curves::advance(const Walk& walk, double& step) const {
+  for (step = first_step(walk.here, step); step >= kLeastStep; step /= 2) {
+    const Config guess = walk.guess(step);
+    if (const auto next = accepted(walk.here, guess, step, data_.newton.nearest(guess, tool_, kPlain, kCloseSteps))) return next;
   }
   return std::nullopt;
 }
 
-void Curves::trace(int half) {
+int Curves::met(int from, int count, const Point& p, const Config& move) const {
+  const double length2 = move.squaredNorm(), within = 1.1 * std::sqrt(length2);  // of what may lie that far along and that near
+  int result = -1;
+  double first = 2;
+  for (const auto& [other, q] : open_) {
+    if (!maybe_near(q, p.q, within)) continue;
+    if (!open(other) || (other == from && count < 4)) continue;
+    const Config way = difference(q, p.q);
+    const double along = way.dot(move) / length2;
+    if (!(along > 1e-6 && along <= 1.05) || along >= first) continue;
+    const Config inward = -outward(other);
+    if (inward.dot(p.tangent) < 0.9) continue;
+    // Off the chord by its sagitta at most, and some.
+    if ((way - along * move).squaredNorm() > 0.01 * length2) continue;
+    result = other;
+    first = along;
+  }
+  return result;
+}
+
+void Curves::trace(int half, const Trail* trail) {
   double step = kStep / 4;
-  Config bend;
-  bool bent = false;
+  Walk walk{{at(half).q, outward(half)}};
   int here = half;
   for (int count = 0; count < kMostPoints; ++count) {
-    const Point p{at(here).q, outward(here)};
-    const auto next = advance(p, bent ? &bend : nullptr, step);
-    if (!next) return;
-    const Config move = next->q - p.q;
-    const double length2 = move.squaredNorm();
-    // An open half-edge that this step passes is the continuation.
-    int met = -1;
-    double first = 2;
-    for (const int other : open_) {
-      if (!open(other) || other == here || (other == half && count < 4)) continue;
-      const Vertex& v = at(other);
-      if (!maybe_near(v.q, p.q, data_.other, 2 * kStep)) continue;
-      const Config way = difference(v.q, p.q);
-      const double along = way.dot(move) / length2;
-      if (!(along > 1e-6 && along <= 1.05) || along >= first) continue;
-      const Config inward = -outward(other);
-      if (inward.dot(p.tangent) < 0.9) continue;
-      // Off the chord by its sagitta at most, and some.
-      if ((way - along * move).squaredNorm() > 0.01 * length2) continue;
-      met = other;
-      first = along;
+    std::optional<Point> next;
+    bool alone = false;  // no open half-edge was there when the trail was followed: there are fewer now
+    if (const auto at = static_cast<std::size_t>(count); trail != nullptr && at < trail->points.size()) {
+      next = trail->points[at];
+      step = trail->steps[at];
+      alone = trail->met < 0 || at + 1 < trail->points.size();
+    } else if (trail == nullptr || !trail->ended) {
+      next = advance(walk, step);
     }
-    if (met >= 0) {
-      link(here, met);
+    if (!next) return;
+    // An open half-edge that this step passes is the continuation.
+    if (const int other = alone ? -1 : met(half, count, walk.here, next->q - walk.here.q); other >= 0) {
+      link(here, other);
       return;
     }
-    bend = (next->tangent - p.tangent) / std::sqrt(length2);
-    bent = true;
+    walk.go(*next);
     const int v = add(*next, -1);
     link(here, 2 * v);
     here = 2 * v + 1;
   }
 }
 
+void Curves::follow(std::vector<Trail>& trails) const {
+  struct Walker {
+    Trail* trail;
+    Walk walk;
+    double step;
+  };
+  std::vector<Walker> walkers;
+  for (Trail& trail : trails) {
+    const Point p{at(trail.half).q, outward(trail.half)};
+    walkers.push_back({&trail, Walk{p}, first_step(p, kStep / 4)});
+  }
+  std::vector<Config> guesses;
+  PoseNewton::Points found;
+  while (!walkers.empty()) {
+    guesses.clear();
+    for (const Walker& walker : walkers) guesses.push_back(walker.walk.guess(walker.step));
+    data_.newton.nearest(guesses, tool_, kPlain, kCloseSteps, found);
+    for (std::size_t k = 0; k < walkers.size(); ++k) {
+      Walker& walker = walkers[k];
+      Trail& trail = *walker.trail;
+      const auto next = accepted(walker.walk.here, guesses[k], walker.step, found.at(k));
+      if (!next) {
+        walker.step /= 2;
+        trail.ended = walker.step < kLeastStep;
+        if (trail.ended) walker.trail = nullptr;
+        continue;
+      }
+      const int count = static_cast<int>(trail.points.size());
+      trail.points.push_back(*next);
+      trail.steps.push_back(walker.step);
+      trail.met = met(trail.half, count, walker.walk.here, next->q - walker.walk.here.q);
+      if (trail.met >= 0 || count + 1 == kMostPoints) {
+        walker.trail = nullptr;
+        continue;
+      }
+      walker.walk.go(*next);
+      walker.step = first_step(walker.walk.here, walker.step);
+    }
+    std::erase_if(walkers, [](const Walker& walker) { return walker.trail == nullptr; });
+  }
+}
+
+void Curves::trace_all() {
+  // What is open ahead is met from behind by the next lock value's, or at a fold by another of its own. So a quarter of the ends is
+  // followed at once, then what was not met of the next. What is followed in vain changes nothing: curves are linked one after the
+  // other, in the order of the ends.
+  std::array<std::vector<int>, 4> quarters;
+  std::map<std::pair<int, int>, std::size_t> rank;
+  for (const auto& [half, q] : open_) {
+    const int ahead = half % 2;
+    quarters[(ahead == 1 ? 0u : 2u) + rank[{at(half).group, ahead}]++ % 2].push_back(half);
+  }
+  std::vector<char> reached(2 * vertices_.size(), 0);
+  std::vector<std::vector<Trail>> trails;
+  for (const auto& quarter : quarters) {
+    auto& followed = trails.emplace_back();
+    for (const int half : quarter)
+      if (PoseNewton::sooner_at_once() && reached[static_cast<std::size_t>(half)] == 0) followed.push_back({half});
+    follow(followed);
+    for (const Trail& trail : followed)
+      if (trail.met >= 0) reached[static_cast<std::size_t>(trail.met)] = 1;
+  }
+  std::vector<const Trail*> trail_of(2 * vertices_.size(), nullptr);
+  for (const auto& followed : trails)
+    for (const Trail& trail : followed) trail_of[static_cast<std::size_t>(trail.half)] = &trail;
+  for (const auto& [half, q] : open_)
+    if (open(half)) trace(half, trail_of[static_cast<std::size_t>(half)]);
+}
+
 bool Curves::known(const Config& q, const Config& tangent) const {
-  constexpr double kBeside = 0.2;  // rad: more than what is near a chord lies beside it
+  constexpr double kBeside = 0.2;                     // rad: more than what is near a chord lies beside it
+  constexpr double kAway = 1.2 * kLongChord + kNear;  // rad: what is near a chord is not further from its ends
   for (const Vertex& v : vertices_) {
+    if (!maybe_near(v.q, q, kAway)) continue;
     const double before = difference(v.q[data_.lock], q[data_.lock]);
     if (std::abs(before) > kFar) continue;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
@@ -348,15 +544,19 @@ bool Curves::known(const Config& q, const Config& tangent) const {
   return false;
 }
 
-void Curves::add_hidden(const Config& q) {
-  PoseNewton::Linear linear;
-  if (data_.aligned(q) || !data_.newton.linear(q, tool_, linear)) return;
-  const Config tangent = linear.null / linear.null.norm();
-  if (known(q, tangent)) return;
-  const int v = add({q, tangent}, -1);
-  open_ = {2 * v, 2 * v + 1};
-  trace(2 * v + 1);
-  if (open(2 * v)) trace(2 * v);
+void Curves::add_hidden(std::span<const Config> points) {
+  PoseNewton::Points found;
+  data_.newton.tangents(points, tool_, found);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto p = found.at(k);
+    if (!p || data_.aligned(p->q) || known(p->q, p->tangent)) continue;
+    const int v = add(*p, -1);
+    open_.clear();
+    add_end(2 * v);
+    add_end(2 * v + 1);
+    trace(2 * v + 1, nullptr);
+    if (open(2 * v)) trace(2 * v, nullptr);
+  }
 }
 
 void Curves::find(std::span<const Config> known_points) {
@@ -364,17 +564,16 @@ void Curves::find(std::span<const Config> known_points) {
   join_neighbours();
   for (int v = 0; v < static_cast<int>(vertices_.size()); ++v)
     for (const int half : {2 * v, 2 * v + 1})
-      if (open(half) && at(half).group >= 0) open_.push_back(half);
-  const std::vector<int> ends = open_;
-  for (const int half : ends)
-    if (open(half)) trace(half);
-  for (const Config& q : known_points) add_hidden(q);
+      if (open(half) && at(half).group >= 0) add_end(half);
+  trace_all();
+  add_hidden(known_points);
   if (data_.forms.empty()) {
     for (const Config& start : data_.starts)
-      if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden(p->q);
+      if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden(std::span(&p->q, 1));
     return;
   }
   // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
+  std::vector<Config> starts, hidden;
   for (std::size_t k = 0; k < data_.forms.size(); ++k) {
     if (few_[k] == 0) continue;
     const auto& [value, form] = data_.forms[k];
@@ -384,9 +583,14 @@ void Curves::find(std::span<const Config> known_points) {
         return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;
       };
       if (std::any_of(vertices_.begin() + first_[k], vertices_.begin() + first_[k + 1], seed)) continue;
-      if (const auto p = data_.newton.nearest(start, tool_, kPlain, 8)) add_hidden(p->q);
+      starts.push_back(start);
     }
   }
+  PoseNewton::Points found;
+  data_.newton.nearest(starts, tool_, kPlain, 8, found);
+  for (std::size_t k = 0; k < starts.size(); ++k)
+    if (found.found[k] != 0) hidden.push_back(found.q[k]);
+  add_hidden(hidden);
 }
 
 template <class Visit>
@@ -489,11 +693,14 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
     const Point &a = points[static_cast<std::size_t>(k)], &b = points[(static_cast<std::size_t>(k) + 1) % size];
     std::optional<Cubic> cubic;
     const std::size_t before = crossings_.size();
+    // A cubic leaves its first point by 1.6 chords at most (below).
+    const double away = 1.6 * difference(b.q, a.q).norm() + 1e-9;
     for (int j = 0; j < kDof; ++j) {
       const auto at = static_cast<std::size_t>(j);
       if (data_.circle[at]) continue;
+      if (a.q[j] - away > data_.lower[at] && a.q[j] + away < data_.upper[at]) continue;
       if (!cubic) cubic.emplace(a, b, 1.0);
-      const double middle = (data_.lower[at] + data_.upper[at]) / 2, start = middle + wrap_angle(a.q[j] - middle);
+      const double middle = (data_.lower[at] + data_.upper[at]) / 2, start = middle + wrapped(a.q[j] - middle);
       // A cubic leaves the range of its ends by 4/27 of the misfit of its tangents at most.
       const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
       const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
@@ -579,6 +786,7 @@ void Cutter::finish(SelfMotionArc&& arc) {
   }
   // Simpson's rule on the cubics.
   double length = 0;
+  arc.length.reserve(arc.q.size() + 1);
   arc.length.assign(1, 0);
   for (std::size_t k = 0; k < static_cast<std::size_t>(arc.chords()); ++k) {
     const std::size_t next = (k + 1) % arc.q.size();
@@ -601,6 +809,8 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
     if (!data_.inside(points[0].q)) return;
     SelfMotionArc arc;
     arc.closed = closed;
+    arc.q.reserve(points.size());
+    arc.tangent.reserve(points.size());
     for (const Point& p : points) {
       arc.q.push_back(p.q);
       arc.tangent.push_back(p.tangent);
@@ -628,6 +838,8 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
     }
     if (!within) continue;
     SelfMotionArc arc;
+    arc.q.reserve(static_cast<std::size_t>(end - first + 2));
+    arc.tangent.reserve(arc.q.capacity());
     Point p;
     if (from != nullptr) {
       if (!solve_end(points, *from, p, arc.limit[0])) continue;
@@ -722,6 +934,15 @@ std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const
   const auto p = data_->newton.nearest(q, tool, data_->scale2, kImageSteps);
   if (!p) return std::nullopt;
   return p->q;
+}
+
+std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool) const {
+  PoseNewton::Points found;
+  data_->newton.nearest(q, tool, data_->scale2, kImageSteps, found);
+  std::vector<std::optional<Config>> result(q.size());
+  for (std::size_t k = 0; k < q.size(); ++k)
+    if (found.found[k] != 0) result[k] = found.q[k];
+  return result;
 }
 
 std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const {

@@ -5,7 +5,10 @@
 #include <cstring>
 #include <limits>
 
+#include "arms.hpp"
 #include "kernels/kernels.hpp"
+#include "kernels/newton.hpp"
+#include "pose_newton.hpp"
 #include "robots.hpp"
 
 namespace swivel {
@@ -103,6 +106,95 @@ TEST(Kernels, EveryVectorUnitGivesTheScalarBitsAndTheClosedFormValues) {
   EXPECT_GT(compared, trials(2000) * 10);
   EXPECT_LT(worst, 1e-11);
   EXPECT_GT(barred, compared / 10);
+}
+
+/// Points asked about at once have the bits of one after the other, on every vector unit, and stand where they must.
+TEST(Kernels, NewtonGivesEveryPointItsOwnBits) {
+  Random random(seed("Newton"));
+  std::vector<const NewtonKernels*> units{&scalar_newton_kernels()};
+#ifdef SWIVEL_X86_KERNELS
+  if (__builtin_cpu_supports("avx2")) units.push_back(&avx2_newton_kernels());
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+    units.push_back(&avx512_newton_kernels());
+#endif
+  std::vector<ArmTable> arms = arms_7r();
+  for (const ArmTable& arm : arms_6r()) arms.push_back(arm);
+  int found = 0, failed = 0, singular = 0;
+  double worst = 0;
+  for (const ArmTable& arm : arms) {
+    const Chain chain = chain_of(arm);
+    const PoseNewton newton(chain);
+    for (int trial = 0; trial < trials(150); ++trial) {
+      const int n = 1 + random.below(30);
+      const auto count = static_cast<std::size_t>(n);
+      Config reached;
+      for (double& angle : reached) angle = random.uniform(-kPi, kPi);
+      const Pose tool = chain.tool(reached);
+      const auto move =
+          std::array{NewtonMove::kNone, NewtonMove::kNearest, NewtonMove::kLocked}[static_cast<std::size_t>(trial % 3)];
+      const double spread = random.coin(0.3) ? kPi : 0.2;  // far starts mostly fail
+      std::vector<Config> starts(count);
+      std::vector<double> values;
+      NewtonTask task = newton.task(tool, move, 1 + random.below(8));
+      task.joint = random.below(kDof);
+      for (Config& start : starts) {
+        for (int j = 0; j < kDof; ++j) start[j] = reached[j] + random.uniform(-spread, spread);
+        if (random.coin(0.1)) start.setZero();  // singular poses of many arms
+        values.push_back(random.coin() ? start[task.joint] : reached[task.joint] + random.uniform(-spread, spread));
+      }
+      for (double& scale2 : task.scale2) scale2 = random.uniform(0.01, 1);
+      struct Answer {
+        std::vector<Config> q, null;
+        std::vector<unsigned char> found;
+      };
+      const auto ask = [&](const NewtonKernels& kernels, std::size_t first, std::size_t points) {
+        Answer answer{std::vector<Config>(points), std::vector<Config>(points), std::vector<unsigned char>(points, 2)};
+        task.n = static_cast<int>(points);
+        task.start = starts[first].data();
+        task.value = values.data() + first;
+        task.q = task.particular = answer.q[0].data();
+        task.null = answer.null[0].data();
+        task.found = answer.found.data();
+        kernels.solve(task);
+        return answer;
+      };
+      std::vector<Answer> one_by_one;
+      for (std::size_t k = 0; k < count; ++k) one_by_one.push_back(ask(*units[0], k, 1));
+      for (const NewtonKernels* unit : units) {
+        const Answer all = ask(*unit, 0, count);
+        for (std::size_t k = 0; k < count; ++k) {
+          ASSERT_EQ(all.found[k], one_by_one[k].found[0]) << arm.name;
+          if (all.found[k] == 0) continue;
+          ASSERT_EQ(0, std::memcmp(all.q[k].data(), one_by_one[k].q[0].data(), sizeof(Config))) << arm.name;
+          ASSERT_EQ(0, std::memcmp(all.null[k].data(), one_by_one[k].null[0].data(), sizeof(Config))) << arm.name;
+        }
+      }
+      for (std::size_t k = 0; k < count; ++k) {
+        const Config &q = one_by_one[k].q[0], &null = one_by_one[k].null[0];
+        if (one_by_one[k].found[0] == 0) {
+          (move == NewtonMove::kNone ? singular : failed) += 1;
+          continue;
+        }
+        ++found;
+        if (move == NewtonMove::kNone) {
+          const auto J = chain.jacobian(starts[k]);
+          ASSERT_LT((J * null).norm(), 1e-7 * null.norm()) << arm.name;
+          continue;
+        }
+        worst = std::max(worst, (chain.tool(q).matrix() - tool.matrix()).cwiseAbs().maxCoeff());
+        ASSERT_NEAR(null.norm(), 1, 1e-14);
+        if (move == NewtonMove::kLocked) {
+          ASSERT_EQ(q[task.joint], values[k]);
+        }
+      }
+    }
+  }
+  std::printf("%zu units, %d points found, %d not, %d singular; off the pose by up to %.1e\n", units.size(), found, failed,
+              singular, worst);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GE(found, at_least(10000));
+  EXPECT_GE(failed, at_least(3000));
+  EXPECT_GE(singular, at_least(10));
 }
 
 }  // namespace

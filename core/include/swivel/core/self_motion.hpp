@@ -51,6 +51,8 @@ class SelfMotion {
 
   /// The configuration at the pose to which at most six Newton steps of least weighted norm lead from q.
   [[nodiscard]] std::optional<Config> image(const Config& q, const Pose& tool) const;
+  /// The same of many, in vector code, to the same bits.
+  [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q, const Pose& tool) const;
   /// The point of the pose's arc at chord k and u, exactly on the curve and within the limits. None where Newton fails.
   [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const;
   /// q with every joint in the winding that arcs have; whether it is inside the limits.
