@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "pairs_report.hpp"
@@ -65,34 +66,41 @@ void require_known(const char* option, const std::string& name, const std::vecto
                    "s of " + source);
 }
 
-bool is_below(const RobotModel& robot, const std::string& tip, const std::string& base) {
-  int link = robot.find_link(tip);
+/// Joints between two links that move on their own; none where the tip is not below the base.
+std::optional<int> joints_between(const RobotModel& robot, const std::string& base, const std::string& tip) {
+  int link = robot.find_link(tip), count = 0;
   while (link >= 0 && robot.links[link].name != base) {
     const int joint = robot.links[link].parent_joint;
+    if (joint >= 0) count += robot.joints[joint].movable() && !robot.joints[joint].mimic;
     link = joint < 0 ? -1 : robot.joints[joint].parent_link;
   }
-  return link >= 0;
+  return link < 0 ? std::nullopt : std::optional(count);
 }
 
 /// Base and tip as asked for; what was not is guessed. Appends the arms that were not taken to `others`.
-ArmGuess choose_arm(const RobotModel& robot, const std::string& base, const std::string& tip, std::vector<ArmGuess>& others) {
+ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments, std::vector<ArmGuess>& others) {
+  const std::string &base = arguments.base, &tip = arguments.tip;
   if (!base.empty()) require_known("--base", base, robot.links, "link", robot.source);
   if (!tip.empty()) {
     require_known("--tip", tip, robot.links, "link", robot.source);
-    return {base.empty() ? robot.links[robot.root_link].name : base, tip};
+    ArmGuess named{base.empty() ? robot.links[robot.root_link].name : base, tip};
+    if (arguments.roll || joints_between(robot, named.base, tip) == 6) named.joints = 6;
+    return named;
   }
   ArmGuesses guesses = guess_arms(robot);
+  if (arguments.roll) std::erase_if(guesses.arms, [](const ArmGuess& arm) { return arm.joints != 6; });
   if (!base.empty()) {
-    std::erase_if(guesses.arms, [&](const ArmGuess& arm) { return !is_below(robot, arm.tip, base); });
+    std::erase_if(guesses.arms, [&](const ArmGuess& arm) { return joints_between(robot, base, arm.tip).value_or(0) < arm.joints; });
     for (ArmGuess& arm : guesses.arms) arm.base = base;
   }
   if (guesses.arms.empty()) {
     const auto& row = guesses.longest_row;
-    throw InputError(robot.source + ": no arm of seven joints" + (base.empty() ? "" : " above '" + base + "'") +
+    throw InputError(robot.source + ": no arm of " + (arguments.roll ? "six" : "seven or six") + " joints" +
+                     (base.empty() ? "" : " above '" + base + "'") +
                      (row.empty() ? ": no joint turns"
                                   : ": the longest row of joints that turn has " + std::to_string(row.size()) + ", from '" +
                                         row.front() + "' to '" + row.back() + "'") +
-                     ": allowed are seven joints in a row, or --base and --tip (with --roll of arms of six joints)");
+                     ": allowed are so many joints in a row, or --base and --tip");
   }
   others.assign(guesses.arms.begin() + 1, guesses.arms.end());
   return guesses.arms.front();
@@ -117,10 +125,10 @@ void print_srs(const SrsArm& srs) {
                       std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
   std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
   if (srs.exact)
-    std::printf("fit        exact: closed form\n");
+    std::printf("fit        exact\n");
   else
-    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm: closed form, then Newton on the exact chain\n",
-                1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n", 1e3 * srs.deviation.offset,
+                1e3 * srs.deviation.angle);
   if (!srs.exact)
     std::printf("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
   std::printf("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
@@ -132,13 +140,13 @@ void print_srs(const SrsArm& srs) {
               std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
 }
 
-/// An arm that is not S-R-S: what it looks like, and how its solutions are found.
+/// An arm that is not S-R-S: what it looks like.
 void print_other(const Chain& chain, const ArmClass& arm) {
   const bool wrist = meet(chain, chain.roll ? 3 : 4);
   std::printf("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
               meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
   if (!chain.roll) std::printf("not S-R-S  %s\n", arm.not_srs.c_str());
-  std::printf("solutions  %s: %s\n", arm.complete() ? "all" : "those that turn up", arm.method().c_str());
+  if (chain.roll) std::printf("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
 }
 
 int run(const InfoArguments& arguments) {
@@ -151,18 +159,20 @@ int run(const InfoArguments& arguments) {
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
   for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
-  if (arguments.roll && arguments.tip.empty()) throw InputError("--roll: the arm is not named: allowed with --tip");
-  const ArmGuess chosen = choose_arm(*robot, arguments.base, arguments.tip, others);
+  const ArmGuess chosen = choose_arm(*robot, arguments, others);
   const std::string &base = chosen.base, &tip = chosen.tip;
-  const ArmModel arm = build_arm(*robot, base, tip, hold, Pose::Identity(), arguments.roll ? std::optional(Roll{}) : std::nullopt);
+  const ArmModel arm =
+      build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   const ArmClass kind = classify(arm.chain, robot->source);
   std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   if (!missing_meshes.empty())
     std::printf("meshes     %zu not found, which planning needs: %s\n", missing_meshes.size(), missing_meshes.front().c_str());
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
-  for (const ArmGuess& other : others) std::printf("other arm  %s to %s\n", other.base.c_str(), other.tip.c_str());
+  for (const ArmGuess& other : others)
+    std::printf("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(), other.joints == 6 ? ", six joints" : "");
   kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
-  for (std::size_t j = 0; j < kDof; ++j) {
+  std::printf("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
+  for (std::size_t j = 0; j < kDof - (arm.chain.roll ? 1 : 0); ++j) {
     const JointLimit& limit = arm.chain.limit[j];
     if (limit.continuous)
       std::printf("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
@@ -183,10 +193,10 @@ void add_info(CLI::App& app, int& exit_code) {
   command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
   command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
   command->add_option("--packages", arguments->packages, "NAME=FOLDER, where meshes of package://NAME/... lie");
-  command->add_option("--base", arguments->base, "base link (default: base_link or the root)");
-  command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints)");
+  command->add_option("--base", arguments->base, "base link (default: the nearest called base_link or the like, else the root)");
+  command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints, else of six)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
-  command->add_flag("--roll", arguments->roll, "six joints, and the turn of the tool about its own axis (path.roll)");
+  command->add_flag("--roll", arguments->roll, "an arm of six joints, for paths with path.roll, even where there are seven");
   command->add_flag("--pairs", arguments->pairs, "which bodies of the robot are kept apart, and how far")
       ->excludes("--srdf", "--packages", "--base", "--tip", "--hold");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

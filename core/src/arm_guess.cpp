@@ -16,16 +16,54 @@ namespace swivel {
 
 namespace {
 
-/// Whether a name is the word, or ends with it after a separator, as arm_left_link_tool0 does.
-bool ends_with_word(std::string name, const std::string& word) {
+std::string lower_case(std::string name) {
   std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (!name.ends_with(word)) return false;
-  return name.size() == word.size() || std::isalnum(static_cast<unsigned char>(name[name.size() - word.size() - 1])) == 0;
+  return name;
 }
+
+/// Whether a name is the word, or ends with it after a separator, as arm_left_link_tool0 does.
+bool ends_with_word(const std::string& name, const std::string& word) {
+  const std::string lower = lower_case(name);
+  if (!lower.ends_with(word)) return false;
+  return lower.size() == word.size() || std::isalnum(static_cast<unsigned char>(lower[lower.size() - word.size() - 1])) == 0;
+}
+
+/// Whether a name has the word between separators, as left_hip_yaw has hip.
+bool has_word(const std::string& name, const std::string& word) {
+  const std::string lower = lower_case(name);
+  const auto letter = [&](std::size_t at) { return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0; };
+  for (std::size_t at = lower.find(word); at != std::string::npos; at = lower.find(word, at + 1))
+    if ((at == 0 || !letter(at - 1)) && !letter(at + word.size())) return true;
+  return false;
+}
+
+/// A link from which makers measure an arm.
+bool is_base_name(const std::string& name) {
+  for (const char* const word : {"base_link", "base", "link_base", "link_0", "link0"})
+    if (ends_with_word(name, word)) return true;
+  return false;
+}
+
+bool is_leg_name(const std::string& name) {
+  for (const char* const word : {"hip", "knee", "ankle", "leg"})
+    if (has_word(name, word)) return true;
+  return false;
+}
+
+/// A joint beyond the arm.
+bool is_hand_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  for (const char* const word : {"finger", "gripper", "knuckle", "thumb", "claw", "jaw", "spindle"})
+    if (lower.find(word) != std::string::npos) return true;
+  return false;
+}
+
+constexpr int kLeast = static_cast<int>(kDof) - 1;  ///< joints of an arm, whose tool's roll makes seven
 
 class Guesser {
  public:
-  explicit Guesser(const RobotModel& robot) : robot_(robot), children_(robot.links.size()), depth_(robot.links.size(), 0) {
+  explicit Guesser(const RobotModel& robot)
+      : robot_(robot), children_(robot.links.size()), depth_(robot.links.size(), 0), row_below_(robot.links.size(), 0) {
     for (const Joint& joint : robot.joints) {
       children_[joint.parent_link].push_back(&joint);
       if (joint.mimic) leaders_.insert(joint.mimic->joint);
@@ -34,73 +72,117 @@ class Guesser {
     for (std::size_t k = 0; k < order.size(); ++k)
       for (const Joint* joint : children_[order[k]]) order.push_back(joint->child_link);
     for (auto link = order.rbegin(); link != order.rend(); ++link)
-      for (const Joint* joint : children_[*link]) depth_[*link] = std::max(depth_[*link], depth_below(*joint));
+      for (const Joint* joint : children_[*link]) {
+        depth_[*link] = std::max(depth_[*link], depth_below(*joint));
+        row_below_[*link] = std::max(row_below_[*link], row_from(*joint));
+      }
   }
 
   ArmGuesses run() {
     walk();
-    std::vector<ArmGuess> first, others;
-    for (const Chain& chain : chains_) {
-      // From the tip of the chain inwards, so that a joint of the torso does not count where there are seven others.
+    std::vector<ArmGuess> srs, seven, six;
+    for (const Row& row : rows_) {
+      const bool is_six = std::ssize(row) == kLeast;
+      // From the tip of the row inwards, so that a joint of the torso does not count where there are seven others.
       constexpr std::ptrdiff_t kMostTried = 16;  // a finger has few joints
-      const auto end = chain.rbegin() + std::min(kMostTried, std::ssize(chain));
-      const auto spherical = std::find_if(chain.rbegin(), end, [&](int link) { return is_srs(link); });
-      const int last = spherical == end ? chain.back() : *spherical;
-      auto& guesses = spherical == end ? others : first;
-      const ArmGuess guess{base_name(last), tip_name(last)};
+      const auto end = row.rbegin() + (is_six ? 0 : std::min(kMostTried, std::ssize(row) - kLeast));
+      const auto spherical = std::find_if(row.rbegin(), end, [&](int link) { return is_srs(link); });
+      const int last = spherical == end ? row.back() : *spherical;
+      const int joints = is_six ? kLeast : static_cast<int>(kDof);
+      const ArmGuess guess{base_name(last, joints), tip_name(last), joints};
       const auto known = [&](const ArmGuess& other) { return other.tip == guess.tip; };
-      if (std::none_of(first.begin(), first.end(), known) && std::none_of(others.begin(), others.end(), known))
-        guesses.push_back(guess);
+      if (std::any_of(srs.begin(), srs.end(), known) || std::any_of(seven.begin(), seven.end(), known) ||
+          std::any_of(six.begin(), six.end(), known))
+        continue;
+      (is_six ? six : spherical == end ? seven : srs).push_back(guess);
     }
-    first.insert(first.end(), others.begin(), others.end());
-    return {std::move(first), longest_row()};
+    srs.insert(srs.end(), seven.begin(), seven.end());
+    srs.insert(srs.end(), six.begin(), six.end());
+    return {std::move(srs), longest_row()};
   }
 
  private:
-  /// Links that the last of at least seven arm joints in a row moves, from the base outwards.
-  using Chain = std::vector<int>;
+  /// Links that the first, the second, ... of arm joints in a row move.
+  using Row = std::vector<int>;
 
   /// Movable joints from this one on, in the longest chain.
   [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + joint.movable(); }
 
+  /// Arm joints from this one on that follow each other, in the longest row.
+  [[nodiscard]] int row_from(const Joint& joint) const {
+    if (!joint.movable()) return row_below_[joint.child_link];
+    return is_arm_joint(joint) ? row_below_[joint.child_link] + 1 : 0;
+  }
+
   /// Turns on its own, as the joints of an arm do.
   bool is_arm_joint(const Joint& joint) const {
     return (joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous) && !joint.mimic &&
-           !leaders_.contains(static_cast<int>(&joint - robot_.joints.data()));
+           !leaders_.contains(static_cast<int>(&joint - robot_.joints.data())) && !is_leg_name(joint.name);
+  }
+
+  /// Whether an arm begins at a link, whatever turns above it: its maker's base, or the torso of several arms.
+  bool begins_at(int link) const {
+    if (row_below_[link] < kLeast) return false;
+    if (is_base_name(robot_.links[link].name)) return true;
+    const auto& below = children_[link];
+    return std::count_if(below.begin(), below.end(), [&](const Joint* joint) { return row_from(*joint) >= kLeast; }) > 1;
+  }
+
+  /// The link and those fixed to it, from the link outwards.
+  std::vector<int> fixed_to(int link) const {
+    std::vector<int> fixed{link};
+    for (std::size_t k = 0; k < fixed.size(); ++k)
+      for (const Joint* joint : children_[fixed[k]])
+        if (!joint->movable()) fixed.push_back(joint->child_link);
+    return fixed;
+  }
+
+  /// A link fixed to this one that is called as tools are.
+  std::optional<int> tool_link(int link) const {
+    const std::vector<int> fixed = fixed_to(link);
+    for (const char* const word :
+         {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
+      for (const int other : fixed)
+        if (ends_with_word(robot_.links[other].name, word)) return other;
+    return {};
   }
 
   void walk() {
     struct Visit {
-      int link, count;  // arm joints in a row above the link
-      Chain chain;
+      int link;
+      Row row;
     };
-    std::vector<Visit> open{{robot_.root_link, 0, {}}};
+    std::vector<Visit> open{{robot_.root_link, {}}};
     while (!open.empty()) {
-      const Visit visit = std::move(open.back());
+      Visit visit = std::move(open.back());
       open.pop_back();
-      if (visit.count > most_) {
-        most_ = visit.count;
+      if (begins_at(visit.link)) visit.row.clear();
+      if (std::ssize(visit.row) > most_) {
+        most_ = static_cast<int>(visit.row.size());
         end_of_most_ = visit.link;
       }
+      const bool whole = std::ssize(visit.row) >= kLeast;
       std::vector<const Joint*> moving;
       for (const Joint* joint : children_[visit.link])
         if (depth_below(*joint) > 0) moving.push_back(joint);
-      // Where an arm branches, its hand begins.
-      const bool hand = visit.count >= static_cast<int>(kDof) && moving.size() > 1;
+      // Where an arm branches, its hand begins, and so behind a flange.
+      const bool hand = whole && (moving.size() > 1 || (visit.row.back() == visit.link && tool_link(visit.link)));
       if (moving.empty() || hand) {
-        if (!visit.chain.empty()) chains_.push_back(visit.chain);
+        if (whole) rows_.push_back(visit.row);
         continue;
       }
       for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {  // the first in the file is visited first
         constexpr int kFinger = 4;                                           // movable joints, at most; so have heads and wheels
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
-        Visit next{(*joint)->child_link, visit.count, visit.chain};
-        if ((*joint)->movable()) next.count = is_arm_joint(**joint) ? visit.count + 1 : 0;
-        if (visit.count >= static_cast<int>(kDof) && next.count == 0) {  // a finger
-          chains_.push_back(visit.chain);
-          continue;
+        Visit next{(*joint)->child_link, visit.row};
+        if ((*joint)->movable()) {
+          const bool goes_on = is_arm_joint(**joint) && !(whole && is_hand_name((*joint)->name));
+          if (whole && !goes_on) {  // a finger
+            rows_.push_back(visit.row);
+            continue;
+          }
+          goes_on ? next.row.push_back(next.link) : next.row.clear();
         }
-        if ((*joint)->movable() && next.count >= static_cast<int>(kDof)) next.chain.push_back(next.link);
         open.push_back(std::move(next));
       }
     }
@@ -127,14 +209,7 @@ class Guesser {
   }
 
   std::string tip_name(int last) const {
-    std::vector<int> fixed{last};
-    for (std::size_t k = 0; k < fixed.size(); ++k)
-      for (const Joint* joint : children_[fixed[k]])
-        if (!joint->movable()) fixed.push_back(joint->child_link);
-    for (const char* const word :
-         {"tool0", "tcp", "flange", "ee_link", "ee", "eef", "end_effector", "end_effector_link", "tool_frame"})
-      for (const int link : fixed)
-        if (ends_with_word(robot_.links[link].name, word)) return robot_.links[link].name;
+    if (const std::optional<int> tool = tool_link(last)) return robot_.links[*tool].name;
     // The last link before the hand.
     int tip = last;
     while (children_[tip].size() == 1 && !children_[tip].front()->movable()) {
@@ -146,26 +221,25 @@ class Guesser {
     return robot_.links[tip].name;
   }
 
-  /// A link above the arm that is called base_link or the like, else the root.
-  std::string base_name(int last) const {
-    std::vector<int> above;
-    for (int joint = robot_.links[last].parent_joint, count = 0; joint >= 0;) {
-      const int link = robot_.joints[joint].parent_link;
-      count += robot_.joints[joint].movable();
-      if (count >= static_cast<int>(kDof)) above.push_back(link);
-      joint = robot_.links[link].parent_joint;
+  /// The nearest link above the arm that is called base_link or the like, else the root; of six joints below one more that turns,
+  /// with which they would be seven, the link that it turns.
+  std::string base_name(int last, int joints) const {
+    int link = last;
+    for (int count = 0; robot_.links[link].parent_joint >= 0; link = robot_.joints[robot_.links[link].parent_joint].parent_link) {
+      if (count >= joints && is_base_name(robot_.links[link].name)) break;
+      const Joint& joint = robot_.joints[robot_.links[link].parent_joint];
+      if (count == kLeast && joints == kLeast && joint.movable() && !joint.mimic && joint.type != Joint::Type::kPrismatic) break;
+      count += joint.movable();
     }
-    for (const char* const word : {"base_link", "base", "link_base"})
-      for (auto link = above.rbegin(); link != above.rend(); ++link)
-        if (ends_with_word(robot_.links[*link].name, word)) return robot_.links[*link].name;
-    return robot_.links[robot_.root_link].name;
+    return robot_.links[link].name;
   }
 
   const RobotModel& robot_;
   std::vector<std::vector<const Joint*>> children_;  ///< by link
   std::vector<int> depth_;                           ///< by link: movable joints below it, in the longest chain
+  std::vector<int> row_below_;                       ///< by link: arm joints that follow each other below it, in the longest row
   std::set<int> leaders_;                            ///< joints that others mimic
-  std::vector<Chain> chains_;
+  std::vector<Row> rows_;                            ///< of at least six
   int most_ = 0, end_of_most_ = 0;
 };
 

@@ -176,6 +176,10 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     if (joint.movable() && !joint.mimic) arm.push_back(j);
   }
   const std::size_t joints = roll ? kDof - 1 : kDof;
+  if (!roll && arm.size() == kDof - 1)
+    fail(robot, "robot.tip_link: the arm from '" + base_link + "' to '" + tip_link +
+                    "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
+                    "in rad, to `path`");
   if (arm.size() < joints)
     fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
                     tip_link + "': allowed are at least seven, or six with path.roll");

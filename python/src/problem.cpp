@@ -125,7 +125,7 @@ std::optional<Config> to_start(py::handle joints) {
 
 // --- robot
 
-void choose_links(Robot& robot, const std::optional<std::string>& base, const std::optional<std::string>& tip) {
+void choose_links(Robot& robot, const std::optional<std::string>& base, const std::optional<std::string>& tip, bool roll) {
   const RobotModel& model = *robot.model;
   robot.base_link = base.value_or(model.links[static_cast<std::size_t>(model.root_link)].name);
   if (tip) {
@@ -133,10 +133,15 @@ void choose_links(Robot& robot, const std::optional<std::string>& base, const st
     return;
   }
   const std::vector<ArmGuess> arms = guess_arms(model).arms;
-  if (arms.empty())
-    throw InputError(model.source + ": no arm of seven joints in a row was found: allowed is one, or base and tip by name");
-  robot.tip_link = arms.front().tip;
-  if (!base) robot.base_link = arms.front().base;
+  // Of six joints where the tool may turn, else of seven; an arm of six without a roll is refused later, which says what to add.
+  const auto fits = [&](const ArmGuess& arm) { return (arm.joints == 6) == roll; };
+  const auto found = std::find_if(arms.begin(), arms.end(), fits);
+  if (arms.empty() || (roll && found == arms.end()))
+    throw InputError(model.source + ": no arm of " + (roll ? "six" : "seven or six") +
+                     " joints in a row was found: allowed is one, or base and tip by name");
+  const ArmGuess& arm = found == arms.end() ? arms.front() : *found;
+  robot.tip_link = arm.tip;
+  if (!base) robot.base_link = arm.base;
 }
 
 struct RobotKeywords {
@@ -148,7 +153,7 @@ struct RobotKeywords {
 Robot make_robot(std::shared_ptr<const RobotModel> model, const RobotKeywords& keywords) {
   Robot robot;
   robot.model = std::move(model);
-  choose_links(robot, keywords.base, keywords.tip);
+  choose_links(robot, keywords.base, keywords.tip, keywords.roll.has_value());
   if (keywords.tool) robot.tool = *keywords.tool;
   robot.hold = keywords.hold;
   robot.roll = keywords.roll;
@@ -284,9 +289,10 @@ void bind_robot(py::module_& m) {
       });
 
   const char* const keywords =
-      "base, tip: links that the arm reaches from and to; without them the first arm of seven joints that is found, as\n"
-      "`swivel info` does. tool: pose of the tool in the tip link. hold: positions of other joints by name, rad or m. packages:\n"
-      "name -> folder, for package:// names of meshes. roll: of arms of six joints whose tool may turn about its own z axis.\n"
+      "base, tip: links that the arm reaches from and to; without them the first arm of seven joints that is found,\n"
+      "with roll of six, as `swivel info` does. tool: pose of the tool in the tip link. hold: positions of other joints by\n"
+      "name, rad or m. packages: name -> folder, for package:// names of meshes. roll: of arms of six joints whose tool may turn "
+      "about its own z axis.\n"
       "Raises InputError.";
   py::class_<Robot> type(m, "Robot", "The arm that plans: a chain of a robot model, and what it carries.");
   make_copyable(type);

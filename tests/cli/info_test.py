@@ -78,14 +78,26 @@ class Info(WithFolder):
                          f"solutions  all: closed form: {lock}; locks joint "):
                 self.assertIn(line, done.stdout)
 
-    def test_six_joints_and_a_gripper(self):
-        six = IIWA.replace('<joint name="joint_a3" type="revolute">', '<joint name="joint_a3" type="fixed">')
-        self.assertNotEqual(six, IIWA)
-        done = self.info(joint("left", "prismatic", "tool0", "l") + joint("right", "revolute", "tool0", "r"), text=six)
+    def test_five_joints_and_a_gripper(self):
+        five = IIWA
+        for number in (3, 5):
+            five = five.replace(f'<joint name="joint_a{number}" type="revolute">', f'<joint name="joint_a{number}" type="fixed">')
+        done = self.info(joint("left", "prismatic", "tool0", "l") + joint("right", "revolute", "tool0", "r"), text=five)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("no arm of seven joints: the longest row of joints that turn has 6, from 'joint_a1' to 'joint_a7'", done.stderr)
+        self.assertIn("no arm of seven or six joints: the longest row of joints that turn has 5, from 'joint_a1' to 'joint_a7'", done.stderr)
         for name in ("left", "right", "prismatic"):
             self.assertNotIn(name, done.stderr)
+
+    def test_roll(self):
+        named = ("--base", "base_link", "--tip", "flange")
+        for options in ((), named, ("--roll",), ("--roll", *named)):
+            done = run("info", DATA / "robots/ur5e_like.urdf", *options)
+            self.assertIn("arm        base_link to flange\nclass      6R and a roll", done.stdout)
+            self.assertIn("path.roll\nsolutions  all: closed form: axes 2, 3 and 4 are parallel", done.stdout)
+            self.assertEqual(re.findall(r"^joint \d +(\S+)", done.stdout, re.M), [f"joint_{k}" for k in range(1, 7)])
+        done = self.info("", "--roll")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no arm of six joints: the longest row of joints that turn has 7", done.stderr)
 
     def test_meshes_are_not_needed(self):
         mesh = '<link name="shell"><collision><geometry><mesh filename="package://some_robot/meshes/shell.stl"/></geometry></collision></link>'
@@ -112,6 +124,109 @@ class Info(WithFolder):
         problem = self.folder / "problem.yaml"
         problem.write_text(f"robot: {{urdf: {DATA}/robots/iiwa14.urdf, base_link: base_link, tip_link: tol0}}\npath: {{waypoints: [{{xyz: [0.5, 0, 0.5]}}, {{xyz: [0.5, 0.1, 0.5]}}]}}\n")
         self.assertIn("unknown link 'tol0', nearest is 'tool0'", run("plan", problem).stderr)
+
+
+def prefixed(text, prefix):
+    """The inside of a URDF, all its links and joints named anew."""
+    text = re.sub(r'(<(?:link|joint|parent|child|mimic) (?:name|link|joint)=")', rf"\g<1>{prefix}", text)
+    return re.search(r"<robot[^>]*>(.*)</robot>", text, re.S).group(1)
+
+
+class Robots(WithFolder):
+    """Arms of each class with what robots have besides: class, method, joints, base and tip without options."""
+
+    CLASSES = {"iiwa14": ("S-R-S", "all: closed form: spherical"), "sda10f": ("S-R-S", "all: closed form: spherical"),
+               "sda5f": ("S-R-S, in-plane elbow offset", "all: closed form: spherical"),
+               "panda_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
+               "xarm7_like": ("7R with a spherical shoulder", "all: closed form: axes 1, 2 and 3 meet"),
+               "fetch_like": ("7R with no spherical shoulder and a spherical wrist", "all: closed form: axes 5, 6 and 7 meet"),
+               "gen3_like": ("7R with no spherical shoulder and a spherical wrist", "all: closed form: axes 5, 6 and 7 meet"),
+               "offsets": ("7R with no spherical shoulder and no spherical wrist", "those that turn up: "),
+               "kr6_like": ("6R and a roll with no spherical shoulder and a spherical wrist", "all: closed form: axes 4, 5 and "),
+               "ur5e_like": ("6R and a roll with no spherical shoulder and no spherical wrist", "all: closed form: axes 2, 3 and 4 are parallel"),
+               "six_offsets": ("6R and a roll with no spherical shoulder and no spherical wrist", "those that turn up: ")}
+
+    def setUp(self):
+        super().setUp()
+        self.texts = {name: (DATA / f"robots/{name}.urdf").read_text() for name in self.CLASSES if "offsets" not in name}
+        # No three neighbouring axes meet or are parallel: the joints of the wrist pass each other.
+        for name, of in (("offsets", "panda_like"), ("six_offsets", "kr6_like")):
+            text = self.texts[of]
+            for number in (2, 3, 5, 6):
+                text = re.sub(rf'(<joint name="joint_{number}".*?<origin xyz=")(\S+) (\S+) (\S+?)"', rf'\g<1>0.0{number}1 0.0{9 - number}3 0.2{number}"', text, flags=re.S)
+            self.texts[name] = text
+
+    def arm(self, name):
+        """An arm of one row, its tip, and its joints."""
+        text = self.texts[name]
+        if name.startswith("sda"):
+            return text, "arm_left_link_tool0", re.findall(r'<joint name="(arm_left_joint_\d_\w)"', text)
+        tip = "tool0" if name == "iiwa14" else "flange"
+        return text, tip, re.findall(r'<joint name="(joint_a?\d)"', text)
+
+    def finds(self, name, text, base, tip, joints, words, others=0):
+        self.ran += 1
+        file = self.folder / "robot.urdf"
+        file.write_text(text)
+        done = run("info", file)
+        kind, method = self.CLASSES[name]
+        right = (done.returncode == 0 and f"arm        {base} to {tip}\n" in done.stdout and re.search(f"^class      {kind}", done.stdout, re.M)
+                 and f"solutions  {method}" in done.stdout and re.findall(r"^joint \d +(\S+)", done.stdout, re.M) == joints
+                 and done.stdout.count("other arm") == others)
+        if not right:
+            self.wrong.append(f"{name}, {words}:\n{done.stdout}{done.stderr}")
+
+    def test_each_class(self):
+        self.ran, self.wrong = 0, []
+        for name in self.CLASSES:
+            text, tip, joints = self.arm(name)
+            others = 1 if name.startswith("sda") else 0  # two arms as they are
+
+            def variant(words, more, before="", base="base_link", last=tip, body=text, named=joints, also=others):
+                head, inside, tail = re.fullmatch(r"(.*<robot[^>]*>)(.*)(</robot>.*)", body, re.S).groups()
+                self.finds(name, head + before + inside + more + tail, base, last, named, words, also)
+
+            variant("alone", "")
+            renamed = text.replace(f'"{tip}"', '"plate"')
+            for flange, body in ((tip, text), ("plate", renamed)):
+                hand = joint("mount", "fixed", flange, "hand_body")
+                variant("parallel gripper", hand + joint("left", "prismatic", "hand_body", "l", axis="0 1 0") +
+                        joint("right", "prismatic", "hand_body", "r", axis="0 -1 0", more='<mimic joint="left"/>'), last=flange, body=body)
+                variant("four-bar gripper", hand + joint("finger_joint", "revolute", "hand_body", "l") + joint("l_inner", "revolute", "l", "l2", more='<mimic joint="finger_joint"/>') +
+                        joint("right", "revolute", "hand_body", "r", more='<mimic joint="finger_joint"/>'), last=flange, body=body)
+                variant("three fingers", hand + "".join(joint(f"f{k}", "revolute", "hand_body", f"f{k}") + joint(f"f{k}t", "revolute", f"f{k}", f"f{k}t") for k in range(3)), last=flange, body=body)
+                variant("one finger", hand + joint("gripper", "revolute", "hand_body", "l"), last=flange, body=body)
+                variant("gripper with its own centre", hand + joint("end", "fixed", "hand_body", "grasp_tcp") + joint("slide", "prismatic", "hand_body", "l"),
+                        last=tip if flange == tip and tip.endswith("tool0") else "grasp_tcp", body=body)
+            variant("spindle", joint("turn", "continuous", tip, "bit"))
+            wheels = "".join(joint(f"w{k}", "continuous", "cart", f"wheel{k}") for k in range(4)) + joint("c", "continuous", "cart", "fork") + joint("cw", "continuous", "fork", "castor")
+            own = '<link name="cart"/>' + wheels + joint("pan", "revolute", "cart", "neck") + joint("tilt", "revolute", "neck", "head")
+            for words, kind in (("mobile base", "fixed"), ("lift", "prismatic"), ("turntable", "revolute")):
+                above = joint("carry", kind, "cart", "base_link").replace('<link name="base_link"/>', "")
+                variant(words, "", own + above)
+                variant(words + " called base_link", "", (own + above).replace('"base_link"', '"arm_base_link"').replace('"cart"', '"base_link"'), base="arm_base_link",
+                        body=text.replace('"base_link"', '"arm_base_link"'))
+            gantry = '<link name="floor"/>' + joint("x", "prismatic", "floor", "bridge") + joint("y", "prismatic", "bridge", "base_link").replace('<link name="base_link"/>', "")
+            variant("gantry", "", gantry)
+            if not others:
+                side = "b_joint_a" if name == "iiwa14" else "b_joint_"
+                for turns in ("fixed", "revolute"):
+                    waist = '<link name="stand"/>' + joint("waist", turns, "stand", "chest") + "".join(
+                        joint(f"on_{base}", "fixed", "chest", base).replace(f'<link name="{base}"/>', "") for base in ("base_link", "b_base_link"))
+                    variant(f"second arm, waist {turns}", prefixed(text, "b_") + waist, also=1)
+                    # Without a base of its own: the torso, of which both arms begin.
+                    plain = text.replace('"base_link"', '"left_mount"')
+                    waist = waist.replace('"base_link"', '"left_mount"').replace('"b_base_link"', '"b_left_mount"')
+                    turned = len(joints) == 6 and turns == "revolute"  # with the waist six joints were seven
+                    variant(f"second arm without a base, waist {turns}", prefixed(plain, "b_") + waist, base="chest" if turned else "stand", body=plain, also=1)
+                legs = "".join(joint(f"{side_}_{part}_joint", "revolute", f"{side_}_{above}" if k else "base_link", f"{side_}_{part}")
+                               for side_ in ("left", "right")
+                               for k, (above, part) in enumerate(zip(("", "hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch"),
+                                                                     ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll"))))
+                variant("legs", legs)
+        print(f"{self.ran} robots of {len(self.CLASSES)} arms")
+        self.assertFalse(self.wrong, "\n".join(self.wrong))
+        self.assertGreaterEqual(self.ran, 200)
 
 
 if __name__ == "__main__":

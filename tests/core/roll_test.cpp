@@ -77,9 +77,10 @@ TEST(Roll, IsForArmsOfSixJoints) {
   const std::map<std::string, double> none, first{{"j1", 0.3}};
   EXPECT_EQ(message(model, none, Roll{}),
             "panda: path.roll: the arm has seven joints: allowed are arms of six; robot.hold may name 'j1'");
-  EXPECT_EQ(message(small, none, std::nullopt),
-            "kr6-r900: robot.tip_link: only 6 movable joints between 'base' and 'l7': allowed are at least seven, or six with "
-            "path.roll");
+  EXPECT_EQ(
+      message(small, none, std::nullopt),
+      "kr6-r900: robot.tip_link: the arm from 'base' to 'l7' has six joints: allowed with a tool that may turn about its own z "
+      "axis: add `roll: free`, or [lower, upper] in rad, to `path`");
   EXPECT_EQ(build(model, first, Roll{}).chain.joint_names.front(), "j2");
   // What the arm carries moves with its six joints at most.
   const ArmModel arm = build(small, none, Roll{});

@@ -521,6 +521,12 @@ class Robots(unittest.TestCase):
         self.assertEqual(len(problem.joint_names), 7)
         robot = swivel.Robot(ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll(lower=-1, upper=1))
         self.assertEqual(robot.roll, swivel.Roll(lower=-1, upper=1))
+        found = swivel.Robot(ROBOTS / "ur5e_like.urdf", roll=swivel.Roll())
+        self.assertEqual((found.base, found.tip), (problem.base, problem.tip))
+        with self.assertRaisesRegex(ValueError, "has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`"):
+            swivel.Robot(ROBOTS / "ur5e_like.urdf")
+        with self.assertRaisesRegex(ValueError, "no arm of six joints in a row was found"):
+            swivel.Robot(ROBOTS / "iiwa14.urdf", roll=swivel.Roll())
 
     def test_what_it_carries(self):
         planner = swivel.Planner(arm(), square())
