@@ -2,6 +2,7 @@
 #include "swivel/core/make_lattice.hpp"
 
 #include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/input_error.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
@@ -9,6 +10,9 @@ namespace swivel {
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
                                       const Budget& budget) {
   if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
+  if (problem.limits.arm_slope != Limits().arm_slope)
+    throw InputError(problem.source +
+                     ": limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
   return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
 }
 

@@ -5,6 +5,8 @@
 #include "bad_input.hpp"
 #include "files.hpp"
 #include "srdf.hpp"
+#include "swivel/core/arm.hpp"
+#include "swivel/core/arm_class.hpp"
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
@@ -91,6 +93,7 @@ class ProblemReader {
     read_path(root_.require("path"));
     if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
     if (const auto value = root_.find_filled("limits")) read_limits(*value);
+    require_arm_angle();
     if (const auto value = root_.find_filled("start")) read_start(*value);
     read_start_place();
     if (const auto value = root_.find_filled("cost")) read_cost(*value);
@@ -307,6 +310,17 @@ class ProblemReader {
     set(section, "joint_acceleration", limits.joint_acceleration);
     set(section, "joint_jerk", limits.joint_jerk);
     if (const auto edges = section.find("edges")) limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
+  }
+
+  /// For the limit of an arm angle, where that is given.
+  void require_arm_angle() const {
+    const auto limits = root_.find_filled("limits");
+    const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
+    if (!slope) return;
+    const ArmModel arm =
+        build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold, problem_.tool, problem_.roll);
+    if (!classify(arm.chain, problem_.model->source).srs)
+      slope->fail("is given, but the arm has no arm angle, since it is not S-R-S", "no such key for this arm");
   }
 
   void read_start(const YamlValue& value) {

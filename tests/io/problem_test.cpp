@@ -71,6 +71,23 @@ TEST(ProblemFile, RollOfTheTool) {
   EXPECT_EQ(some.cost.weights[6], 0.3);
 }
 
+TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
+  const ProblemFolder folder;
+  EXPECT_EQ(folder.load({{"limits", "{arm_slope: 20}"}}).limits.arm_slope, 20);
+  std::string bent = arm_urdf();
+  const std::size_t at = bent.rfind("0 0 0.2");
+  bent.replace(at, 7, "0.1 0 0");
+  folder.folder().write("robots/bent.urdf", bent);
+  const std::string robot = "{urdf: ../robots/bent.urdf, base_link: base_link, tip_link: link_7}";
+  EXPECT_EQ(folder.load({{"robot", robot}}).limits.arm_slope, 20);
+  // Its default as well: what is given does nothing.
+  for (const char* const slope : {"20", "7"})
+    expect_message(input_error([&] {
+                     return folder.load({{"robot", robot}, {"limits", std::string("{arm_slope: ") + slope + "}"}});
+                   }),
+                   {"problem.yaml:1: limits.arm_slope", "no arm angle", "allowed is no such key"});
+}
+
 TEST(ProblemFile, EveryKey) {
   const ProblemFolder folder;
   const Problem problem = folder.load({

@@ -38,6 +38,7 @@ std::vector<TestRobot> arms() {
 Problem random_task(const TestRobot& robot, Random& random) {
   Problem problem = random_problem(robot, random);
   problem.limits.step_error.reset();
+  problem.limits.arm_slope = Limits().arm_slope;
   problem.resolution.arc = random.uniform(0.3, 0.6);
   problem.limits.joint_step = random.uniform(0.4, 1.0);
   if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
@@ -209,11 +210,23 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
   }
 }
 
-TEST(Arms, StepErrorSaysThatItNeedsAnArmAngle) {
+TEST(Arms, WhatNeedsAnArmAngleSaysSo) {
+  const auto message = [](const Problem& problem) -> std::string {
+    try {
+      (void)plan(problem);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
   Random random(1);
   Problem problem = random_task(arms()[0], random);
   problem.limits.step_error = 0.1;
-  EXPECT_THROW((void)plan(problem), InputError);
+  EXPECT_EQ(message(problem), problem.source + ": limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
+  problem.limits.step_error.reset();
+  problem.limits.arm_slope = 21;
+  EXPECT_EQ(message(problem),
+            problem.source + ": limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
 }
 
 }  // namespace
