@@ -24,6 +24,17 @@ double power_of_two_from(double x) {
   return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
 }
 
+/// The length of path that belongs to each layer, m.
+std::vector<double> layer_shares(const ToolPath& path) {
+  std::vector<double> shares(static_cast<std::size_t>(path.size()), 0.0);
+  for (int i = 0; i + 1 < path.size(); ++i) {
+    const double half = (path.layer(i + 1).s - path.layer(i).s) / 2;
+    shares[static_cast<std::size_t>(i)] += half;
+    shares[static_cast<std::size_t>(i) + 1] += half;
+  }
+  return shares;
+}
+
 bool within(const Config& delta, const Config& bound) {
   for (int k = 0; k < kDof; ++k)
     if (!(std::abs(delta[k]) <= bound[k])) return false;
@@ -72,7 +83,12 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
       throw InputError(problem.source + ": joint '" + chain.joint_names[k] +
                        "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
-  cost_unit_ = power_of_two_from(*std::max_element(cost_scale_.begin(), cost_scale_.end()));
+  double most_costly = *std::max_element(cost_scale_.begin(), cost_scale_.end());
+  if (problem.roll && cost_.roll > 0) {
+    roll_weights_ = layer_shares(path);
+    for (double& weight : roll_weights_) most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
+  }
+  cost_unit_ = power_of_two_from(most_costly);
   Config bound = Config::Constant(limits_.joint_step);
   if (chain.roll) bound[kDof - 1] = std::min(kPi, limits_.roll_slope * problem.resolution.ds);
   row_step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, bound);
@@ -120,6 +136,14 @@ bool Lattice::row_step_allowed(int layer, const Config& delta) const {
 
 double Lattice::rounded_cost(double cost) const {
   return rounded(cost, cost_unit_);
+}
+
+double Lattice::roll_weight(int layer) const {
+  return roll_weights_.empty() ? 0 : roll_weights_[static_cast<std::size_t>(layer)];
+}
+
+double Lattice::roll_cost(int layer, double roll) const {
+  return rounded_cost(roll_weight(layer) * std::abs(wrap_angle(roll)));
 }
 
 double Lattice::edge_cost(const Config& delta) const {

@@ -6,12 +6,15 @@
 #include <limits>
 #include <numeric>
 
+#include "swivel/core/angle.hpp"
+
 namespace swivel {
 
 namespace {
 
 constexpr double kChange = 1e3;      // weight of a coordinate that changes too much
 constexpr double kLeastMove = 1e-9;  // rad; rounds off the tip of the norm
+constexpr double kLeastRoll = 1e-4;  // rad; rounds off the tip of the roll's cost, at which optima stand
 
 /// Joints of all layers at given coordinates, and their derivatives by them.
 struct Layers {
@@ -61,6 +64,7 @@ class Objective {
       if (over > 0) sum += kChange * over * over;
     }
     for (int i = 1; i + 1 < n_; ++i) sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
+    for (std::size_t i = 0; i < objective_->roll.size(); ++i) sum += objective_->roll[i] * off(wrap_angle(q[i][kDof - 1]));
     return sum;
   }
 
@@ -97,6 +101,12 @@ class Objective {
       H[0][b] += 2 * kChange;
       H[1][a] -= 2 * kChange;
     }
+    for (std::size_t i = 0; i < objective_->roll.size(); ++i) {
+      const double roll = wrap_angle(l.q[i][kDof - 1]), way = roll / off(roll);
+      const double first = l.first[i][kDof - 1], second = l.second[i][kDof - 1];
+      g[i] += objective_->roll[i] * way * first;
+      H[0][i] += objective_->roll[i] * ((1 - way * way) / off(roll) * first * first + way * second);
+    }
     for (int i = 1; i + 1 < n_; ++i) {
       const Bend& b = bends_[at(i)];
       const Config e = bend(l.q, i);
@@ -122,6 +132,7 @@ class Objective {
     const double unit = std::max(r.lpNorm<Eigen::Infinity>(), kLeastMove);
     return unit * std::pow(raised(r / unit, power).sum() + raised(Config::Constant(kLeastMove / unit), power)[0], 1.0 / power);
   }
+  static double off(double roll) { return std::sqrt(roll * roll + kLeastRoll * kLeastRoll); }
   [[nodiscard]] Norm norm(const Config& r) const {
     Norm n;
     n.length = length(r);

@@ -219,6 +219,9 @@ void validate_numbers(const Field& root, const Problem& problem) {
     std::snprintf(text, sizeof text, "is %g", weight);
     fail(root("cost")("weights", k), text, kAllowedWeights);
   }
+  if (!weight_allowed(problem.cost.roll)) fail(root("cost")("roll"), "is no weight", kAllowedWeights);
+  if (problem.cost.roll > 0 && !problem.roll)
+    fail(root("cost")("roll"), "is given, but no roll is free", "0, or a problem with a roll");
 }
 
 void validate_joint(const Field& field, const Joint& joint, const RobotModel& robot) {

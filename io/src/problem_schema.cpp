@@ -183,6 +183,9 @@ Schema cost() {
            "what a step costs: `l2` sqrt(Σ (w Δq)²), `max` max w |Δq|, `time` max |Δq| / v with the velocities of the URDF"},
           {"weights", numbers(kDof, kNonNegative), "", in_words("1 each, that of a roll 0"),
            "w, base to tip: each 0 or from 1e-6 to 1e6"},
+          {"roll", number(kNonNegative), "", otherwise(Cost().roll),
+           "per m of path and rad that the tool stands turned from where the waypoints have it: 0 or from 1e-6 to 1e6; with "
+           "`path.roll`"},
       });
 }
 

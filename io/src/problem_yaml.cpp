@@ -348,6 +348,12 @@ class ProblemReader {
         if (!weight_allowed(values[k])) weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
       std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
     }
+    if (const auto roll = section.find("roll")) {
+      problem_.cost.roll = roll->number();
+      if (!weight_allowed(problem_.cost.roll)) roll->fail("is " + format_double(problem_.cost.roll), kAllowedWeights);
+      if (problem_.cost.roll > 0 && !problem_.roll)
+        roll->fail("is given, but no roll is free", "this key beside path.roll, of arms of six joints");
+    }
   }
 
   void read_vary(const YamlValue& value) {

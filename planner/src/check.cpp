@@ -132,6 +132,7 @@ class Check {
       examine_row(k);
       if (k > 0 && examined(k - 1)) examine_move(k);
     }
+    if (chain_.roll && problem_.cost.roll > 0) result_.cost += cost_of_roll();
     examine_travel();
     if (timed_) examine_rates(*timed_);
     if (!options_.margins && result_.failure_count == 0) examine_clearance();
@@ -593,6 +594,16 @@ class Check {
       most = std::max(most, std::abs(scaled));
     }
     return problem_.cost.metric == CostMetric::kL2 ? std::sqrt(l2) : most;
+  }
+
+  /// Of each row for half of the path to the rows before and after it.
+  [[nodiscard]] double cost_of_roll() const {
+    double sum = 0;
+    for (std::size_t k = 1; k < rows_.size(); ++k)
+      for (const std::size_t row : {k - 1, k})
+        if (rows_[row].q.allFinite())
+          sum += problem_.cost.roll * (rows_[k].s - rows_[k - 1].s) / 2 * std::abs(wrap_angle(rows_[row].q[kDof - 1]));
+    return sum;
   }
 
   const Problem& problem_;

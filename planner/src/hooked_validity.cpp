@@ -39,9 +39,15 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
 
 void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<double> costs) {
   const TraceSpan span("cost of states");
-  states_.clear();
-  for (const NodeQuestion& question : questions) states_.push_back(state(question.layer, question.slot, question.q));
-  cost_.costs(states_, costs);
+  if (cost_) {
+    states_.clear();
+    for (const NodeQuestion& question : questions) states_.push_back(state(question.layer, question.slot, question.q));
+    cost_.costs(states_, costs);
+  } else {
+    std::fill(costs.begin(), costs.end(), 0.0);
+  }
+  if (!lattice_->has_node_costs()) return;
+  for (std::size_t k = 0; k < questions.size(); ++k) costs[k] += lattice_->node_cost(questions[k].layer, questions[k].slot);
 }
 
 }  // namespace swivel

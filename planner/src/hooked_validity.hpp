@@ -8,7 +8,7 @@
 namespace swivel {
 
 /// The user's hooks after the validity that comes first: the check is asked about what that one allows, in one call for each batch
-/// of it.
+/// of it. What nodes cost is what the lattice and the user say.
 class HookedValidity final : public Validity {
  public:
   /// `lattice` and `first` must outlive it.
@@ -19,7 +19,7 @@ class HookedValidity final : public Validity {
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override { return first_->asks_edges() || check_.checks_motions(); }
   void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override;
-  [[nodiscard]] bool asks_costs() const override { return static_cast<bool>(cost_); }
+  [[nodiscard]] bool asks_costs() const override { return cost_ || lattice_->has_node_costs(); }
 
  private:
   /// What the caller's hooks see of a node: its row (Lattice::row), where it has one.

@@ -54,6 +54,9 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   SmoothObjective coarse = objective;
   coarse.most_change *= stride;
   for (int& jump : coarse.jumps) jump = few.no_later(jump);
+  coarse.roll.clear();
+  if (!objective.roll.empty())
+    for (int k = 0; k < few.layers(); ++k) coarse.roll.push_back(stride * objective.roll[static_cast<std::size_t>(few.layer(k))]);
   std::vector<double> start;
   std::vector<CoordinateBox> inside;
   for (int k = 0; k < few.layers(); ++k) {
@@ -165,6 +168,8 @@ class Judge {
 double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) sum += lattice.edge_cost(rows[i].q - rows[i - 1].q);
+  if (lattice.has_node_costs())
+    for (std::size_t i = 0; i < rows.size(); ++i) sum += lattice.roll_cost(static_cast<int>(i), rows[i].q[kDof - 1]);
   return sum;
 }
 
@@ -414,6 +419,8 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   // The other metrics are largest moves. A power of 32 takes twice as long for 0.2 % less.
   constexpr int kNearLargest = 16;
   if (lattice.cost().metric != CostMetric::kL2) objective.power = kNearLargest;
+  if (lattice.has_node_costs())
+    for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
     Refinery refinery(redundancy, judge, from, second ? Refinery::Edges::kUnknown : Refinery::Edges::kValid,

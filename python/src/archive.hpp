@@ -136,8 +136,8 @@ void serialize(A& archive, Resolution& x) {
 }
 template <class A>
 void serialize(A& archive, Cost& x) {
-  auto& [metric, weights] = x;
-  archive(metric, weights);
+  auto& [metric, weights, roll] = x;
+  archive(metric, weights, roll);
 }
 template <class A>
 void serialize(A& archive, Variation& x) {

@@ -462,6 +462,7 @@ void bind_task(py::module_& m) {
   PlainStruct<Cost>(m, "Cost", "What is summed over the steps of a path, as keywords.")
       .choice("metric", &Cost::metric, "CostMetric, or its name.")
       .member("weights", &Cost::weights, "Seven, each 0 or 1e-6 to 1e6.")
+      .member("roll", &Cost::roll, "Per metre and rad that the tool stands turned from the waypoints' own; 0 or 1e-6 to 1e6.")
       .finish();
   PlainStruct<PathSmoothing>(m, "PathSmoothing", "How far the tool may leave the polyline of its waypoints, as keywords.")
       .member("position", &PathSmoothing::position, "m.")

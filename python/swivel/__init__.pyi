@@ -229,7 +229,8 @@ class Cost:
     @metric.setter
     def metric(self, metric: CostMetric | str) -> None: ...
     weights: Sequence[float]
-    def __init__(self, *, metric: CostMetric | str = ..., weights: Sequence[float] = ...) -> None: ...
+    roll: float
+    def __init__(self, *, metric: CostMetric | str = ..., weights: Sequence[float] = ..., roll: float = ...) -> None: ...
 
 class PathSmoothing:
     position: float

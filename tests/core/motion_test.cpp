@@ -204,6 +204,8 @@ TEST(SmoothMinimum, NoSmallMoveInsideTheBoxesIsBetter) {
     objective.bending = random.coin() ? 0.1 : 1e-3;
     objective.most_change = random.coin() ? 0.15 : 10;
     objective.power = random.coin() ? 2 : 16;
+    if (trial % 2 == 1)
+      for (int i = 0; i < n; ++i) objective.roll.push_back(random.uniform(0, 0.5));
     std::vector<double> x;
     std::vector<CoordinateBox> boxes;
     for (int i = 0; i < n; ++i) {

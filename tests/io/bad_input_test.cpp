@@ -112,6 +112,8 @@ const Case kCases[] = {
     {"RollMap", "path", "{roll: {}, waypoints: []}", {"path.roll", "a map", "free"}},
     {"RollEmpty", "path", "{roll: [1, 1], waypoints: []}", {"path.roll", "lower < upper"}},
     {"RollShort", "path", "{roll: [1], waypoints: []}", {"path.roll", "2 numbers"}},
+    {"RollCostNegative", "cost", "{roll: -1}", {"cost.roll", ">= 0"}},
+    {"RollCostWithoutRoll", "cost", "{roll: 1}", {"problem.yaml:1: cost.roll", "no roll is free", "beside path.roll"}},
     {"ArmSlopeZero", "limits", "{arm_slope: 0}", {"limits.arm_slope", "> 0"}},
     {"EdgeToleranceZero", "limits", "{edge_tolerance: 0}", {"limits.edge_tolerance", "> 0"}},
     {"SelfClearanceNegative", "limits", "{self_clearance: -1}", {"limits.self_clearance", ">= 0"}},

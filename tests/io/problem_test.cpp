@@ -71,6 +71,18 @@ TEST(ProblemFile, RollOfTheTool) {
   EXPECT_EQ(some.cost.weights[6], 0.3);
 }
 
+TEST(ProblemFile, RollCost) {
+  const ProblemFolder folder;
+  const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";
+  EXPECT_EQ(folder.load({}).cost.roll, 0);
+  EXPECT_EQ(folder.load({{"cost", "{roll: 0}"}}).cost.roll, 0);
+  EXPECT_EQ(folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 2.5}"}}).cost.roll, 2.5);
+  expect_message(input_error([&] {
+                   return folder.load({{"path", "{roll: free, " + waypoints + "}"}, {"cost", "{roll: 1e-7}"}});
+                 }),
+                 {"cost.roll", "1e-6"});
+}
+
 TEST(ProblemFile, ArmSlopeIsForArmsWithAnArmAngle) {
   const ProblemFolder folder;
   EXPECT_EQ(folder.load({{"limits", "{arm_slope: 20}"}}).limits.arm_slope, 20);

@@ -62,6 +62,7 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
       Random random(base + static_cast<std::uint64_t>(trial) * all.size() + which);
       Problem problem = with_motion_defaults(motion_problem(all[which].robot, random, all[which].roll));
       if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
+      if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
       const std::string what = problem.source + " trial " + std::to_string(trial);
       Planner planner(problem);
       PlanOptions options;

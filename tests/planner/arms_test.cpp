@@ -2,9 +2,12 @@
 // Arms that are not S-R-S, planned on arcs of their self-motion: the whole way from a problem to a trajectory that is checked.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "brute_force.hpp"
+#include "motion_problem.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
@@ -208,6 +211,106 @@ TEST(Arms, SixJointsAndTheRollOfTheTool) {
     EXPECT_THROW((void)plan(without), InputError) << name;
     EXPECT_THROW(robot.require_prepared_for(without), InvalidArgument) << name;
   }
+}
+
+/// What the roll costs, by its definition.
+double plain_roll_cost(const Problem& problem, const std::vector<TrajectoryRow>& rows) {
+  double sum = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double before = i > 0 ? rows[i].s - rows[i - 1].s : 0, after = i + 1 < rows.size() ? rows[i + 1].s - rows[i].s : 0;
+    sum += problem.cost.roll * (before + after) / 2 * std::abs(std::remainder(rows[i].q[6], kTwoPi));
+  }
+  return sum;
+}
+
+/// `cost.roll` is part of what all planners and brute force find least.
+TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
+  const std::uint64_t base = seed("Arms.RollCost");
+  const std::vector<std::pair<const char*, Roll>> robots{
+      {"kr6_like", Roll{}}, {"ur5e_like", Roll{-0.8, 0.8}}, {"kr6_like", Roll{2.6, 4}}};
+  int solved = 0, infeasible = 0, straighter = 0, dearer = 0, hooked = 0;
+  const int count = trials(45);
+  struct Wave final : StateCost {
+    [[nodiscard]] std::string name() const override { return "wave"; }
+    void costs(std::span<const Config> states, std::span<double> costs) override {
+      for (std::size_t k = 0; k < states.size(); ++k) costs[k] = 0.2 + 0.2 * std::sin(5 * states[k][2]);
+    }
+  };
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const auto& [name, roll] = robots[static_cast<std::size_t>(trial) % robots.size()];
+    Problem problem = motion_problem(arm_of_data(name), random, roll);
+    problem.smooth.reset();
+    if (problem.roll->lower > 0) problem.start.reset();  // it stands unturned
+    problem.waypoints.resize(2 + static_cast<std::size_t>(random.below(2)));
+    problem.resolution = {.ds = random.uniform(0.02, 0.04), .dalpha = 0.3, .arc = random.uniform(0.4, 0.6)};
+    problem.limits.joint_step = 1;
+    problem.limits.tool_path_error = 0.05;
+    problem.limits.roll_slope = random.uniform(10, 30);
+    problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
+    problem.limits.edge_tolerance = 0.005;
+    problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
+    const PreparedRobot robot(problem);
+    const PlanResult free = plan(robot, problem);
+    problem.cost.roll = std::array{0.3, 3.0, 30.0, 1e5}[static_cast<std::size_t>(random.below(4))];
+    Hooks hooks;
+    if (random.coin(0.3)) hooks.cost = std::make_shared<Wave>();
+    const Chain& chain = robot.arm().chain;
+    const ToolPath path = problem_path(problem, chain);
+    const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
+    const ArcLattice lattice = circles.with_windings(circles.circles());
+    const double most_turn = std::min(kPi, problem.limits.roll_slope * problem.resolution.ds);
+    const auto turns_slowly = [&](int layer, int a, int b) {
+      return std::abs(std::remainder(lattice.point(layer + 1, b).q[6] - lattice.point(layer, a).q[6], kTwoPi)) <= most_turn;
+    };
+    const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), turns_slowly, hooks);
+    std::optional<PlanResult> first;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.hooks = hooks;
+      const PlanResult result = plan(robot, problem, options);
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      if (!truth.solved) continue;
+      ASSERT_EQ(result.cost, truth.cost) << what << ' ' << result.planner;
+      if (!first) first = result;
+      ASSERT_EQ(result.trajectory.size(), first->trajectory.size()) << what;
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+        ASSERT_EQ(result.trajectory[i].q, first->trajectory[i].q) << what << ' ' << result.planner << " row " << i;
+    }
+    if (!truth.solved) {
+      ++infeasible;
+      continue;
+    }
+    ++solved;
+    ASSERT_EQ(free.status, PlanStatus::kSolved) << what;
+    const CheckResult check = check_trajectory(robot, problem, first->trajectory);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    Problem unturned = problem;
+    unturned.cost.roll = 0;
+    const double moves = check_trajectory(robot, unturned, first->trajectory).cost;
+    ASSERT_NEAR(check.cost, moves + plain_roll_cost(problem, first->trajectory), 1e-9 * (1 + check.cost)) << what;
+    if (hooks.cost) {
+      ++hooked;
+      continue;
+    }
+    ASSERT_NEAR(check.cost, first->cost, 1e-9 * (1 + check.cost)) << what;
+    // Without the cost the moves are no dearer, and the tool is turned no less.
+    ASSERT_LE(free.cost, moves + 1e-9) << what;
+    const double here = plain_roll_cost(problem, first->trajectory), there = plain_roll_cost(problem, free.trajectory);
+    ASSERT_LE(here, there + 1e-9 * (1 + there)) << what;
+    straighter += here < 0.9 * there;
+    dearer += moves > free.cost + 1e-6;
+  }
+  std::printf(
+      "%d problems: %d solved, %d of them with a cost of the caller's own, %d infeasible; %d straighter, %d of dearer moves\n",
+      count, solved, hooked, infeasible, straighter, dearer);
+  EXPECT_GE(solved, at_least(count / 3));
+  EXPECT_GE(hooked, at_least(count / 12));
+  EXPECT_GE(straighter, at_least(count / 6));
+  EXPECT_GE(dearer, at_least(count / 12));
 }
 
 TEST(Arms, WhatNeedsAnArmAngleSaysSo) {

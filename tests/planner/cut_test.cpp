@@ -225,6 +225,7 @@ Problem random_task(const TestRobot& robot, bool arcs, Random& random) {
   }
   if (!arcs) return problem;
   limits.step_error.reset();
+  limits.arm_slope = Limits().arm_slope;
   problem.resolution.arc = random.uniform(0.3, 0.6);
   problem.waypoints.resize(2);
   problem.resolution.ds = (problem.waypoints[1].position - problem.waypoints[0].position).norm() / (2 + random.below(3));

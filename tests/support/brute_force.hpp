@@ -47,10 +47,10 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       if (q && hooks.check) hooks.check->states({&*row, 1}, {&allowed, 1});
       if (!allowed) q.reset();
     }
-  const auto own_cost = [&](const Config& q) {
+  const auto own_cost = [&](std::size_t i, std::size_t slot) {
     double cost = 0;
-    if (hooks.cost) hooks.cost->costs({&q, 1}, {&cost, 1});
-    return lattice.rounded_cost(cost);
+    if (hooks.cost) hooks.cost->costs({&*rows[i][slot], 1}, {&cost, 1});
+    return lattice.rounded_cost(cost) + lattice.node_cost(static_cast<int>(i), static_cast<int>(slot));
   };
   const auto edge = [&](std::size_t i, std::size_t a, std::size_t b) -> std::optional<double> {
     const int layer = static_cast<int>(i), sa = static_cast<int>(a), sb = static_cast<int>(b);
@@ -84,11 +84,11 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     into[i].resize(nodes[i].size());
   }
   for (std::size_t slot = 0; slot < nodes.back().size(); ++slot)
-    if (nodes.back()[slot]) g.back()[slot] = own_cost(*rows.back()[slot]);
+    if (nodes.back()[slot]) g.back()[slot] = own_cost(layers - 1, slot);
   for (std::size_t i = layers - 1; i-- > 0;)
     for (std::size_t a = 0; a < nodes[i].size(); ++a) {
       if (!nodes[i][a]) continue;
-      const double own = own_cost(*rows[i][a]);
+      const double own = own_cost(i, a);
       for (std::size_t b = 0; b < nodes[i + 1].size(); ++b) {
         if (!nodes[i + 1][b]) continue;
         const auto cost = edge(i, a, b);

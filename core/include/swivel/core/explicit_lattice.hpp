@@ -30,6 +30,11 @@ class ExplicitLattice : public Lattice {
   [[nodiscard]] std::int64_t nodes() const override { return nodes_; }
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override { return point(layer, slot).q; }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
+  /// Those of the roll, where it is the last joint.
+  [[nodiscard]] bool has_node_costs() const override { return chain_->roll && cost_.roll > 0; }
+  [[nodiscard]] double node_cost(int layer, int slot) const override {
+    return has_node_costs() ? roll_cost(layer, point(layer, slot).q[kDof - 1]) : 0;
+  }
   [[nodiscard]] NodeFault fault(int, int) const override { return {}; }
   [[nodiscard]] double phi(int layer, int slot) const override { return point(layer, slot).phi; }
   [[nodiscard]] int branch(int layer, int slot) const override { return point(layer, slot).branch; }

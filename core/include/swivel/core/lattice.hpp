@@ -146,11 +146,23 @@ class Lattice {
   [[nodiscard]] const std::array<bool, kDof>& continuous() const { return continuous_; }
   /// What each joint's move is multiplied by before the metric: the weights, or 1/speed for CostMetric::kTime.
   [[nodiscard]] const std::array<double, kDof>& cost_scale() const { return cost_scale_; }
-  /// The least power of two that no cost_scale() exceeds; 1 where all are 0. Costs are rounded in this unit, so sums of a path's
-  /// costs are exact whatever the size of the weights.
+  /// The least power of two that no cost_scale() and no roll_cost() exceeds; 1 where all are 0. Costs are rounded in this unit, so
+  /// sums of a path's costs are exact whatever the size of the weights.
   [[nodiscard]] double cost_unit() const { return cost_unit_; }
   /// A cost of up to 2048 units, rounded as edge_cost() is.
   [[nodiscard]] double rounded_cost(double cost) const;
+  /// Whether nodes cost something by themselves, besides the edges to and from them.
+  [[nodiscard]] virtual bool has_node_costs() const { return false; }
+  /// What one costs, >= 0 and rounded.
+  [[nodiscard]] virtual double node_cost(int layer, int slot) const {
+    static_cast<void>(layer), static_cast<void>(slot);
+    return 0;
+  }
+  /// What it costs that the tool stands turned by so much (rad) at a layer: Cost::roll, for the length of path that is the layer's,
+  /// half of the step before it and half of the one after.
+  [[nodiscard]] double roll_cost(int layer, double roll) const;
+  /// That cost per rad; 0 where the roll costs nothing.
+  [[nodiscard]] double roll_weight(int layer) const;
 
  protected:
   Lattice(const Lattice&) = default;  // copied whole, as what it is
@@ -168,6 +180,7 @@ class Lattice {
  private:
   std::array<double, kDof> cost_scale_{};
   double cost_unit_ = 1;
+  std::vector<double> roll_weights_;  // by layer; empty where the roll costs nothing
   Config misfit_;
   std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each
 };

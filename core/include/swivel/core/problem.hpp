@@ -91,6 +91,7 @@ struct Resolution {
 struct Cost {
   CostMetric metric = CostMetric::kL2;
   std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};  ///< 0, or 1e-6 to 1e6
+  double roll = 0;  ///< per metre of path and rad that the roll is off the waypoints' own; 0, or 1e-6 to 1e6
   bool operator==(const Cost&) const = default;
 };
 
