@@ -71,8 +71,7 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
       problem.smooth.reset();
       problem.resolution.dphi = 0.05;
       problem.resolution.arc = 0.1;  // about as far from node to node as that
-      const std::string what =
-          "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + robot.name;
+      const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + robot.name;
       const PreparedRobot prepared(problem);
       const Chain& chain = prepared.arm().chain;
       ASSERT_EQ(prepared.arm_class().kind, ArmKind::kSrs) << what;
@@ -105,7 +104,8 @@ TEST(SrsArcs, AreNoDearerThanTheGridOfArmAngles) {
         ASSERT_TRUE(chain.tool(arcs.joints[i]).isApprox(path.layer(static_cast<int>(i)).tool, 1e-9)) << what << " layer " << i;
     }
     std::printf(
-        "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer by 1 %% but not along finer ones), %d "
+        "seed %llu, %s: %d paths, %d over the grid, %d along arcs as well (%d cheaper, %d dearer by 1 %% but not along finer "
+        "ones), %d "
         "along arcs alone\n",
         static_cast<unsigned long long>(base), robot.name.c_str(), count, solved, both, cheaper, finer, arcs_alone);
     for (auto* const some : {&ratios, &others}) {

@@ -97,6 +97,13 @@ std::vector<Case> all_cases() {
         },
         none);
   }
+  add_number(cases, "cost.roll",
+             [](Problem& p) -> double& {
+               p.roll = Roll{};
+               return p.cost.roll;
+             },
+             {-1, 1e-7, 1.1e6});
+  cases.push_back({"cost.roll", [](Problem& p) { p.cost.roll = 1; }});  // no roll is free
   add_number(cases, "start_tolerance", [](Problem& p) -> double& { return p.start_tolerance; }, {0, -1, 0.11});
   add_number(
       cases, "start_at",
