@@ -138,8 +138,33 @@ class Finder {
 struct Image {
   Place place;
   Config q;
-  int source = -1;  // slot of the layer before
+  int source = -1;  // slot of the layer before; -1: none
 };
+
+/// Adds the points of an arc at which the roll is 0, where it costs least. They take the place of images nearby.
+void add_unturned(const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc, int number, double spacing,
+                  std::vector<Image>& images) {
+  for (int chord = 0; chord < arc.chords(); ++chord) {
+    const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
+    const double from = wrap_angle(arc.q[k][kDof - 1]), to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
+    if (!(from < 0 && to > 0) && !(from > 0 && to < 0)) continue;
+    double low = 0, high = 1;
+    for (int halving = 0; halving < 30; ++halving) {
+      const double u = (low + high) / 2;
+      (wrap_angle(arc.at(chord, u)[kDof - 1]) * from > 0 ? low : high) = u;
+    }
+    const auto q = motion.point(arc, chord, low, tool);
+    if (!q) continue;
+    Image unturned{{number, chord, low, length_at(arc, chord, low), 0}, *q, -1};
+    double nearest = kCrowded * spacing;
+    std::erase_if(images, [&](const Image& image) {
+      const double gap = std::abs(image.place.length - unturned.place.length);
+      if (gap < nearest) nearest = gap, unturned.source = image.source;
+      return gap < kCrowded * spacing;
+    });
+    images.push_back(unturned);
+  }
+}
 
 /// Fills a layer.
 class Layer {
@@ -225,6 +250,7 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
     if (k + 1 < end || (arc.closed && end > first + 1)) points[k].beside[1] = static_cast<int>(k + 1 < end ? k + 1 : first);
   }
   for (const Image& image : images) {
+    if (image.source < 0) continue;
     // The node that continues the source: its image, or what stands in its way.
     std::size_t nearest = first;
     double least_gap = -1;
@@ -305,6 +331,8 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     }
     Layer layer(motion, tool, problem.resolution.arc);
     for (std::size_t k = 0; k < arcs.size(); ++k) {
+      if (chain.roll && problem.cost.roll > 0)
+        add_unturned(motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc, images[k]);
       std::stable_sort(images[k].begin(), images[k].end(),
                        [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
       layer.place(arcs[k], images[k]);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kChange = 1e3;      // weight of a coordinate that changes too much
 constexpr double kLeastMove = 1e-9;  // rad; rounds off the tip of the norm
-constexpr double kLeastRoll = 1e-4;  // rad; rounds off the tip of the roll's cost, at which optima stand
+constexpr double kLeastRoll = 1e-5;  // rad; rounds off the tip of the roll's cost, at which optima stand
 
 /// Joints of all layers at given coordinates, and their derivatives by them.
 struct Layers {
