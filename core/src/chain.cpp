@@ -175,7 +175,12 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (joint.movable() && !joint.mimic) arm.push_back(j);
   }
-  const std::size_t joints = roll ? kDof - 1 : kDof;
+  // A seventh joint that turns makes the roll one coordinate more, unless the user holds it.
+  const bool seven = arm.size() >= kDof && [&] {
+    const Joint& seventh = robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])];
+    return !roll || (seventh.type != Joint::Type::kPrismatic && hold.count(seventh.name) == 0);
+  }();
+  const std::size_t joints = seven || !roll ? kDof : kDof - 1;
   if (!roll && arm.size() == kDof - 1)
     fail(robot, "robot.tip_link: the arm from '" + base_link + "' to '" + tip_link +
                     "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
@@ -183,16 +188,11 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
   if (arm.size() < joints)
     fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
                     tip_link + "': allowed are at least seven, or six with path.roll");
-  if (roll && arm.size() > joints) {
-    const Joint& seventh = robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])];
-    if (seventh.type != Joint::Type::kPrismatic && hold.count(seventh.name) == 0)
-      fail(robot, "path.roll: the arm has seven joints: allowed are arms of six; robot.hold may name '" + seventh.name + "'");
-  }
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
       fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's " +
-                      (roll ? "six" : "seven") + " joints must turn");
+                      (seven ? "seven" : "six") + " joints must turn");
   const std::vector<double> position = held_positions(robot, hold, arm);
 
   // Parents come before children only by luck in a file: a link waits, with its children so far, for its parent.
@@ -233,7 +233,9 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
                       joint.acceleration, joint.jerk};
   }
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
-  if (roll) {
+  if (roll && seven) {
+    chain.free_roll = roll;
+  } else if (roll) {
     // X_6(q) Rot(z, -roll) is the waypoint where X_6 has turned the tool by the roll.
     chain.roll = true;
     chain.joint_names.back() = robot.find_joint("roll") < 0 ? "roll" : "tool_roll";

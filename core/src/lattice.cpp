@@ -89,21 +89,37 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     for (double& weight : roll_weights_) most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
   }
   cost_unit_ = power_of_two_from(most_costly);
-  Config bound = Config::Constant(limits_.joint_step);
-  if (chain.roll) bound[kDof - 1] = std::min(kPi, limits_.roll_slope * problem.resolution.ds);
-  row_step_bounds_.resize(timed ? static_cast<std::size_t>(layers()) - 1 : 1, bound);
-  for (int i = 0; timed && i + 1 < layers(); ++i) {
+  set_row_step_bounds(step_bounds_along(chain, path, limits_, problem.resolution));
+}
+
+std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
+                                               const Resolution& resolution) {
+  const bool timed = limits.tool_speed || limits.tool_turn_speed;
+  Config bound = Config::Constant(limits.joint_step);
+  if (chain.roll) bound[kDof - 1] = std::min(kPi, limits.roll_slope * resolution.ds);
+  std::vector<Config> bounds(timed ? static_cast<std::size_t>(path.size()) - 1 : 1, bound);
+  for (int i = 0; timed && i + 1 < path.size(); ++i) {
     const PathLayer& layer = path.layer(i);
     double dt = 0;
-    if (limits_.tool_speed) dt = std::max(dt, layer.step_length / *limits_.tool_speed);
-    if (limits_.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits_.tool_turn_speed);
+    if (limits.tool_speed) dt = std::max(dt, layer.step_length / *limits.tool_speed);
+    if (limits.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits.tool_turn_speed);
     if (dt <= 0) continue;  // a step that the given speed does not time
     for (int k = 0; k < kDof; ++k) {
-      double& most = row_step_bounds_[static_cast<std::size_t>(i)][k];
+      double& most = bounds[static_cast<std::size_t>(i)][k];
       if (!chain.roll || k + 1 < kDof) most = std::min(most, chain.limit[static_cast<std::size_t>(k)].velocity * dt);
     }
   }
+  return bounds;
+}
+
+void Lattice::set_row_step_bounds(std::vector<Config> bounds) {
+  row_step_bounds_ = std::move(bounds);
+  step_bounds_.clear();
   for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * misfit_);
+}
+
+Lattice::Between Lattice::between(int, int, const Config&, int, const Config&) const {
+  return {};
 }
 
 std::optional<Config> Lattice::row(int, int, const Config& q) const {
@@ -194,9 +210,9 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
     const Pose tool = chain.tool(q0 + t * delta);
     const Pose asked = path.at(layer, step.fraction(tool.translation()).value_or(t));
     // Of a tool that may turn about its z axis, the angle between the axes counts.
-    deviation[k] = chain.roll ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
-                                           asked.linear().col(2).dot(tool.linear().col(2)))
-                              : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
+    deviation[k] = chain.tool_may_turn() ? std::atan2(asked.linear().col(2).cross(tool.linear().col(2)).norm(),
+                                                      asked.linear().col(2).dot(tool.linear().col(2)))
+                                         : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
   }
   return deviation;
 }

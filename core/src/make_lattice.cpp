@@ -3,12 +3,14 @@
 
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
                                       const Budget& budget) {
+  if (chain.free_roll) return RollLattice::make(chain, *arm.srs, path, problem, budget);
   if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
   if (problem.limits.arm_slope != Limits().arm_slope)
     throw InputError(problem.source +
@@ -26,6 +28,17 @@ std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& 
   for (const int slot : slots) {
     const Config q = *lattice.row(static_cast<int>(rows.size()), slot);
     rows.push_back(rows.empty() ? q : Config(rows.back() + lattice.delta(rows.back(), q)));
+  }
+  return rows;
+}
+
+std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots) {
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->rows(slots);
+  std::vector<TrajectoryRow> rows;
+  rows.reserve(slots.size());
+  for (const Config& q : path_joints(lattice, slots)) {
+    const int i = static_cast<int>(rows.size()), slot = slots[rows.size()];
+    rows.push_back({lattice.path().layer(i).s, lattice.phi(i, slot), lattice.branch(i, slot), q});
   }
   return rows;
 }

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/plan.hpp"
 
+#include <algorithm>
+
 namespace swivel {
+
+bool any_rolls(const std::vector<TrajectoryRow>& rows) {
+  return std::any_of(rows.begin(), rows.end(), [](const TrajectoryRow& row) { return row.roll != 0; });
+}
 
 const char* to_string(PlanStatus status) {
   switch (status) {

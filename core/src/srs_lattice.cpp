@@ -51,8 +51,9 @@ std::string gigabytes(double bytes) {
 
 }  // namespace
 
-SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
-    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm) {
+SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
+                       std::vector<ArmPlane> planes)
+    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm), planes_(std::move(planes)) {
   const TraceSpan span("lattice");
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
@@ -111,7 +112,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     }
 
   const auto m = static_cast<std::size_t>(layers());
-  planes_ = carried_planes(arm, path, budget);
+  if (planes_.empty()) planes_ = carried_planes(arm, path, budget);
   reach_.reserve(m);
   circles_.reserve(m);  // half a kilobyte each: touched as they come
   for (int i = 0; i < layers(); ++i) {

@@ -265,18 +265,67 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   std::erase_if(corners_, [](const Corner& corner) { return corner.layer <= 0; });
 }
 
+ToolPath ToolPath::with_layers(const std::vector<int>& kept) const {
+  ToolPath path = *this;
+  path.segments_.clear();
+  path.corners_.clear();
+  path.rounded_ = path.begins_aside_ = false;
+  path.layers_.clear();
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    PathLayer& own = path.layers_.emplace_back(layer(kept[k]));
+    own.step_length = own.step_angle = 0;
+    for (int i = kept[k]; k + 1 < kept.size() && i < kept[k + 1]; ++i) {
+      own.step_length += layer(i).step_length;
+      own.step_angle += layer(i).step_angle;
+    }
+    own.step_rotation.setZero();
+  }
+  return path;
+}
+
+ToolPath ToolPath::with_rolls(const std::vector<double>& rolls) const {
+  ToolPath path = *this;
+  for (std::size_t i = 0; i < path.layers_.size(); ++i) path.layers_[i].tool = rolled(path.layers_[i].tool, rolls[i]);
+  path.unturned_ = std::make_shared<const ToolPath>(*this);
+  path.rolls_ = rolls;
+  return path;
+}
+
+Pose rolled(const Pose& pose, double roll) {
+  Pose turned = pose;
+  turned.linear() = pose.linear() * Eigen::AngleAxisd(roll, Vector3d::UnitZ()).toRotationMatrix();
+  return turned;
+}
+
+double roll_between(const Pose& pose, const Pose& tool) {
+  const Matrix3d R = pose.linear().transpose() * tool.linear();
+  return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
+}
+
 ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
                       const std::optional<PathSmoothing>& otherwise) {
   ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
                 problem.smooth ? problem.smooth : otherwise);
   if (problem.start) {
-    const Pose tool = chain.tool(*problem.start);
+    Pose tool = chain.tool(*problem.start);
+    if (chain.free_roll) {  // it stands turned as it likes
+      const double s = problem.start_at.value_or(0);
+      int i = 0;
+      while (i + 2 < path.size() && path.layer(i + 1).s < s) ++i;
+      const double length = path.layer(i).step_length, t = length > 0 ? std::clamp((s - path.layer(i).s) / length, 0.0, 1.0) : 0;
+      const Pose there = path.at(i, t);
+      tool = rolled(tool, -roll_between(there, tool));
+    }
     path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
   }
   return path;
 }
 
 Pose ToolPath::at(int i, double t) const {
+  if (unturned_) {
+    const auto k = static_cast<std::size_t>(i);
+    return rolled(unturned_->at(i, t), rolls_[k] + t * (rolls_[k + 1] - rolls_[k]));
+  }
   const PathLayer& from = layer(i);
   const PathLayer& to = layer(i + 1);
   if (rounded_ && !(begins_aside_ && i == 0)) return on_curve(segment_of(i), from.travel + t * (to.travel - from.travel));

@@ -176,6 +176,8 @@ void validate_numbers(const Field& root, const Problem& problem) {
   number(resolution("dphi"), problem.resolution.dphi, kPositive);
   if (problem.resolution.dphi > kTwoPi) fail(resolution("dphi"), "is more than a turn", "a finite number > 0, at most 2*pi");
   number(resolution("dalpha"), problem.resolution.dalpha, kPositive);
+  number(resolution("droll"), problem.resolution.droll, kPositive);
+  number(resolution("knot"), problem.resolution.knot, Range::kLength);
   number(resolution("arc"), problem.resolution.arc, kPositive);
   const Field field = root("limits");
   const Limits& limits = problem.limits;

@@ -3,6 +3,7 @@
 
 #include "explicit_cost_to_go.hpp"
 #include "grid_cost_to_go.hpp"
+#include "roll_cost_to_go.hpp"
 
 namespace swivel {
 
@@ -45,6 +46,7 @@ std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent,
                                           std::unique_ptr<CostToGo> retired) {
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
     return std::make_unique<GridCostToGo>(*grid, extent, budget, dynamic_cast<GridCostToGo*>(retired.get()));
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return std::make_unique<RollCostToGo>(*rolls, budget);
   return std::make_unique<ExplicitCostToGo>(lattice, budget);
 }
 

@@ -181,7 +181,8 @@ class Search {
         if (slot >= 0) frontier.push_back({x.layer + by, slot, x.failure});
       }
       for (const int by : {1, -1})
-        if (const int slot = lattice_.beside(x.layer, x.slot, by); slot >= 0) frontier.push_back({x.layer, slot, x.failure});
+        for (const int slot : {lattice_.beside(x.layer, x.slot, by), lattice_.across(x.layer, x.slot, by)})
+          if (slot >= 0) frontier.push_back({x.layer, slot, x.failure});
     };
     for (const Failure& node : failed) add_neighbours(node);
     std::vector<NodeQuestion> questions;

@@ -106,7 +106,9 @@ Schema path() {
            "lets the tool round corners, on a curve that is twice continuously differentiable; `null` forbids it"},
           {"roll", or_null(either(one_of({"free"}), numbers(2, kFinite))), "rad",
            in_words("the tool stands as the waypoints have it"),
-           "`free`, or `[lower, upper]`: how far the tool may stand turned about its own z axis, of arms of six joints"},
+           "`free`, or `[lower, upper]`: how far the tool may stand turned about its own z axis, of arms of six joints and of "
+           "S-R-S arms "
+           "of seven"},
       },
       {{{"waypoints", "file"}, true}});
 }
@@ -129,6 +131,10 @@ Schema resolution() {
                       "nodes besides at the ends of arcs of arm angles within the joint limits, and in the middles of narrow ones: "
                       "no arc is missed; S-R-S arms"},
                      {"arc", number(kPositive), "rad", otherwise(d.arc), "self-motion between nodes, of arms without an arm angle"},
+                     {"droll", number(kTurn), "rad", otherwise(d.droll), "widest step of `path.roll`, of arms of seven joints"},
+                     {"knot", number(kLength), "m", otherwise(d.knot),
+                      "with `path.roll`, of arms of seven joints: about how far along the path roll and arm angle are chosen anew; "
+                      "between they change linearly, and every layer is tested"},
                  });
 }
 

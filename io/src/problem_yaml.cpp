@@ -286,6 +286,8 @@ class ProblemReader {
     set(section, "dphi", resolution.dphi);
     set(section, "dalpha", resolution.dalpha);
     set(section, "arc", resolution.arc);
+    set(section, "droll", resolution.droll);
+    set(section, "knot", resolution.knot);
     if (const auto arcs = section.find("arcs")) resolution.arcs = word(*arcs, {false, true});
   }
 

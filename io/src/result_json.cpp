@@ -23,6 +23,7 @@ Json lattice_json(const LatticeInfo& lattice, bool solved) {
     json["branches"] = lattice.grid->branches;
     json["windings"] = lattice.grid->windings;
     json["window"] = lattice.grid->window;
+    if (lattice.grid->rolls) json["rolls"] = *lattice.grid->rolls;
   }
   if (lattice.arcs) json["arcs"] = *lattice.arcs;
   json["nodes"] = lattice.nodes;
@@ -137,9 +138,12 @@ Json summary_json(const PlanResult& result) {
 
 Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   Json rows = Json::array();
-  for (const TrajectoryRow& row : trajectory)
+  const bool roll = any_rolls(trajectory);
+  for (const TrajectoryRow& row : trajectory) {
     rows.push_back(
         {{"s", row.s}, {"phi", row.phi}, {"branch", row.branch}, {"joints", std::vector<double>(row.q.begin(), row.q.end())}});
+    if (roll) rows.back()["roll"] = row.roll;
+  }
   return rows;
 }
 

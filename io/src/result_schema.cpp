@@ -86,6 +86,7 @@ Schema lattice() {
           key_of_some("branches", integer(), "of solutions at one arm angle, of S-R-S arms"),
           key_of_some("windings", integer(), "images of joints with more than a turn, of S-R-S arms"),
           key_of_some("window", integer(), "steps of arm angle between neighbours, of S-R-S arms"),
+          key_of_some("rolls", integer(), "of S-R-S arms with `path.roll`: turns of the tool that are told apart"),
           key_of_some("arcs", integer(), "of self-motion, in all layers, of other arms"),
           key("nodes", integer(), "in all layers"),
           key("merged_waypoints", integer(), "equal neighbours"),

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
 #include "bad_input.hpp"
 #include "files.hpp"
 #include "schema.hpp"
@@ -21,10 +23,12 @@ const Schema& motion_schema() {
 
 std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names) {
   std::string text;
-  for (const std::string& name : csv_header(motion_schema(), joint_names)) text += (text.empty() ? "" : ",") + csv_field(name);
+  const bool roll = std::any_of(motion.rows.begin(), motion.rows.end(), [](const TimedRow& row) { return row.row.roll != 0; });
+  for (const std::string& name : csv_header(motion_schema(), joint_names, roll))
+    text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
   for (const TimedRow& row : motion.rows) {
-    text += format_double(row.t) + ',' + trajectory_fields(row.row);
+    text += format_double(row.t) + ',' + trajectory_fields(row.row, roll);
     for (const Config* values : {&row.v, &row.a})
       for (const double value : *values) text += ',' + format_double(value);
     text += '\n';
@@ -33,18 +37,20 @@ std::string to_timed_csv(const TimedPath& motion, const JointNames& joint_names)
 }
 
 TrajectoryFile load_trajectory_file(const std::filesystem::path& csv, const JointNames& joint_names) {
-  const CsvTable table(csv, {csv_header(trajectory_schema(), joint_names), csv_header(motion_schema(), joint_names)});
-  const bool timed = table.header() == 1;
+  const CsvTable table(csv, {csv_header(trajectory_schema(), joint_names, false), csv_header(motion_schema(), joint_names, false),
+                             csv_header(trajectory_schema(), joint_names, true), csv_header(motion_schema(), joint_names, true)});
+  const bool timed = table.header() % 2 == 1, roll = table.header() >= 2;
   TrajectoryFile file;
   for (std::size_t k = 0; k < table.rows(); ++k) {
-    file.rows.push_back(read_trajectory_row(table, k, timed ? 1 : 0));
+    const ReadRow read = read_trajectory_row(table, k, timed ? 1 : 0, roll);
+    file.rows.push_back(read.row);
     if (!timed) continue;
     const std::span<const double> values = table.row(k);
     TimedRow row;
     row.t = values[0];
     row.row = file.rows.back();
-    row.v = Config::Map(values.data() + 11);
-    row.a = Config::Map(values.data() + 18);
+    row.v = Config::Map(values.data() + 1 + read.columns);
+    row.a = Config::Map(values.data() + 1 + read.columns + kDof);
     if (k > 0 && !(row.t > file.timed.back().t))
       bad_input(table.where(k) + ": t", "is " + format_double(row.t), "times that ascend from row to row");
     file.timed.push_back(row);

@@ -17,6 +17,8 @@ const Schema& trajectory_schema() {
                    "carried arm angle; `check` takes it modulo 2π. Of arms that are not S-R-S a generalised arm angle, for plots, "
                    "which `check` "
                    "does not look at; with `path.roll` the roll, which it does"},
+                  {"roll", number(), "rad", in_words("no such column: 0"),
+                   "of seven joints with `path.roll`: by how much the tool stands turned about its own z axis"},
                   {"branch", integer(), "", required(),
                    "0 to 7, the sum of 1 (shoulder), 2 (wrist), 4 (elbow), each where the sine of that angle, measured from its "
                    "singular pose, "
@@ -26,10 +28,11 @@ const Schema& trajectory_schema() {
   return schema;
 }
 
-std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names) {
+std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names, bool roll) {
   constexpr std::string_view kJoint = "JOINT";
   std::vector<std::string> header;
   for (const std::string& name : row.key_names()) {
+    if (name == "roll" && !roll) continue;
     if (!name.starts_with(kJoint)) {
       header.push_back(name);
       continue;
@@ -39,31 +42,37 @@ std::vector<std::string> csv_header(const Schema& row, const std::array<std::str
   return header;
 }
 
-std::string trajectory_fields(const TrajectoryRow& row) {
-  std::string text = format_double(row.s) + ',' + format_double(row.phi) + ',' + std::to_string(row.branch);
+std::string trajectory_fields(const TrajectoryRow& row, bool roll) {
+  std::string text = format_double(row.s) + ',' + format_double(row.phi) + ',';
+  if (roll) text += format_double(row.roll) + ',';
+  text += std::to_string(row.branch);
   for (const double angle : row.q) text += ',' + format_double(angle);
   return text;
 }
 
-TrajectoryRow read_trajectory_row(const CsvTable& table, std::size_t k, std::size_t first) {
+ReadRow read_trajectory_row(const CsvTable& table, std::size_t k, std::size_t first, bool roll) {
   const std::span<const double> values = table.row(k).subspan(first);
-  const double branch = values[2];
+  ReadRow read;
+  const auto next = [&] { return values[read.columns++]; };
+  read.row.s = next();
+  read.row.phi = next();
+  if (roll) read.row.roll = next();
+  const double branch = next();
   if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
     bad_input(table.where(k) + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
-  TrajectoryRow row;
-  row.s = values[0];
-  row.phi = values[1];
-  row.branch = static_cast<int>(branch);
-  row.q = Config::Map(values.data() + 3);
-  return row;
+  read.row.branch = static_cast<int>(branch);
+  read.row.q = Config::Map(values.data() + read.columns);
+  read.columns += kDof;
+  return read;
 }
 
 std::string to_csv(const PlanResult& result) {
   std::string text;
-  for (const std::string& name : csv_header(trajectory_schema(), result.joint_names))
+  const bool roll = any_rolls(result.trajectory);
+  for (const std::string& name : csv_header(trajectory_schema(), result.joint_names, roll))
     text += (text.empty() ? "" : ",") + csv_field(name);
   text += '\n';
-  for (const TrajectoryRow& row : result.trajectory) text += trajectory_fields(row) + '\n';
+  for (const TrajectoryRow& row : result.trajectory) text += trajectory_fields(row, roll) + '\n';
   return text;
 }
 
@@ -72,10 +81,11 @@ void write_trajectory(const std::filesystem::path& csv, const PlanResult& result
 }
 
 std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {
-  const CsvTable table(csv, csv_header(trajectory_schema(), joint_names));
+  const CsvTable table(csv,
+                       {csv_header(trajectory_schema(), joint_names, false), csv_header(trajectory_schema(), joint_names, true)});
   std::vector<TrajectoryRow> rows;
   rows.reserve(table.rows());
-  for (std::size_t k = 0; k < table.rows(); ++k) rows.push_back(read_trajectory_row(table, k, 0));
+  for (std::size_t k = 0; k < table.rows(); ++k) rows.push_back(read_trajectory_row(table, k, 0, table.header() == 1).row);
   return rows;
 }
 

@@ -121,7 +121,7 @@ class Check {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       options_.budget.poll();
       const bool is_sound = sound(k);
-      tools_.push_back(rows_[k].q.allFinite() ? chain_.tool(rows_[k].q) : Pose::Identity());
+      tools_.push_back(rows_[k].q.allFinite() ? tool_of(rows_[k]) : Pose::Identity());
       candidates_.push_back(is_sound ? places_of(k) : std::vector<Candidate>{});
     }
     choose_places();
@@ -160,6 +160,17 @@ class Check {
     result_.failures.emplace_back(line);
   }
 
+  /// The tool as the path has it: where it stands turned about its own axis, as the row says, turned back.
+  [[nodiscard]] Pose tool_of(const TrajectoryRow& row) const {
+    const Pose tool = chain_.tool(row.q);
+    return chain_.free_roll ? rolled(tool, -row.roll) : tool;
+  }
+  [[nodiscard]] double roll_change(std::size_t k) const {
+    if (!chain_.free_roll) return 0;
+    const double change = rows_[k].roll - rows_[k - 1].roll;
+    return chain_.free_roll->upper - chain_.free_roll->lower >= kTwoPi - 1e-9 ? wrap_angle(change) : change;
+  }
+
   [[nodiscard]] bool examined(std::size_t k) const { return !candidates_[k].empty(); }
   [[nodiscard]] double place(std::size_t k) const { return candidates_[k][chosen_[k]].place; }
   [[nodiscard]] const char* joint_name(std::size_t j) const { return chain_.joint_names[j].c_str(); }
@@ -167,8 +178,13 @@ class Check {
   /// Values and limits of a row.
   bool sound(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
-    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !row.q.allFinite()) {
+    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !std::isfinite(row.roll) || !row.q.allFinite()) {
       fail("row %zu: has values that are not finite", k);
+      return false;
+    }
+    if (const auto& range = chain_.free_roll; range && range->upper - range->lower < kTwoPi - 1e-9 &&
+                                              !(row.roll >= range->lower - kPose && row.roll <= range->upper + kPose)) {
+      fail("row %zu: roll %.9g is outside its range", k, row.roll);
       return false;
     }
     bool inside = true;
@@ -320,7 +336,9 @@ class Check {
 
   /// From row k - 1 to row k.
   [[nodiscard]] ToolMotion motion_to(std::size_t k) const {
-    return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]}, at_waypoints_, options_.margins ? 4 : 1);
+    const std::array<double, 2> rolls{-rows_[k - 1].roll, -rows_[k - 1].roll - roll_change(k)};
+    return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]}, at_waypoints_, options_.margins ? 4 : 1,
+                       chain_.free_roll ? rolls : std::array<double, 2>{});
   }
   /// From a layer to the next.
   static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
@@ -401,6 +419,7 @@ class Check {
     const int layer = static_cast<int>(std::floor(place(k)));
     ArmPlane plane = planes_[static_cast<std::size_t>(layer)];
     if (layer < place(k)) plane = carry_plane(*arm_, plane, pose_at(path_, place(k)));
+    if (chain_.free_roll) plane = carry_plane(*arm_, plane, rolled(pose_at(path_, place(k)), row.roll));
     const double phi = arm_angle(*arm_, plane, row.q);
     if (!(std::abs(wrap_angle(row.phi - phi)) <= kArmAngle)) fail("row %zu: phi is %.6g, that of the joints %.6g", k, row.phi, phi);
 
@@ -498,6 +517,12 @@ class Check {
       const double moved = std::abs(move[static_cast<Eigen::Index>(worst.joint)]);
       fail("rows %zu-%zu: joint '%s' moves by %.6g rad, joint_step and speeds allow %.6g", k - 1, k, joint_name(worst.joint), moved,
            moved - worst.by);
+      return false;
+    }
+    const auto travel = [&](double at) { return path_.layer(static_cast<int>(at)).travel; };
+    const double way = travel(std::ceil(place(k))) - travel(std::floor(place(k - 1)));
+    if (const double turned = std::abs(roll_change(k)); !(turned <= limits_.roll_slope * way + kArmAngle)) {
+      fail("rows %zu-%zu: the roll changes by %.6g rad, roll_slope allows %.6g", k - 1, k, turned, limits_.roll_slope * way);
       return false;
     }
     for (std::size_t j = 0; j < kDof; ++j) {

@@ -166,6 +166,7 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
   budget_.poll();
   const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
   if (!qa || !qb) return false;
+  if (lattice_->has_layers_between()) return edge_of_layers(x, *qa, *qb, open, queries.whole);
   const Config move = lattice_->delta(*qa, *qb);
   if (!open.only_changed && ((lattice_->has_own_rows() && !lattice_->row_step_allowed(x.layer, move)) ||
                              !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
@@ -177,8 +178,31 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
   return !blocked;
 }
 
+/// Every row between is asked as a node is, every move from row to row as an edge.
+bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb, Open& open, World::Query& query) {
+  Lattice::Between between = lattice_->between(x.layer, x.a, qa, x.b, qb);
+  if (between.fault != Lattice::Between::Fault::kNone) return false;
+  for (const Config& q : between.rows)
+    if (const auto pair = query.next_below(q, Keep::kNode)) {
+      open.pair = *pair;
+      return false;
+    }
+  if (edge_mode_ == EdgeMode::kNodes) return true;
+  between.rows.push_back(qb);
+  Config from = qa;
+  for (const Config& row : between.rows) {
+    const Config to = from + lattice_->delta(from, row);
+    if (const auto pair = edge_blocked(query, rule_, from, to, budget_)) {
+      open.pair = *pair;
+      return false;
+    }
+    from = to;
+  }
+  return true;
+}
+
 bool CollisionValidity::asks_edges() const {
-  return lattice_->has_own_rows() || lattice_->asks_path_error() ||
+  return lattice_->has_own_rows() || lattice_->has_layers_between() || lattice_->asks_path_error() ||
          (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 

@@ -55,6 +55,8 @@ class CollisionValidity final : public Validity {
   /// Whether the pair is too near in the node's row, wherever that is.
   [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;
   [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
+  [[nodiscard]] bool edge_of_layers(const EdgeQuestion& question, const Config& qa, const Config& qb, Open& open,
+                                    World::Query& query);
   /// Lattice::row, remembered by each worker for a while: a path's nodes are asked about, and then its edges.
   [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q, int worker);
 

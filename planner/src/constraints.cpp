@@ -182,6 +182,10 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   if (!lattice_.in_window(layer, a, b)) found.add(kArmSlope);
   const Config delta = lattice_.delta(qa, qb);
   const Limits& limits = lattice_.limits();
+  if (lattice_.has_layers_between()) {
+    if (!found.done()) edge_of_layers(layer, a, qa, b, qb, found);
+    return found.uncounted ? of(kCount) - 1 : found.set;
+  }
   const Config& bound = lattice_.row_step_bound(layer);
   const auto add_steps = [&](const Config& moved, const Config& more) {
     for (int k = 0; k < kDof; ++k) {
@@ -220,6 +224,48 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   return found.uncounted ? of(kCount) - 1 : found.set;  // all: none of them alone would help
 }
 
+/// Of the rows between and the moves from one to the next as well: the first that is at fault says what is violated.
+void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found) {
+  using Fault = Lattice::Between::Fault;
+  const Lattice::Between between = lattice_.between(layer, a, qa, b, qb);
+  moves_ += 10 * static_cast<std::int64_t>(between.rows.size() + 1);
+  switch (between.fault) {
+    case Fault::kNone:
+      break;
+    case Fault::kNoIk:
+    case Fault::kSingular:
+      found.uncounted = true;  // no removal would help
+      return;
+    case Fault::kLimit:
+      for (int k = 0; k < kDof; ++k)
+        if (between.joints >> k & 1) found.add(limit_beyond(k, between.q));
+      return;
+    case Fault::kManipulability:
+      found.add(kManipulability);
+      return;
+    case Fault::kStep:
+      found.add(kJointStep);
+      return;
+    case Fault::kPathError:
+      found.add(kPathError);
+      return;
+    case Fault::kAngleError:
+      found.add(kAngleError);
+      return;
+  }
+  for (const Config& q : between.rows)
+    if (const auto first = query_.first_below(q, Keep::kNode)) {
+      if (!found.add(pair(*first))) add_other_pairs(q, Keep::kNode, found);
+      if (found.done()) return;
+    }
+  if (lattice_.limits().edges != EdgeMode::kContinuous) return;
+  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
+    const Config& from = k == 0 ? qa : between.rows[k - 1];
+    const Config to = k < between.rows.size() ? between.rows[k] : Config(from + lattice_.delta(from, qb));
+    if (const auto first = edge_blocked(query_, rule_, from, to, budget_); first && found.add(pair(*first))) return;
+  }
+}
+
 std::optional<double> Constraints::clearance(const BodyPair& pair, const Config& q, double most) {
   double low = 0, high = most;  // below `high`, not below `low`
   constexpr double kContact = 1e-6, kTelling = 1e-5;
@@ -254,6 +300,10 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
 
 Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) const {
   Cause cause = this->cause(constraint);
+  if (lattice_.has_layers_between()) {
+    cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
+    return cause;
+  }
   const Config delta = lattice_.delta(qa, qb);
   const auto most_of = [](const std::array<double, 3>& x) { return *std::max_element(x.begin(), x.end()); };
   switch (cause.kind) {

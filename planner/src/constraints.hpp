@@ -91,6 +91,7 @@ class Constraints {
   [[nodiscard]] int met(const BodyPair& pair);
   [[nodiscard]] std::pair<double, double> limits_of(int k) const;
   void add_other_pairs(const Config& q, const Level& level, Violations& found);
+  void edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
 
   const Lattice& lattice_;

@@ -24,6 +24,7 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
     first_->edges(questions, answers);
   else
     std::fill(answers.begin(), answers.end(), std::uint8_t{1});
+  if (check_ && lattice_->has_layers_between()) return check_layers_between(questions, answers);
   if (!check_.checks_motions()) return;
   const TraceSpan span("check of motions");
   motions_.clear();
@@ -35,6 +36,31 @@ void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<st
   auto allowed = check_.motions(motions_).begin();
   for (std::uint8_t& answer : answers)
     if (answer) answer = *allowed++ ? 1 : 0;
+}
+
+void HookedValidity::check_layers_between(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
+  const TraceSpan span("check of layers between");
+  for (std::size_t k = 0; k < questions.size(); ++k) {
+    if (!answers[k]) continue;
+    const EdgeQuestion& x = questions[k];
+    const Config begin = state(x.layer, x.a, x.qa), end = state(x.layer + 1, x.b, x.qb);
+    states_ = lattice_->between(x.layer, x.a, begin, x.b, end).rows;
+    const auto allowed = check_.states(states_);
+    bool passes = std::all_of(allowed.begin(), allowed.end(), [](auto one) { return one; });
+    if (passes && check_.checks_motions()) {
+      motions_.clear();
+      Config from = begin;
+      states_.push_back(end);
+      for (const Config& row : states_) {
+        const Config to = from + lattice_->delta(from, row);
+        motions_.push_back({from, to});
+        from = to;
+      }
+      const auto moves = check_.motions(motions_);
+      passes = std::all_of(moves.begin(), moves.end(), [](auto one) { return one; });
+    }
+    answers[k] = passes ? 1 : 0;
+  }
 }
 
 void HookedValidity::costs(std::span<const NodeQuestion> questions, std::span<double> costs) {

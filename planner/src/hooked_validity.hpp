@@ -22,6 +22,7 @@ class HookedValidity final : public Validity {
   [[nodiscard]] bool asks_costs() const override { return cost_ || lattice_->has_node_costs(); }
 
  private:
+  void check_layers_between(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers);
   /// What the caller's hooks see of a node: its row (Lattice::row), where it has one.
   [[nodiscard]] Config state(int layer, int slot, const Config& node) const {
     return lattice_->has_own_rows() ? lattice_->row(layer, slot, node).value_or(node) : node;

@@ -46,7 +46,9 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
     if (i % 64 == 0) budget.poll(Stage::kMeasuring, i, rows);
     const Config& q = trajectory[static_cast<std::size_t>(i)].q;
     manipulability = std::min(manipulability, robot.arm().chain.manipulability(q));
-    if (const auto& srs = robot.arm_class().srs) arm_angle.push_back(conventional_arm_angle(*srs, path.layer(i).tool, q));
+    if (const auto& srs = robot.arm_class().srs)
+      arm_angle.push_back(
+          conventional_arm_angle(*srs, rolled(path.layer(i).tool, trajectory[static_cast<std::size_t>(i)].roll), q));
   }
   if (const auto nearest = nearest_approach(world, trajectory, Seek::kMarginAndLeast, budget)) {
     const World::Query::Clearance& c = nearest->clearance;

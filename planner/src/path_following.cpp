@@ -103,7 +103,7 @@ Pose pose_at(const ToolPath& path, double place) {
 }
 
 ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
-                       const PoseDistance& tolerance, int fewest) {
+                       const PoseDistance& tolerance, int fewest, const std::array<double, 2>& rolls) {
   constexpr double kMost = 2048;
   const Config move = (to - from).cwiseAbs();
   // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half
@@ -120,7 +120,11 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
   ToolMotion motion;
   motion.error = {chord.position / parts / parts, chord.angle / parts / parts};
   motion.poses.push_back(ends[0]);
-  for (int m = 1; m < parts; ++m) motion.poses.push_back(chain.tool(from + static_cast<double>(m) / parts * (to - from)));
+  for (int m = 1; m < parts; ++m) {
+    const double t = static_cast<double>(m) / parts, roll = rolls[0] + t * (rolls[1] - rolls[0]);
+    const Pose tool = chain.tool(from + t * (to - from));
+    motion.poses.push_back(roll != 0 ? rolled(tool, roll) : tool);
+  }
   motion.poses.push_back(ends[1]);
   return motion;
 }

@@ -22,9 +22,10 @@ struct ToolMotion {
   PoseDistance error;
 };
 /// Cuts the move so that the error stays below 1 % of the tolerance (but 1e-6 m and rad, and 2,048 parts, are fine enough).
-/// `ends`: the tool's poses at both. `fewest` parts, for those who measure.
+/// `ends`: the tool's poses at both. `fewest` parts, for those who measure. `rolls`: by which the tool is turned about its own z
+/// axis besides, at both.
 [[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
-                                     const PoseDistance& tolerance, int fewest = 4);
+                                     const PoseDistance& tolerance, int fewest = 4, const std::array<double, 2>& rolls = {});
 
 /// A place on a tool path is a layer's number plus the fraction of the step from it: 3.5 is half way from layer 3 to layer 4.
 [[nodiscard]] Pose pose_at(const ToolPath& path, double place);

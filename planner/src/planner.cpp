@@ -18,6 +18,7 @@
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/memory.hpp"
+#include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
@@ -63,20 +64,10 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
                      " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
-std::vector<TrajectoryRow> rows_of(const Lattice& lattice, const SlotPath& path) {
-  std::vector<TrajectoryRow> rows;
-  rows.reserve(path.size());
-  for (const Config& q : path_joints(lattice, path)) {
-    const int i = static_cast<int>(rows.size()), slot = path[rows.size()];
-    rows.push_back({lattice.path().layer(i).s, lattice.phi(i, slot), lattice.branch(i, slot), q});
-  }
-  return rows;
-}
-
 /// Of a path that may end anywhere: as far as its joints stay within their limits.
 std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
-  for (; !path.empty() && rows.empty(); path.pop_back()) rows = rows_of(lattice, path);
+  for (; !path.empty() && rows.empty(); path.pop_back()) rows = path_rows(lattice, path);
   return rows;
 }
 
@@ -89,6 +80,10 @@ LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
   info.complete = arm.complete();
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
     info.grid = LatticeInfo::Grid{grid->angles(), kBranches, grid->windings(), grid->window()};
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
+    const SrsLattice& one = rolls->at_roll(0);
+    info.grid = LatticeInfo::Grid{one.angles(), kBranches, one.windings(), rolls->widest_phi_window(), rolls->rolls()};
+  }
   if (const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice)) info.arcs = arcs->arcs();
   return info;
 }
@@ -107,11 +102,11 @@ void add_counters(const Counters& more, Counters& sum) {
 
 /// The cost of a path's rows, where its nodes cost `cost`.
 double cost_of_rows(const Lattice& lattice, const SlotPath& path, const std::vector<TrajectoryRow>& rows, double cost) {
-  for (std::size_t i = 1; i < rows.size(); ++i) {
+  for (std::size_t i = 1; i < path.size(); ++i) {
     const int layer = static_cast<int>(i);
-    const Config nodes = lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i]));
-    cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q)) - lattice.edge_cost(nodes);
+    cost -= lattice.edge_cost(lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
   }
+  for (std::size_t i = 1; i < rows.size(); ++i) cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
   return cost;
 }
 
@@ -303,6 +298,7 @@ struct Planner::Impl {
   Found search(Searched& searched, bool remembered, const EdgeRule& rule, const PlanOptions& options, const Budget& budget,
                PlanResult& result) {
     const Lattice& lattice = *searched.lattice;
+    remembered = remembered && !lattice.has_layers_between();  // of edges one clearance is kept, not one of each row
     Executor& threads = threads_of(options);
     Counters counters;
     Found found;
@@ -361,9 +357,10 @@ struct Planner::Impl {
     result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
-      result.trajectory = rows_of(lattice, path);
+      result.trajectory = path_rows(lattice, path);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
-      if (lattice.has_own_rows()) result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
+      if (lattice.has_own_rows() || lattice.has_layers_between())
+        result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();
     watch.lap();

@@ -178,9 +178,73 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
   }
 }
 
+/// What a fault between two layers is called.
+std::optional<Cause> Witnesses::of_fault(const Lattice::Between& between) const {
+  using Fault = Lattice::Between::Fault;
+  switch (between.fault) {
+    case Fault::kNone:
+      return std::nullopt;
+    case Fault::kNoIk:
+      return of_kind(Cause::Kind::kReach);
+    case Fault::kSingular:
+      return of_kind(Cause::Kind::kSingular);
+    case Fault::kManipulability:
+      return of_kind(Cause::Kind::kManipulability);
+    case Fault::kStep:
+      return of_kind(Cause::Kind::kJointStep);
+    case Fault::kPathError:
+      return of_kind(Cause::Kind::kPathError);
+    case Fault::kAngleError:
+      return of_kind(Cause::Kind::kAngleError);
+    case Fault::kLimit:
+      break;
+  }
+  int joint = 0;
+  while (joint + 1 < kDof && ((between.joints >> joint) & 1) == 0) ++joint;
+  return limit_of(joint, side_of(between.q, joint));
+}
+
+bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move) {
+  const Lattice::Between between = lattice_.between(layer, a, move.from, b, move.to);
+  if (const auto fault = of_fault(between)) {
+    if (cause.kind != Cause::Kind::kLimit || fault->kind != cause.kind) return fault->kind == cause.kind;
+    return ((between.joints >> about.joint) & 1) != 0 && side_of(between.q, about.joint) == cause.side;
+  }
+  if (cause.kind != Cause::Kind::kPair) return false;
+  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
+    const Config& from = k == 0 ? move.from : between.rows[k - 1];
+    const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
+    for (const BodyPair& pair : about.pairs)
+      if ((k < between.rows.size() && query_.pair_below(to, pair, Keep::kNode)) ||
+          (lattice_.limits().edges == EdgeMode::kContinuous && edge_blocked_by(pair, query_, rule_, from, to, budget_)))
+        return true;
+  }
+  return false;
+}
+
+int Witnesses::of_layers(int layer, int a, int b, const Move& move, int likely) {
+  const Lattice::Between between = lattice_.between(layer, a, move.from, b, move.to);
+  if (const auto fault = of_fault(between)) return number(*fault);
+  if (likely >= 0 &&
+      removes_layers(causes_[static_cast<std::size_t>(likely)], about_[static_cast<std::size_t>(likely)], layer, a, b, move))
+    return likely;
+  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
+    const Config& from = k == 0 ? move.from : between.rows[k - 1];
+    const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
+    if (k < between.rows.size())
+      if (const auto pair = query_.first_below(to, Keep::kNode)) return number(*pair);
+    if (lattice_.limits().edges == EdgeMode::kContinuous)
+      if (const auto pair = edge_blocked(query_, rule_, from, to, budget_)) return number(*pair);
+  }
+  return -1;
+}
+
 bool Witnesses::removes_edge(int witness, int layer, int a, int b) {
   budget_.poll();
   const auto asked = move(layer, a, b);
+  if (asked && lattice_.has_layers_between())
+    return removes_layers(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b,
+                          *asked);
   return asked &&
          removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
 }
@@ -189,6 +253,7 @@ int Witnesses::of_edge(int layer, int a, int b, int likely) {
   budget_.poll();
   const auto asked = move(layer, a, b);
   if (!asked) return -1;
+  if (lattice_.has_layers_between()) return of_layers(layer, a, b, *asked, likely);
   const auto removes = [&](int witness) {
     return witness >= 0 &&
            removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);

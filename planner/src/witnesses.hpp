@@ -48,6 +48,10 @@ class Witnesses {
   };
   [[nodiscard]] std::optional<Move> move(int layer, int a, int b) const;
   [[nodiscard]] bool removes_move(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
+  // Of lattices with layers between theirs.
+  [[nodiscard]] std::optional<Cause> of_fault(const Lattice::Between& between) const;
+  [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
+  [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int likely);
   [[nodiscard]] Cause limit_of(int joint, Cause::Side side) const;
 
   const Lattice& lattice_;

@@ -131,8 +131,8 @@ void serialize(A& archive, Limits& x) {
 }
 template <class A>
 void serialize(A& archive, Resolution& x) {
-  auto& [ds, dphi, dalpha, arc, arcs] = x;
-  archive(ds, dphi, dalpha, arc, arcs);
+  auto& [ds, dphi, dalpha, arc, arcs, droll, knot] = x;
+  archive(ds, dphi, dalpha, arc, arcs, droll, knot);
 }
 template <class A>
 void serialize(A& archive, Cost& x) {
@@ -175,8 +175,8 @@ void serialize(A& archive, Problem& x) {
 
 template <class A>
 void serialize(A& archive, TrajectoryRow& x) {
-  auto& [s, phi, branch, q] = x;
-  archive(s, phi, branch, q);
+  auto& [s, phi, branch, q, roll] = x;
+  archive(s, phi, branch, q, roll);
 }
 template <class A>
 void serialize(A& archive, Counters& x) {
@@ -185,8 +185,8 @@ void serialize(A& archive, Counters& x) {
 }
 template <class A>
 void serialize(A& archive, LatticeInfo::Grid& x) {
-  auto& [phi, branches, windings, window] = x;
-  archive(phi, branches, windings, window);
+  auto& [phi, branches, windings, window, rolls] = x;
+  archive(phi, branches, windings, window, rolls);
 }
 template <class A>
 void serialize(A& archive, LatticeInfo& x) {

@@ -437,6 +437,8 @@ void bind_task(py::module_& m) {
       .member("dalpha", &Resolution::dalpha, "Of tool rotation, rad.")
       .member("arc", &Resolution::arc, "Self-motion between nodes, of arms that have no arm angle, rad.")
       .member("arcs", &Resolution::arcs, "Nodes on arcs of arm angles that the grid misses.")
+      .member("droll", &Resolution::droll, "Of the roll, of arms of seven joints, rad.")
+      .member("knot", &Resolution::knot, "m, between layers at which such arms choose roll and arm angle anew.")
       .finish();
   PlainStruct<Limits>(m, "Limits",
                       "What is to be kept, as keywords: docs/formats.md. None: no such limit, or the default named there.")

@@ -176,7 +176,9 @@ class Resolution:
     dalpha: float
     arc: float
     arcs: bool
-    def __init__(self, *, ds: float = ..., dphi: float = ..., dalpha: float = ..., arc: float = ..., arcs: bool = ...) -> None: ...
+    droll: float
+    knot: float
+    def __init__(self, *, ds: float = ..., dphi: float = ..., dalpha: float = ..., arc: float = ..., arcs: bool = ..., droll: float = ..., knot: float = ...) -> None: ...
 
 class Limits:
     clearance: float

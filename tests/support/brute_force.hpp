@@ -57,6 +57,23 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
     if (!in_window(layer, sa, sb)) return std::nullopt;
     const Config &qa = *nodes[i][a], &qb = *nodes[i + 1][b];
     const Config &row_a = *rows[i][a], &row_b = *rows[i + 1][b];
+    if (lattice.has_layers_between()) {
+      const Config delta = lattice.delta(qa, qb);
+      for (int j = 0; j < kDof; ++j)
+        if (std::abs(delta[j]) > lattice.step_bound(layer)[j]) return std::nullopt;
+      Lattice::Between between = lattice.between(layer, sa, row_a, sb, row_b);
+      if (between.fault != Lattice::Between::Fault::kNone) return std::nullopt;
+      for (const Config& q : between.rows)
+        if (query.first_below(q, Keep::kNode)) return std::nullopt;
+      between.rows.push_back(row_b);
+      Config from = row_a;
+      for (const Config& row : between.rows) {
+        const Config to = from + lattice.delta(from, row);
+        if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, from, to)) return std::nullopt;
+        from = to;
+      }
+      return lattice.edge_cost(delta);
+    }
     Config delta = qb - qa, row_delta = row_b - row_a;
     for (int j = 0; j < kDof; ++j) {
       for (Config* move : {&delta, &row_delta})

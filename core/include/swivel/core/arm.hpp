@@ -37,6 +37,10 @@ struct Chain {
   /// The last joint is the roll: the arm's six joints have turned the tool by it about the tool's z axis, and tool(q) is the pose
   /// without that turn, the waypoint's.
   bool roll = false;
+  /// Of seven joints whose tool may stand turned about its own z axis as well: within which rolls, rad. tool(q) is then the pose of
+  /// the tool itself, turned.
+  std::optional<Roll> free_roll;
+  [[nodiscard]] bool tool_may_turn() const { return roll || free_roll; }
   /// exp([S] q) = still + cos(q) cosine + sin(q) sine, homogeneous matrices. Lynch & Park, Eq. (3.51) and (3.88).
   struct Turn {
     Eigen::Matrix4d still, cosine, sine;
@@ -66,10 +70,10 @@ struct LinkPlacement {
   Pose pose = Pose::Identity();  ///< link in base, q = 0, other joints held
 };
 
-/// The arm: the last seven movable joints before the tip, or with `roll` the last six, of which the tool's roll makes seven; every
-/// other joint held at `hold` (default 0 or its nearest limit). Throws InputError for unknown names, a held joint that belongs to
-/// the arm or lies outside its limits, fewer joints, a prismatic joint among them, and with `roll` a seventh turning joint that is
-/// not held by name.
+/// The arm: the last seven movable joints before the tip; with `roll`, where there are no more than six that turn and are not held
+/// by name, these, of which the tool's roll makes seven. Every other joint is held at `hold` (default 0 or its nearest limit).
+/// Throws InputError for unknown names, a held joint that belongs to the arm or lies outside its limits, fewer joints, and a
+/// prismatic joint among them.
 struct ArmModel {
   Chain chain;
   std::vector<LinkPlacement> links;  ///< by RobotModel link index

@@ -86,9 +86,29 @@ class Lattice {
   /// Signs that name the node's solution, for reports: 0..7.
   [[nodiscard]] virtual int branch(int layer, int slot) const = 0;
 
+  // --- layers of the tool's path that lie between two of the lattice
+  /// Whether there are any: of lattices that choose a node every so many layers of the path (roll_lattice.hpp). What nodes and
+  /// moves must keep then holds in all of these as well, and is part of an edge's validity.
+  [[nodiscard]] virtual bool has_layers_between() const { return false; }
+  /// The rows between row qa (slot a) and row qb (slot b of the next layer), as far as they exist and keep all but clearance; and
+  /// what the next row, or the move to it, does not keep.
+  struct Between {
+    enum class Fault : std::uint8_t { kNone, kNoIk, kSingular, kLimit, kManipulability, kStep, kPathError, kAngleError };
+    std::vector<Config> rows;
+    Fault fault = Fault::kNone;
+    std::uint8_t joints = 0;    ///< of kLimit: bit k: joint k is outside its limits
+    Config q = Config::Zero();  ///< of the row at fault, where it has joints; of a move, where it leads to
+  };
+  [[nodiscard]] virtual Between between(int layer, int a, const Config& qa, int b, const Config& qb) const;
+
   // --- nodes near a node
   /// The slot before (by -1) or after (+1) it along the redundancy coordinate; -1 where there is none.
   [[nodiscard]] virtual int beside(int layer, int slot, int by) const = 0;
+  /// The same along a second redundancy coordinate, where there is one.
+  [[nodiscard]] virtual int across(int layer, int slot, int by) const {
+    static_cast<void>(layer), static_cast<void>(slot), static_cast<void>(by);
+    return -1;
+  }
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
   [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
   /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
@@ -168,6 +188,11 @@ class Lattice {
   Lattice(const Lattice&) = default;  // copied whole, as what it is
   /// Throws InputError where a speed limit or the metric asks for joint speeds that the robot does not state.
   Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& misfit = Config::Zero());
+  /// Largest move of each joint on each step of a path; one entry where all are the same.
+  [[nodiscard]] static std::vector<Config> step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
+                                                             const Resolution& resolution);
+  /// Of every step.
+  void set_row_step_bounds(std::vector<Config> bounds);
   /// The larger of the second-order estimates at both ends of an edge is within limits().step_error. Asked only where that is set.
   [[nodiscard]] virtual bool step_error_allowed(int layer, int a, int b) const = 0;
 

@@ -22,7 +22,11 @@ struct TrajectoryRow {
   double phi = 0;  ///< carried arm angle, rad; of arms that are not S-R-S a generalised one, for reports
   int branch = 0;  ///< of S-R-S arms 0..7: bit 0 shoulder, bit 1 wrist, bit 2 elbow; set where the sine is negative
   Config q = Config::Zero();
+  double roll = 0;  ///< of seven joints whose tool may stand turned (Chain::free_roll): by how much it does, rad
 };
+
+/// Whether any of them says that the tool stands turned.
+[[nodiscard]] bool any_rolls(const std::vector<TrajectoryRow>& rows);
 
 /// Work done, counted by the one that did it.
 struct Counters {
@@ -42,6 +46,7 @@ struct LatticeInfo {
   std::int64_t nodes = 0;
   struct Grid {
     int phi = 0, branches = 8, windings = 1, window = 0;
+    std::optional<int> rolls;  ///< of a tool that may stand turned
   };
   std::optional<Grid> grid;          ///< of S-R-S arms: arm angles, and cells between neighbours in successive layers
   std::optional<std::int64_t> arcs;  ///< of other arms: arcs of self-motion in all layers

@@ -85,6 +85,8 @@ struct Resolution {
   double dalpha = 0.1;  ///< rad of tool rotation
   double arc = 0.2;     ///< rad of self-motion between nodes, of arms that have no arm angle
   bool arcs = false;    ///< of S-R-S arms: nodes on arcs of arm angles that lie between those of the grid
+  double droll = 0.1;   ///< rad, of the roll, of seven-joint arms
+  double knot = 0.025;  ///< m between layers at which the roll and the arm angle of seven-joint arms are chosen together
   bool operator==(const Resolution&) const = default;
 };
 
@@ -117,7 +119,8 @@ struct Robot {
   std::map<std::string, double> hold;  ///< joint name -> position of joints of the model that the chain leaves out
   std::vector<AttachedBody> attached;
   /// Of arms of six joints, which need one more to choose: the roll is the seventh, last in every list of joints, without a speed
-  /// of its own. `Cost::weights` has its weight too; 0 where turning the tool costs nothing.
+  /// of its own. `Cost::weights` has its weight too; 0 where turning the tool costs nothing. Of S-R-S arms of seven joints the roll
+  /// is chosen besides the arm angle (roll_lattice.hpp).
   std::optional<Roll> roll;
 };
 

@@ -81,7 +81,9 @@ class SrsLattice final : public Lattice {
  public:
   /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
   /// of the machine. Throws Stopped.
-  SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {});
+  /// `planes`: of the path's layers, where they are not carried_planes().
+  SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {},
+             std::vector<ArmPlane> planes = {});
 
   [[nodiscard]] int angles() const { return angles_; }
   [[nodiscard]] int sheets() const { return kBranches * windings_; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,6 +60,11 @@ class ToolPath {
     double reach = 0;                ///< m of travel on both sides over which it is rounded; 0: it is not
     double position = 0, angle = 0;  ///< m and rad, how far the curve leaves the polyline
   };
+  /// Some of its layers, in order, and steps from each to the next that are as long as those between them together. Poses between
+  /// layers are not this path's.
+  [[nodiscard]] ToolPath with_layers(const std::vector<int>& kept) const;
+  /// The same path for a tool that stands turned about its own z axis at each layer, rad.
+  [[nodiscard]] ToolPath with_rolls(const std::vector<double>& rolls) const;
   /// In the order of the path.
   [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
   /// The step on which a travel lies: its layer; the first or last one for what is beyond the ends.
@@ -80,6 +86,8 @@ class ToolPath {
   [[nodiscard]] std::size_t segment_of(int step) const;
 
   std::vector<PathLayer> layers_;
+  std::shared_ptr<const ToolPath> unturned_;  // of a path for a tool that is turned
+  std::vector<double> rolls_;                 // by which, at each layer
   std::vector<Pose> before_;
   bool begins_on_layer_ = true;
   bool begins_aside_ = false;  // layer 0 is off the curve
@@ -88,6 +96,11 @@ class ToolPath {
   bool rounded_ = false;
   int merged_ = 0;
 };
+
+/// A pose turned about its own z axis, rad.
+[[nodiscard]] Pose rolled(const Pose& pose, double roll);
+/// The turn about the z axis of a pose that comes nearest to another, rad.
+[[nodiscard]] double roll_between(const Pose& pose, const Pose& tool);
 
 /// The layers of a problem: of its whole path, or from its start on. Corners are rounded by `problem.smooth`, by `otherwise` where
 /// that is unset. Throws InputError as ToolPath does, and for a start_at beyond the path. Throws Stopped.

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "swivel/core/budget.hpp"
+#include "swivel/core/plan.hpp"
+#include "swivel/core/srs_lattice.hpp"
+
+namespace swivel {
+
+/// Lattice of an S-R-S arm whose tool may stand turned about its own z axis: at each layer the arm angle and the *roll* are chosen
+/// together. docs/model.md.
+///
+/// Its layers are *knots*, every few layers of the tool's path (`resolution.knot`): a step of the roll moves the joints by far more
+/// than a layer does, so that between neighbouring layers a change would never pay. Between two knots roll and arm angle change
+/// linearly along the path, each the short way, and the joints of these layers are solved exactly. What nodes and moves
+/// must keep holds in all of them (Lattice::between). The branch stays the same along an edge: no joint flips while the tool turns.
+///
+/// Nodes of one roll are those of an SrsLattice for a tool turned by it: arm angles are measured from the plane that the path's
+/// carried one becomes under the smallest rotation onto that of the turned tool. A slot is (rank of the roll, branch, winding, j);
+/// ranks begin with the roll nearest to none (to that of a given start), so that of equally good paths that wins which turns least.
+/// Edges lead to rolls and arm angles within roll_slope and arm_slope times the way between the knots, rounded down to whole cells
+/// (of arm angles one at least). Immutable once made.
+class RollLattice final : public Lattice {
+ public:
+  /// Of the whole path, which must outlive it, as arm and chain must. Throws as SrsLattice does, and InputError for a start whose
+  /// roll is outside the range, a roll_slope of less than a cell from knot to knot, and step_error. Throws Stopped.
+  [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                                                         const Problem& problem, const Budget& budget = {});
+
+  // --- rolls
+  [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
+  /// By rank, rad: the nodes for a tool that stands turned so. Knots are its layers.
+  [[nodiscard]] double roll(int rank) const { return turned_[static_cast<std::size_t>(rank)]->roll; }
+  [[nodiscard]] const SrsLattice& at_roll(int rank) const { return turned_[static_cast<std::size_t>(rank)]->lattice; }
+  [[nodiscard]] int rank_of(int layer, int slot) const { return layer == 0 && start_ ? 0 : slot / width_; }
+  /// Of the lattice at_roll().
+  [[nodiscard]] int inner(int layer, int slot) const { return layer == 0 && start_ ? start_->start_slot() : slot % width_; }
+  [[nodiscard]] int slot_of(int rank, int inner) const { return rank * width_ + inner; }
+  /// Slots of one roll.
+  [[nodiscard]] int width() const { return width_; }
+  /// Ranks of the rolls that an edge of a step may join to this one, itself among them, in order.
+  [[nodiscard]] const std::vector<int>& near(int step, int rank) const {
+    return near_[static_cast<std::size_t>(roll_window(step))][static_cast<std::size_t>(rank)];
+  }
+  /// Cells by which arm angle and roll may change on a step; the most of all steps.
+  [[nodiscard]] int phi_window(int step) const { return windows_[static_cast<std::size_t>(step)].phi; }
+  [[nodiscard]] int roll_window(int step) const { return windows_[static_cast<std::size_t>(step)].roll; }
+  [[nodiscard]] int widest_phi_window() const { return widest_; }
+  [[nodiscard]] bool has_start() const { return start_ != nullptr; }
+  /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's start_slot().
+  [[nodiscard]] const SrsLattice* start() const { return start_.get(); }
+
+  /// The layers of the tool's whole path.
+  [[nodiscard]] const ToolPath& whole_path() const { return *whole_; }
+  /// Of the whole path: those that are layers of the lattice.
+  [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
+  /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far as it goes.
+  [[nodiscard]] std::vector<TrajectoryRow> rows(const std::vector<int>& slots) const;
+
+  [[nodiscard]] int slots(int layer) const override { return layer == 0 && start_ ? 1 : rolls() * width_; }
+  [[nodiscard]] std::int64_t nodes() const override;
+  [[nodiscard]] std::optional<Config> node(int layer, int slot) const override {
+    return at(layer, slot).node(layer, inner(layer, slot));
+  }
+  using Lattice::row;
+  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q) const override {
+    return at(layer, slot).row(layer, inner(layer, slot), q);
+  }
+  [[nodiscard]] bool has_own_rows() const override { return at_roll(0).has_own_rows(); }
+  void layer_nodes(int layer, std::vector<Node>& out) const override;
+  [[nodiscard]] NodeFault fault(int layer, int slot) const override { return at(layer, slot).fault(layer, inner(layer, slot)); }
+  /// Where no roll is within reach: of the one that misses least.
+  [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
+  [[nodiscard]] double phi(int layer, int slot) const override { return at(layer, slot).phi(layer, inner(layer, slot)); }
+  [[nodiscard]] int branch(int layer, int slot) const override { return at(layer, slot).branch(layer, inner(layer, slot)); }
+  [[nodiscard]] int beside(int layer, int slot, int by) const override;
+  [[nodiscard]] int across(int layer, int slot, int by) const override;
+  [[nodiscard]] int along(int layer, int slot, int by) const override;
+  /// As in an SrsLattice, among nodes of one roll.
+  [[nodiscard]] bool stand_alike(unsigned) const override { return !has_own_rows(); }
+  void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
+  [[nodiscard]] bool in_window(int layer, int a, int b) const override;
+  void successors(int layer, int a, std::vector<SlotRun>& out) const override;
+  [[nodiscard]] bool has_layers_between() const override { return true; }
+  [[nodiscard]] Between between(int layer, int a, const Config& qa, int b, const Config& qb) const override;
+
+ private:
+  struct Knots {
+    std::vector<int> layers;
+    std::unique_ptr<const ToolPath> path;
+  };
+  RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
+              Knots knots);
+  static Knots knots_along(const ToolPath& path, const Resolution& resolution);
+  [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
+  [[nodiscard]] const SrsLattice& at(int layer, int slot) const { return layer == 0 && start_ ? *start_ : at_roll(slot / width_); }
+  void choose_rolls(double nominal, double droll);
+  /// `visit(i, row)` for the layers i of the whole path between those of an edge.
+  template <class Visit>
+  Between walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
+  /// The joints at a layer of the whole path, near those of the layer before; or why there are none.
+  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const;
+
+  struct Turned {
+    Turned(double by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem, const Budget& budget,
+           std::vector<ArmPlane> planes)
+        : roll(by), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes)) {}
+    double roll;
+    ToolPath path;
+    SrsLattice lattice;
+  };
+  struct Window {
+    int phi = 1, roll = 0;
+  };
+
+  const SrsArm* arm_;
+  const ToolPath* whole_;
+  std::vector<int> knots_;
+  std::unique_ptr<const ToolPath> knot_path_;
+  std::vector<ArmPlane> planes_;                 // of the whole path, for a tool that is not turned
+  std::vector<Config> whole_step_bounds_;        // of its steps; one entry where all are the same
+  bool circle_ = false;                          // rolls go once around
+  std::vector<double> values_;                   // rolls in their order
+  std::vector<int> rank_, value_of_;             // of each value; of each rank
+  std::vector<std::unique_ptr<Turned>> turned_;  // by rank
+  std::unique_ptr<const ToolPath> start_path_;
+  std::unique_ptr<const SrsLattice> start_;
+  int width_ = 0, widest_ = 1;
+  std::vector<Window> windows_;                      // by step
+  std::vector<std::vector<std::vector<int>>> near_;  // [window][rank]
+};
+
+}  // namespace swivel

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/roll_lattice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "swivel/core/angle.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/memory.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
+constexpr double kSingularSine = 1e-6;
+constexpr double kMostTurning = 5;  // dalpha, that the path may turn from a knot to the next
+
+/// Planes of layers for a tool that is turned: those of the tool that is not, under the smallest rotation.
+std::vector<ArmPlane> planes_at(const SrsArm& arm, const std::vector<ArmPlane>& planes, const std::vector<int>& layers,
+                                const ToolPath& turned) {
+  std::vector<ArmPlane> found;
+  found.reserve(layers.size());
+  for (std::size_t k = 0; k < layers.size(); ++k)
+    found.push_back(carry_plane(arm, planes[static_cast<std::size_t>(layers[k])], turned.layer(static_cast<int>(k)).tool));
+  return found;
+}
+
+bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& most) {
+  return !most || std::all_of(deviation.begin(), deviation.end(), [&](double x) { return x <= *most; });
+}
+
+}  // namespace
+
+std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
+                                               const Budget& budget) {
+  if (problem.limits.step_error)
+    throw InputError(problem.source + ": limits.step_error: allowed without path.roll, or for arms of six joints");
+  return std::unique_ptr<RollLattice>(new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution)));
+}
+
+RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
+  // How far the layers are, in steps from knot to knot; knots are spread evenly.
+  std::vector<double> way{0};
+  for (int i = 0; i + 1 < path.size(); ++i)
+    way.push_back(way.back() + std::max(path.layer(i).step_length / resolution.knot,
+                                        path.layer(i).step_angle / (kMostTurning * resolution.dalpha)));
+  const double steps = std::max(1.0, std::ceil(way.back() - 1e-9)), step = way.back() / steps;
+  Knots knots;
+  knots.layers = {0};
+  for (double goal = 1; knots.layers.back() + 1 < path.size(); ++goal) {
+    const auto last = std::upper_bound(way.begin(), way.end(), goal * step + 1e-9) - way.begin() - 1;
+    if (last > knots.layers.back()) knots.layers.push_back(static_cast<int>(last));
+  }
+  knots.path = std::make_unique<const ToolPath>(path.with_layers(knots.layers));
+  return knots;
+}
+
+RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
+                         Knots knots)
+    : Lattice(chain, *knots.path, problem, arm.misfit),
+      arm_(&arm),
+      whole_(&path),
+      knots_(std::move(knots.layers)),
+      knot_path_(std::move(knots.path)),
+      planes_(carried_planes(arm, path, budget)),
+      whole_step_bounds_(step_bounds_along(chain, path, problem.limits, problem.resolution)) {
+  const TraceSpan span("rolls");
+  const Resolution& resolution = problem.resolution;
+
+  std::vector<Config> bounds(static_cast<std::size_t>(layers()) - 1, Config::Zero());
+  for (std::size_t k = 0; k < bounds.size(); ++k)
+    for (int i = knots_[k]; i < knots_[k + 1]; ++i)
+      bounds[k] += whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+  set_row_step_bounds(std::move(bounds));
+
+  const Roll& range = *chain.free_roll;
+  double nominal = std::clamp(0.0, range.lower, range.upper);
+  circle_ = range.upper - range.lower >= kTwoPi - 1e-9;
+  if (circle_) nominal = 0;
+  if (problem.start) {
+    double roll = roll_between(path.layer(0).tool, chain.tool(*problem.start));
+    if (!circle_) roll += kTwoPi * std::round(((range.lower + range.upper) / 2 - roll) / kTwoPi);
+    if (!circle_ && !(roll >= range.lower - 1e-6 && roll <= range.upper + 1e-6)) {
+      char text[160];
+      std::snprintf(text, sizeof text, ": start.joints: the tool stands turned by %.6g rad: allowed is %.6g to %.6g (path.roll)",
+                    roll, range.lower, range.upper);
+      throw InputError(problem.source + text);
+    }
+    nominal = roll;
+  }
+  choose_rolls(nominal, resolution.droll);
+
+  Problem of_nodes = problem;
+  of_nodes.start.reset();
+  for (const int value : value_of_) {
+    budget.poll();
+    const double roll = values_[static_cast<std::size_t>(value)];
+    ToolPath turned = knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
+    std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
+    turned_.push_back(std::make_unique<Turned>(roll, std::move(turned), chain, arm, of_nodes, budget, std::move(planes)));
+  }
+  if (problem.start) {
+    start_path_ = std::make_unique<const ToolPath>(turned_.front()->path);
+    start_ = std::make_unique<const SrsLattice>(chain, arm, *start_path_, problem, budget,
+                                                planes_at(arm, planes_, knots_, *start_path_));
+  }
+  width_ = at_roll(0).width();
+  const double needed = 24.0 * static_cast<double>(nodes());
+  if (static_cast<double>(rolls()) * width_ > 1e9 || !fits_in_memory(needed))
+    throw InputError(
+        problem.source + ": resolution: " + std::to_string(nodes()) +
+        " nodes of roll and arm angle are more than this machine has memory for: allowed are larger droll, dphi or knot");
+
+  const int angles = at_roll(0).angles(), values = rolls();
+  const int most_roll = circle_ ? (values - 1) / 2 : values - 1;
+  const auto cells = [&](double slope, double way, double cell, int least, int most) {
+    return static_cast<int>(std::min<double>(most, std::max<double>(least, std::floor(slope * way / cell + 1e-9))));
+  };
+  bool turns = values == 1;
+  for (int k = 0; k + 1 < layers(); ++k) {
+    const double way =
+        path.layer(knots_[static_cast<std::size_t>(k) + 1]).travel - path.layer(knots_[static_cast<std::size_t>(k)]).travel;
+    Window& window = windows_.emplace_back();
+    window.phi = cells(limits_.arm_slope, way, resolution.dphi, std::min(1, angles / 2), angles / 2);
+    window.roll = cells(limits_.roll_slope, way, resolution.droll, 0, most_roll);
+    widest_ = std::max(widest_, window.phi);
+    turns = turns || window.roll > 0;
+  }
+  if (!turns && limits_.roll_slope * resolution.knot < resolution.droll) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  ": limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
+                  resolution.droll / resolution.knot);
+    throw InputError(problem.source + text);
+  }
+  near_.resize(static_cast<std::size_t>(most_roll) + 1);
+  for (const Window& window : windows_) {
+    auto& lists = near_[static_cast<std::size_t>(window.roll)];
+    if (!lists.empty()) continue;
+    lists.resize(static_cast<std::size_t>(values));
+    for (int rank = 0; rank < values; ++rank) {
+      auto& list = lists[static_cast<std::size_t>(rank)];
+      for (int by = -window.roll; by <= window.roll; ++by) {
+        const int value = value_of_[static_cast<std::size_t>(rank)] + by;
+        if (!circle_ && (value < 0 || value >= values)) continue;
+        list.push_back(rank_[static_cast<std::size_t>((value + values) % values)]);
+      }
+      std::sort(list.begin(), list.end());
+    }
+  }
+}
+
+void RollLattice::choose_rolls(double nominal, double droll) {
+  const Roll& range = *chain_->free_roll;
+  if (circle_) {
+    const int n = std::max(1, static_cast<int>(std::ceil(kTwoPi / droll - 1e-9)));
+    for (int k = 0; k < n; ++k) values_.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
+  } else {
+    const auto below = static_cast<int>(std::floor((nominal - range.lower) / droll + 1e-9));
+    const auto above = static_cast<int>(std::floor((range.upper - nominal) / droll + 1e-9));
+    constexpr double kApart = 1e-3;  // of a step: an end of the range that is no further from a cell is that cell
+    if (nominal - below * droll - range.lower > kApart * droll) values_.push_back(range.lower);
+    for (int k = -below; k <= above; ++k) values_.push_back(std::clamp(nominal + k * droll, range.lower, range.upper));
+    if (range.upper - (nominal + above * droll) > kApart * droll) values_.push_back(range.upper);
+  }
+  value_of_.resize(values_.size());
+  std::iota(value_of_.begin(), value_of_.end(), 0);
+  const auto away = [&](int value) {
+    const double roll = values_[static_cast<std::size_t>(value)] - nominal;
+    return std::abs(circle_ ? wrap_angle(roll) : roll);
+  };
+  std::stable_sort(value_of_.begin(), value_of_.end(), [&](int a, int b) { return away(a) < away(b) - 1e-9; });
+  rank_.resize(values_.size());
+  for (std::size_t rank = 0; rank < value_of_.size(); ++rank)
+    rank_[static_cast<std::size_t>(value_of_[rank])] = static_cast<int>(rank);
+}
+
+std::int64_t RollLattice::nodes() const {
+  return static_cast<std::int64_t>(layers() - 1) * rolls() * width_ + slots(0);
+}
+
+void RollLattice::layer_nodes(int layer, std::vector<Node>& out) const {
+  out.clear();
+  if (layer == 0 && start_) {
+    if (const auto q = node(0, 0)) out.push_back({0, *q});
+    return;
+  }
+  std::vector<Node> nodes;
+  for (int rank = 0; rank < rolls(); ++rank) {
+    at_roll(rank).layer_nodes(layer, nodes);
+    for (const Node& node : nodes) out.push_back({slot_of(rank, node.slot), node.q});
+  }
+}
+
+std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
+  if (layer == 0 && start_) return start_->out_of_reach(0);
+  std::optional<Reach> nearest;
+  for (int rank = 0; rank < rolls(); ++rank) {
+    const auto reach = at_roll(rank).out_of_reach(layer);
+    if (!reach) return std::nullopt;
+    if (!nearest || std::abs(reach->distance - reach->limit) < std::abs(nearest->distance - nearest->limit)) nearest = reach;
+  }
+  return nearest;
+}
+
+int RollLattice::beside(int layer, int slot, int by) const {
+  if (layer == 0 && start_) return -1;
+  return slot_of(slot / width_, at_roll(0).beside(layer, slot % width_, by));
+}
+
+int RollLattice::across(int layer, int slot, int by) const {
+  if (layer == 0 && start_) return -1;
+  const int values = rolls(), value = value_of_[static_cast<std::size_t>(slot / width_)] + by;
+  if (!circle_ && (value < 0 || value >= values)) return -1;
+  return slot_of(rank_[static_cast<std::size_t>((value + values) % values)], slot % width_);
+}
+
+int RollLattice::along(int layer, int slot, int by) const {
+  if (layer + by < 0 || layer + by >= layers()) return -1;
+  if (start_ && layer == 0) return slot_of(0, inner(0, 0));
+  if (start_ && layer + by == 0) return in_window(0, 0, slot) ? 0 : -1;
+  return slot;
+}
+
+void RollLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+  if (has_own_rows() || (layer == 0 && start_)) {
+    out.assign(1, slot);
+    return;
+  }
+  at_roll(slot / width_).alike(layer, slot % width_, groups, out);
+  for (int& other : out) other = slot_of(slot / width_, other);
+}
+
+PoseShift RollLattice::row_shift(int layer, int group, const Config& q) const {
+  return has_own_rows() ? PoseShift::unknown(at_roll(0).row_shift(layer, group, q).about) : PoseShift{};
+}
+
+PoseShift RollLattice::rows_apart(int layer, int group, const Config& q) const {
+  return row_shift(layer, group, q);
+}
+
+bool RollLattice::in_window(int layer, int a, int b) const {
+  if (branch(layer, a) != branch(layer + 1, b)) return false;
+  const std::vector<int>& rolls = near(layer, rank_of(layer, a));
+  if (!std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))) return false;
+  const int angles = at_roll(0).angles(), window = phi_window(layer), to = at_roll(0).angle_of(b % width_);
+  if (layer == 0 && start_) {
+    const double cell = -kPi + kTwoPi * to / angles;
+    return std::abs(wrap_angle(cell - start_->phi(0, start_->start_slot()))) <= window * kTwoPi / angles + 1e-9;
+  }
+  const int apart = std::abs(at_roll(0).angle_of(a % width_) - to);
+  return std::min(apart, angles - apart) <= window;
+}
+
+void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
+  out.clear();
+  const int angles = at_roll(0).angles(), window = phi_window(layer), windings = at_roll(0).windings();
+  int first = 0, count = std::min(2 * window + 1, angles);
+  if (layer == 0 && start_) {
+    const double step = kTwoPi / angles, from = (start_->phi(0, start_->start_slot()) + kPi) / step;
+    const auto low = static_cast<long long>(std::ceil(from - window - 1e-9 / step));
+    const auto high = static_cast<long long>(std::floor(from + window + 1e-9 / step));
+    first = static_cast<int>(((low % angles) + angles) % angles);
+    count = static_cast<int>(std::min<long long>(high - low + 1, angles));
+  } else {
+    first = (at_roll(0).angle_of(a % width_) - window + angles) % angles;
+  }
+  const int sheet = branch(layer, a) * windings, end = first + count;
+  for (const int rank : near(layer, rank_of(layer, a)))
+    for (int winding = 0; winding < windings; ++winding) {
+      const int zero = slot_of(rank, (sheet + winding) * angles);
+      if (end > angles) out.push_back({zero, zero + end - angles});
+      out.push_back({zero + first, zero + std::min(end, angles)});
+    }
+}
+
+std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const {
+  const Pose tool = rolled(whole_->layer(i).tool, roll);
+  const ArmPlane plane = carry_plane(*arm_, planes_[static_cast<std::size_t>(i)], tool);
+  const ReachStatus reach = reach_status(*arm_, plane.reach);
+  if (reach != ReachStatus::kReachable) {
+    fault.fault = reach == ReachStatus::kSingular ? Between::Fault::kSingular : Between::Fault::kNoIk;
+    return std::nullopt;
+  }
+  Config q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), phi, branch);
+  if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine) {
+    fault.fault = Between::Fault::kSingular;
+    return std::nullopt;
+  }
+  for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
+  if (!arm_->exact) {
+    const auto row = polish(*chain_, *arm_, plane, tool, phi, q);
+    if (!row) {
+      fault.fault = Between::Fault::kNoIk;
+      return std::nullopt;
+    }
+    q = *row;
+  }
+  fault.q = q;
+  for (int j = 0; j < kDof; ++j) {
+    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(j)];
+    const double margin = limits_.joint_margin - kLimitTolerance;
+    if (!continuous_[static_cast<std::size_t>(j)] && !(q[j] >= limit.lower + margin && q[j] <= limit.upper - margin))
+      fault.joints |= static_cast<std::uint8_t>(1u << j);
+  }
+  if (fault.joints) fault.fault = Between::Fault::kLimit;
+  if (fault.fault == Between::Fault::kNone && !manipulable(q)) fault.fault = Between::Fault::kManipulability;
+  return fault.fault == Between::Fault::kNone ? std::optional(q) : std::nullopt;
+}
+
+template <class Visit>
+Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
+  Between between;
+  const int first = knots_[static_cast<std::size_t>(layer)], last = knots_[static_cast<std::size_t>(layer) + 1];
+  const double roll = this->roll(rank_of(layer, a)), phi = this->phi(layer, a);
+  const double roll_change = this->roll(rank_of(layer + 1, b)) - roll;
+  const double dphi = wrap_angle(this->phi(layer + 1, b) - phi), droll = circle_ ? wrap_angle(roll_change) : roll_change;
+  const int branch = this->branch(layer, a);
+  const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
+  Config from = qa;
+  for (int i = first; i < last; ++i) {
+    const double t = (whole_->layer(i + 1).travel - begin) / way;
+    std::optional<Config> to;
+    if (i + 1 == last)
+      to = from + delta(from, qb);
+    else
+      to = solve(i + 1, roll + t * droll, phi + t * dphi, branch, from, between);
+    if (!to) return between;
+    between.q = *to;
+    const Config move = *to - from;
+    const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
+    if (!((move.cwiseAbs().array() <= bound.array()).all())) {
+      between.fault = Between::Fault::kStep;
+    } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
+      between.fault = Between::Fault::kPathError;
+    } else if (limits_.tool_angle_error && !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {
+      between.fault = Between::Fault::kAngleError;
+    }
+    if (between.fault != Between::Fault::kNone) return between;
+    if (i + 1 < last) {
+      between.rows.push_back(*to);
+      visit(TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to,
+                          circle_ ? wrap_angle(roll + t * droll) : roll + t * droll});
+    }
+    from = *to;
+  }
+  return between;
+}
+
+Lattice::Between RollLattice::between(int layer, int a, const Config& qa, int b, const Config& qb) const {
+  return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
+}
+
+std::vector<TrajectoryRow> RollLattice::rows(const std::vector<int>& slots) const {
+  std::vector<TrajectoryRow> rows;
+  for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
+    const int slot = slots[static_cast<std::size_t>(k)];
+    Config q = *row(k, slot);
+    if (k > 0) {
+      const Config before = rows.back().q;  // of the knot before
+      static_cast<void>(walk(k - 1, slots[static_cast<std::size_t>(k) - 1], before, slot, q,
+                             [&](const TrajectoryRow& row) { rows.push_back(row); }));
+      q = rows.back().q + delta(rows.back().q, q);
+    }
+    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q, roll(rank_of(k, slot))});
+  }
+  return rows;
+}
+
+}  // namespace swivel

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "roll_cost_to_go.hpp"
+
+#include <algorithm>
+
+#include "kernels/relax.hpp"
+#include "swivel/core/timeline.hpp"
+
+namespace swivel {
+
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of joints that are kept
+
+}  // namespace
+
+RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
+    : CostToGo(lattice, budget),
+      lattice_(&lattice),
+      angles_(lattice.at_roll(0).angles()),
+      sheets_(lattice.at_roll(0).sheets()),
+      pad_(lattice.widest_phi_window()),
+      solved_(static_cast<std::size_t>(lattice.layers())) {
+  for (int layer = 0; layer < lattice.layers(); ++layer)
+    value_.emplace_back(static_cast<std::size_t>(lattice.slots(layer)), kUnreachable);
+}
+
+const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
+  Solved& solved = solved_[static_cast<std::size_t>(layer)];
+  if (!solved.kept) {
+    // The oldest layers make room, but for the two that are being joined.
+    while (bytes_ > kMostBytes && kept_.size() > 2) forget(kept_.front());
+    solved.of_roll.swap(spare_);
+    solved.of_roll.resize(static_cast<std::size_t>(lattice_->rolls()));
+    solved.done.assign(solved.of_roll.size(), 0);
+    solved.kept = true;
+    kept_.push_back(layer);
+  }
+  const auto r = static_cast<std::size_t>(rank);
+  LayerNodes& nodes = solved.of_roll[r];
+  if (!solved.done[r]) {
+    lattice_->at_roll(rank).solve(layer, (angles_ - pad_) % angles_, angles_ + 2 * pad_, nodes);
+    solved.done[r] = 1;
+    bytes_ += nodes.bytes();
+    ik_nodes_ += lattice_->width();
+  }
+  return nodes;
+}
+
+void RollCostToGo::forget(int layer) {
+  Solved& solved = solved_[static_cast<std::size_t>(layer)];
+  if (!solved.kept) return;
+  for (std::size_t r = 0; r < solved.done.size(); ++r)
+    if (solved.done[r]) bytes_ -= solved.of_roll[r].bytes();
+  spare_.swap(solved.of_roll);
+  solved = {};
+  std::erase(kept_, layer);
+}
+
+Config RollCostToGo::config(int layer, int slot) {
+  if (begins(layer)) return *lattice_->node(0, 0);
+  const int inner = lattice_->inner(layer, slot);
+  return nodes(layer, lattice_->rank_of(layer, slot)).config(inner / angles_, pad_ + inner % angles_);
+}
+
+void RollCostToGo::take_around(int layer, const Values& values) {
+  const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * sheets_;
+  around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length), kUnreachable);
+  around_.finite.assign(static_cast<std::size_t>(rows), {});
+  if (begins(layer)) return;
+  for (int row = 0; row < rows; ++row) {
+    const double* from = values.data() + static_cast<std::ptrdiff_t>(row) * angles_;
+    const auto is_finite = [](double value) { return value != kUnreachable; };
+    if (std::none_of(from, from + angles_, is_finite)) continue;
+    double* const to = around_.value.data() + static_cast<std::ptrdiff_t>(row) * length;
+    std::copy_n(from, angles_, to + pad_);
+    std::copy_n(from + angles_ - pad_, pad_, to);
+    std::copy_n(from, pad_, to + pad_ + angles_);
+    int low = 0, high = length;
+    while (!is_finite(to[low])) ++low;
+    while (!is_finite(to[high - 1])) --high;
+    around_.finite[static_cast<std::size_t>(row)] = {low, high};
+  }
+}
+
+/// Nodes that exist, a few that do not among them: a call takes as long as some eight nodes.
+void RollCostToGo::runs_of(const LayerNodes& nodes, int sheet) {
+  constexpr int kGap = 8;
+  runs_.clear();
+  for (int j = 0; j < angles_; ++j) {
+    if (!nodes.valid(sheet, pad_ + j)) continue;
+    if (!runs_.empty() && j - runs_.back().second < kGap)
+      runs_.back().second = j + 1;
+    else
+      runs_.push_back({j, j + 1});
+  }
+}
+
+void RollCostToGo::relax(int step, int layer, int other, Values& out) {
+  const int window = lattice_->phi_window(step), length = angles_ + 2 * pad_;
+  const int windings = lattice_->at_roll(0).windings();
+  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
+  RelaxTask<double> task;
+  task.offsets = std::min(2 * window + 1, angles_);
+  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+  task.wraps = false;
+  for (std::size_t k = 0; k < kDof; ++k) {
+    const bool turns = lattice_->continuous()[k];
+    task.wraps |= turns;
+    task.turn[k] = turns ? kTwoPi : 0;
+    task.scale[k] = lattice_->cost_scale()[k];
+    task.bound[k] = lattice_->step_bound(step)[static_cast<Eigen::Index>(k)];
+  }
+  task.unit = lattice_->cost_unit();
+  for (int rank = 0; rank < lattice_->rolls(); ++rank) {
+    budget_.poll();
+    const LayerNodes& own = nodes(layer, rank);
+    for (int sheet = 0; sheet < sheets_; ++sheet) {
+      if (!own.alive(sheet)) continue;
+      double* const best = out.data() + lattice_->slot_of(rank, sheet * angles_);
+      runs_of(own, sheet);
+      const int first = sheet / windings * windings;  // of the branch
+      for (const int near : lattice_->near(step, rank))
+        for (int partner = first; partner < first + windings; ++partner) {
+          const auto row = static_cast<std::size_t>(near * sheets_ + partner);
+          const auto& [low, high] = around_.finite[row];
+          if (low >= high || runs_.empty()) continue;
+          const LayerNodes& theirs = nodes(other, near);
+          for (const auto& [begin, end] : runs_) {
+            const int from = pad_ - window + begin;  // of the partners
+            if (from >= high || from + (end - begin) - 1 + task.offsets <= low) continue;
+            for (std::size_t k = 0; k < kDof; ++k) {
+              task.from[k] = own.q(sheet, static_cast<int>(k)) + pad_ + begin;
+              task.to[k] = theirs.q(partner, static_cast<int>(k)) + from;
+            }
+            task.n = end - begin;
+            task.value = around_.value.data() + row * static_cast<std::size_t>(length) + from;
+            task.best = best + begin;
+            edges_ += static_cast<std::int64_t>(task.n) * task.offsets;
+            relax_kernels().relax(task);
+          }
+        }
+      const double *one = own.mask(sheet, 0) + pad_, *two = own.mask(sheet, 1) + pad_;
+      for (int j = 0; j < angles_; ++j) best[j] += one[j] + two[j];
+    }
+  }
+}
+
+template <class Worth, class Visit>
+void RollCostToGo::each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit) {
+  if (begins(layer) || begins(other)) {  // the given start
+    std::vector<Lattice::SlotRun> runs;
+    if (begins(other)) {
+      if (worth(0) && lattice_->in_window(step, 0, slot)) visit(0, config(0, 0));
+      return;
+    }
+    lattice_->successors(step, slot, runs);
+    for (const Lattice::SlotRun& run : runs)
+      for (int b = run.first; b < run.last; ++b)
+        if (worth(b)) visit(b, config(other, b));
+    return;
+  }
+  const int window = lattice_->phi_window(step), windings = lattice_->at_roll(0).windings();
+  const int inner = lattice_->inner(layer, slot), angle = inner % angles_, first = inner / angles_ / windings * windings;
+  const int count = std::min(2 * window + 1, angles_);
+  for (const int near : lattice_->near(step, lattice_->rank_of(layer, slot))) {
+    const LayerNodes& theirs = nodes(other, near);
+    for (int sheet = first; sheet < first + windings; ++sheet) {
+      if (!theirs.alive(sheet)) continue;
+      const int zero = lattice_->slot_of(near, sheet * angles_);
+      for (int k = 0; k < count; ++k) {
+        const int j = (angle - window + k + angles_) % angles_;
+        if (worth(zero + j)) visit(zero + j, theirs.config(sheet, pad_ + j));
+      }
+    }
+  }
+}
+
+double RollCostToGo::relax_one(int layer, int slot) {
+  if (removed(layer, slot)) return kUnreachable;
+  const Config q = config(layer, slot);
+  double best = kUnreachable;
+  each_near(
+      layer, layer, slot, layer + 1, [&](int b) { return at(layer + 1, b) < best; },
+      [&](int b, const Config& other) {
+        const Config delta = lattice_->delta(q, other);
+        const double value = lattice_->edge_cost(delta) + at(layer + 1, b);
+        if (value < best && lattice_->step_allowed(layer, delta) && verdicts_.edge(layer, slot, b) != Verdict::kRemoved)
+          best = value;
+      });
+  return best;
+}
+
+double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before) {
+  const Config q = config(layer, slot);
+  double best = kUnreachable;
+  each_near(
+      layer - 1, layer, slot, layer - 1, [&](int a) { return before[static_cast<std::size_t>(a)] < best; },
+      [&](int a, const Config& other) {
+        const Config delta = lattice_->delta(other, q);
+        const double value = lattice_->edge_cost(delta) + before[static_cast<std::size_t>(a)];
+        if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+          best = value;
+      });
+  return best;
+}
+
+void RollCostToGo::solve_layer(int layer) {
+  Values& out = value_[static_cast<std::size_t>(layer)];
+  if (begins(layer)) {
+    const bool exists = lattice_->node(0, 0).has_value();
+    out[0] = !exists || removed(0, 0) ? kUnreachable : layer == goal_ ? 0.0 : relax_one(0, 0);
+  } else if (layer == goal_) {
+    out.assign(out.size(), kUnreachable);
+    for (int rank = 0; rank < lattice_->rolls(); ++rank) {
+      const LayerNodes& own = nodes(layer, rank);
+      for (int sheet = 0; sheet < sheets_; ++sheet)
+        for (int j = 0; own.alive(sheet) && j < angles_; ++j)
+          if (own.valid(sheet, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, sheet * angles_ + j))] = 0;
+    }
+  } else {
+    take_around(layer + 1, value_[static_cast<std::size_t>(layer) + 1]);
+    relax(layer, layer, layer + 1, out);
+  }
+  if (!begins(layer) && verdicts_.removed() > 0) {
+    for (int slot = 0; slot < static_cast<int>(out.size()); ++slot)
+      if (removed(layer, slot)) out[static_cast<std::size_t>(slot)] = kUnreachable;
+    if (const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer))
+      for (const auto& [a, heads] : edges->tails) {
+        double& value = out[static_cast<std::size_t>(a)];
+        const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
+        if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
+      }
+  }
+  if (const double* own = verdicts_.costs(layer))
+    for (double& value : out) value += *own++;
+}
+
+void RollCostToGo::compute(int goal_layer) {
+  const TraceSpan span("sweep");
+  verdicts_.pending.clear();
+  for (int layer = lattice_->layers() - 1; layer > goal_layer; --layer) {
+    Values& values = value_[static_cast<std::size_t>(layer)];
+    std::fill(values.begin(), values.end(), kUnreachable);
+  }
+  for (int layer = goal_layer; layer >= 0; --layer) {
+    budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
+    solve_layer(layer);
+    if (layer < goal_layer) forget(layer + 1);  // fresh pages would take longer than solving it again where it is wanted
+  }
+}
+
+void RollCostToGo::compute_removals() {
+  const TraceSpan span("repair");
+  struct Change {
+    int slot;
+    double before;
+  };
+  std::vector<Change> changed, ahead;  // of the layer, of the next
+  std::vector<int> stale;
+  for (int layer = goal_; layer >= 0 && (!ahead.empty() || !verdicts_.pending.empty()); --layer) {
+    budget_.poll();
+    Values& values = value_[static_cast<std::size_t>(layer)];
+    stale.clear();
+    changed.clear();
+    if (const auto found = verdicts_.pending.find(layer); found != verdicts_.pending.end()) {
+      for (const auto* slots : {&found->second.nodes, &found->second.tails, &found->second.raised})
+        stale.insert(stale.end(), slots->begin(), slots->end());
+      verdicts_.pending.erase(found);
+    }
+    const double* own = verdicts_.costs(layer);
+    for (const Change& change : ahead) {
+      if (change.before == kUnreachable) continue;
+      const Config to = config(layer + 1, change.slot);
+      each_near(
+          layer, layer + 1, change.slot, layer,
+          [&](int a) {
+            return values[static_cast<std::size_t>(a)] != kUnreachable && values[static_cast<std::size_t>(a)] >= change.before;
+          },
+          [&](int a, const Config& from) {
+            const double rest = lattice_->edge_cost(lattice_->delta(from, to)) + change.before;
+            if (values[static_cast<std::size_t>(a)] == (own ? rest + own[a] : rest)) stale.push_back(a);
+          });
+    }
+    std::sort(stale.begin(), stale.end());
+    stale.erase(std::unique(stale.begin(), stale.end()), stale.end());
+    for (std::size_t k = 0; k < stale.size(); ++k) {
+      if (k % 64 == 0) budget_.poll();
+      const int slot = stale[k];
+      double& value = values[static_cast<std::size_t>(slot)];
+      if (value == kUnreachable) continue;
+      double fresh = removed(layer, slot) ? kUnreachable : layer == goal_ ? 0.0 : relax_one(layer, slot);
+      if (own) fresh += own[slot];
+      if (fresh == value) continue;
+      changed.push_back({slot, value});
+      value = fresh;
+    }
+    ahead.swap(changed);
+  }
+}
+
+double RollCostToGo::best() const {
+  const Values& first = value_.front();
+  return first.empty() ? kUnreachable : *std::min_element(first.begin(), first.end());
+}
+
+int RollCostToGo::deepest_reachable() {
+  const TraceSpan span("reach");
+  Values before, here;
+  for (int layer = 0;; ++layer) {
+    budget_.poll();
+    const int count = lattice_->slots(layer);
+    here.assign(static_cast<std::size_t>(count), kUnreachable);
+    if (begins(layer)) {
+      if (lattice_->node(0, 0)) here[0] = 0;
+    } else if (layer == 0) {
+      for (int slot = 0; slot < count; ++slot) {
+        const int inner = lattice_->inner(0, slot);
+        const LayerNodes& own = nodes(0, lattice_->rank_of(0, slot));
+        if (own.alive(inner / angles_) && own.valid(inner / angles_, pad_ + inner % angles_))
+          here[static_cast<std::size_t>(slot)] = 0;
+      }
+    } else if (begins(layer - 1)) {
+      std::vector<Lattice::SlotRun> runs;
+      lattice_->successors(0, 0, runs);
+      for (const Lattice::SlotRun& run : runs)
+        for (int b = run.first; b < run.last; ++b)
+          if (before[0] != kUnreachable && lattice_->node(layer, b))
+            here[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, before);
+    } else {
+      take_around(layer - 1, before);
+      relax(layer - 1, layer, layer - 1, here);
+      if (const auto* edges = verdicts_.removed_edges(layer - 1))
+        for (const auto& [b, tails] : edges->heads) {
+          double& value = here[static_cast<std::size_t>(b)];
+          const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
+            return edge.cost + before[static_cast<std::size_t>(edge.other)] == value;
+          };
+          if (value != kUnreachable && std::any_of(tails.begin(), tails.end(), gives_value))
+            value = relax_one_forward(layer, b, before);
+        }
+    }
+    for (int slot = 0; slot < count; ++slot)
+      if (removed(layer, slot)) here[static_cast<std::size_t>(slot)] = kUnreachable;
+    if (std::all_of(here.begin(), here.end(), [](double value) { return value == kUnreachable; })) return layer - 1;
+    if (layer + 1 == lattice_->layers()) return layer;
+    before.swap(here);
+  }
+}
+
+void RollCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
+  const Config q = config(layer, slot);
+  const double own = verdicts_.cost(layer, slot);
+  out.clear();
+  each_near(
+      layer, layer, slot, layer + 1, [&](int b) { return at(layer + 1, b) != kUnreachable && at(layer + 1, b) <= bound; },
+      [&](int b, const Config& other) {
+        const Config delta = lattice_->delta(q, other);
+        if (!lattice_->step_allowed(layer, delta)) return;
+        const double cost = lattice_->edge_cost(delta) + own;
+        if (cost + at(layer + 1, b) <= bound && verdicts_.edge(layer, slot, b) != Verdict::kRemoved) out.push_back({b, cost});
+      });
+  std::sort(out.begin(), out.end(), [](const Step& a, const Step& b) { return a.slot < b.slot; });
+}
+
+}  // namespace swivel

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// S-R-S arms whose tool may stand turned about its own z axis: roll and arm angle are chosen together.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "brute_force.hpp"
+#include "inexact_robots.hpp"
+#include "random_problem.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/arm_angle.hpp"
+#include "swivel/core/input_error.hpp"
+#include "swivel/core/roll_lattice.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+constexpr PlannerKind kPlanners[] = {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel};
+
+/// Arms of the data folder and made here, with limits of less and of more than a turn, without limits, and not exactly S-R-S.
+std::vector<TestRobot> robots(Random& random) {
+  std::vector<TestRobot> all = all_robots();
+  all.push_back(perturbed(all.front(), 1, random));
+  return all;
+}
+
+/// Small enough for brute force. Some tools stand at an angle to the last joint, so that their wrist centre moves with the roll.
+Problem roll_problem(const TestRobot& robot, Random& random) {
+  TestRobot angled = robot;
+  Problem problem = random_problem(angled, random);
+  problem.limits.step_error.reset();
+  problem.roll = random.coin(0.4) ? Roll{} : Roll{random.uniform(-2, -0.1), random.uniform(0.1, 2)};
+  if (random.coin(0.2)) problem.roll = Roll{random.uniform(0.2, 0.4), random.uniform(0.6, 4)};
+  problem.resolution.ds /= 2;
+  problem.resolution.knot = problem.resolution.ds * random.uniform(1.5, 4);
+  problem.resolution.droll = random.uniform(0.5, 1.2);
+  problem.resolution.dphi = robot.name == "windings" ? 1.2 : random.uniform(0.5, 0.9);
+  problem.resolution.dalpha = random.uniform(0.3, 0.6);
+  problem.limits.arm_slope = random.uniform(0.8, 2) * problem.resolution.dphi / problem.resolution.knot;
+  problem.limits.roll_slope = random.uniform(1.01, 2) * problem.resolution.droll / problem.resolution.knot;
+  if (problem.limits.tool_path_error) problem.limits.tool_path_error = random.uniform(0.02, 0.1);
+  if (problem.limits.tool_angle_error) problem.limits.tool_angle_error = random.uniform(0.1, 0.4);
+  if (problem.waypoints.size() > 3) problem.waypoints.resize(3);
+  if (problem.start && !(problem.roll->upper - problem.roll->lower >= kTwoPi) && problem.roll->lower > 0) problem.start.reset();
+  return problem;
+}
+
+/// Of a path whose roll and arm angle change: poses, arm angles and labels of all rows, by forward kinematics.
+void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+                         const std::string& what) {
+  const Chain& chain = robot.arm().chain;
+  const SrsArm& arm = robot.srs();
+  const ToolPath path = problem_path(problem, chain);
+  const std::vector<ArmPlane> planes = carried_planes(arm, path);
+  ASSERT_EQ(static_cast<int>(rows.size()), path.size()) << what;
+  for (int i = 0; i < path.size(); ++i) {
+    const TrajectoryRow& row = rows[static_cast<std::size_t>(i)];
+    const Pose wanted = path.layer(i).tool * Eigen::AngleAxisd(row.roll, Vector3d::UnitZ()), tool = chain.tool(row.q);
+    const double tolerance = i == 0 && problem.start ? 1e-6 : 1e-9;
+    ASSERT_LE((wanted.matrix() - tool.matrix()).norm(), tolerance) << what << " row " << i;
+    const ArmPlane plane = carry_plane(arm, planes[static_cast<std::size_t>(i)], wanted);
+    ASSERT_LE(std::abs(wrap_angle(arm_angle(arm, plane, row.q) - row.phi)), 1e-6) << what << " row " << i;
+    if (problem.roll->upper - problem.roll->lower < kTwoPi) {
+      ASSERT_GE(row.roll, problem.roll->lower - 1e-6) << what;
+      ASSERT_LE(row.roll, problem.roll->upper + 1e-6) << what;
+    }
+  }
+}
+
+TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
+  const std::uint64_t base = seed("RollLattice");
+  Random any(base);
+  const auto arms = robots(any);
+  int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0, inexact = 0, turned = 0, between = 0;
+  const int count = trials(60);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    const Problem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    const PreparedRobot robot(problem);
+    const Chain& chain = robot.arm().chain;
+    const ToolPath path = problem_path(problem, chain);
+    const auto lattice = RollLattice::make(chain, robot.srs(), path, problem);
+    const EdgeRule rule = robot.world().edge_rule(robot.radii());
+    // Own words for what may follow what: cells on circles.
+    const auto in_window = [&](int layer, int a, int b) {
+      if (lattice->branch(layer, a) != lattice->branch(layer + 1, b)) return false;
+      const double way = path.layer(lattice->knots()[static_cast<std::size_t>(layer) + 1]).travel -
+                         path.layer(lattice->knots()[static_cast<std::size_t>(layer)]).travel;
+      const double phi_cell = kTwoPi / std::ceil(kTwoPi / problem.resolution.dphi - 1e-9);
+      const double most = std::max(1.0, std::floor(problem.limits.arm_slope * way / problem.resolution.dphi + 1e-9)) * phi_cell;
+      const auto grid = [&](int at, int slot) {  // moved cells count by their own grid angle
+        return at == 0 && problem.start ? lattice->phi(0, slot)
+                                        : -kPi + phi_cell * lattice->at_roll(0).angle_of(lattice->inner(at, slot));
+      };
+      if (std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) > std::min(most, kPi) + 1e-9) return false;
+      // Rolls: by how many values they are apart, in order.
+      std::vector<double> values;
+      for (int rank = 0; rank < lattice->rolls(); ++rank) values.push_back(lattice->roll(rank));
+      std::sort(values.begin(), values.end());
+      const auto place = [&](int at, int slot) {
+        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(lattice->rank_of(at, slot))) -
+                                values.begin());
+      };
+      int apart = std::abs(place(layer, a) - place(layer + 1, b));
+      const int n = static_cast<int>(values.size());
+      const bool circle = problem.roll->upper - problem.roll->lower >= kTwoPi - 1e-9;
+      if (circle) apart = std::min(apart, n - apart);
+      const double cells = std::floor(problem.limits.roll_slope * way / problem.resolution.droll + 1e-9);
+      return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
+    };
+    const Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
+
+    std::vector<PlanResult> results;
+    for (const PlannerKind planner : kPlanners) {
+      PlanOptions options;
+      options.planner = planner;
+      options.threads = 2;
+      options.evidence = Evidence::all();
+      results.push_back(plan(robot, problem, options));
+      const PlanResult& result = results.back();
+      ASSERT_EQ(result.status == PlanStatus::kSolved, truth.solved) << what << ' ' << result.planner;
+      ASSERT_TRUE(result.lattice.grid && result.lattice.grid->rolls == lattice->rolls()) << what;
+      ASSERT_EQ(result.cost, results[0].cost) << what << ' ' << result.planner;
+      ASSERT_EQ(result.trajectory.size(), results[0].trajectory.size()) << what;
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i)
+        ASSERT_EQ(result.trajectory[i].q, results[0].trajectory[i].q) << what << ' ' << result.planner << " row " << i;
+      ASSERT_EQ(result.diagnosis.reached_layer, results[0].diagnosis.reached_layer) << what << ' ' << result.planner;
+      ASSERT_EQ(result.diagnosis.cause, results[0].diagnosis.cause) << what << ' ' << result.planner;
+    }
+    started += problem.start.has_value();
+    continuous += problem.limits.edges == EdgeMode::kContinuous;
+    obstacles += !problem.scene.empty();
+    circles += problem.roll->upper - problem.roll->lower >= kTwoPi;
+    inexact += !robot.srs().exact;
+    if (!truth.solved) {
+      ++infeasible;
+      ASSERT_GE(results[0].diagnosis.reached_layer.value_or(-1), truth.deepest) << what;
+      ASSERT_FALSE(words(results[0].diagnosis.cause).empty()) << what;
+      continue;
+    }
+    ++solved;
+    ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
+    const auto& rows = results[0].trajectory;
+    expect_rows_on_path(robot, problem, rows, what);
+    between += path.size() > lattice->layers();
+    turned += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+    const CheckResult check = check_trajectory(robot, problem, rows);
+    ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
+  }
+  std::printf(
+      "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a start, %d continuous, %d with "
+      "obstacles, "
+      "%d with all rolls, %d on arms that are not exactly S-R-S\n",
+      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact);
+  EXPECT_GE(solved, at_least(count / 4));
+  EXPECT_GE(infeasible, at_least(count / 20));
+  EXPECT_GE(started, at_least(count / 10));
+  EXPECT_GE(continuous, at_least(count / 5));
+  EXPECT_GE(turned, at_least(count / 20));
+  EXPECT_GE(between, at_least(count / 5));
+  EXPECT_GE(circles, at_least(count / 5));
+  EXPECT_GE(inexact, at_least(count / 20));
+}
+
+/// What is wrong with a trajectory whose tool turns is found.
+TEST(RollLattice, CheckRefusesOtherRolls) {
+  Random random(seed("RollLattice.CheckRefusesOtherRolls"));
+  int tried = 0;
+  for (int trial = 0; tried < 5 && trial < 200; ++trial) {
+    Problem problem = roll_problem(all_robots().front(), random);
+    problem.scene.clear();
+    problem.roll = Roll{-0.8, 0.8};
+    problem.start.reset();
+    const PreparedRobot robot(problem);
+    const PlanResult result = plan(robot, problem);
+    if (result.status != PlanStatus::kSolved) continue;
+    ++tried;
+    const auto fails = [&](const Problem& other, auto change, const char* words) {
+      std::vector<TrajectoryRow> rows = result.trajectory;
+      change(rows);
+      const CheckResult check = check_trajectory(other, rows);
+      EXPECT_FALSE(check.passed) << words;
+      EXPECT_TRUE(std::any_of(check.failures.begin(), check.failures.end(),
+                              [&](const std::string& line) { return line.find(words) != std::string::npos; }))
+          << words << ": " << (check.failures.empty() ? "" : check.failures[0]);
+    };
+    fails(
+        problem, [](auto& rows) { rows[1].roll += 0.01; }, "from the path");
+    fails(
+        problem, [](auto& rows) { rows[1].roll = 0.9; }, "roll 0.9 is outside its range");
+    fails(
+        problem, [](auto& rows) { rows[1].roll = std::nan(""); }, "not finite");
+    Problem narrow = problem;
+    const double least = std::min_element(result.trajectory.begin(), result.trajectory.end(), [](const auto& a, const auto& b) {
+                           return a.roll < b.roll;
+                         })->roll;
+    narrow.roll->lower = least + 0.05;
+    if (narrow.roll->lower < narrow.roll->upper)
+      fails(
+          narrow, [](auto&) {}, "is outside its range");
+  }
+  EXPECT_EQ(tried, 5);
+}
+
+TEST(RollLattice, RefusesWhatItCannotDo) {
+  Random random(seed("RollLattice.RefusesWhatItCannotDo"));
+  Problem problem = roll_problem(all_robots().front(), random);
+  const auto expect = [&](const Problem& wrong, const std::string& words) {
+    try {
+      static_cast<void>(plan(wrong));
+      FAIL() << words;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  Problem wrong = problem;
+  wrong.limits.step_error = 0.1;
+  expect(wrong, "limits.step_error: allowed without path.roll");
+  wrong = problem;
+  wrong.limits.roll_slope = 0.1 * wrong.resolution.droll / wrong.resolution.knot;
+  expect(wrong, "limits.roll_slope: is less than a step");
+  wrong = problem_for(offset_robot());
+  wrong.waypoints = problem.waypoints;
+  wrong.roll = Roll{};
+  expect(wrong, "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist");
+}
+
+}  // namespace
+}  // namespace swivel
