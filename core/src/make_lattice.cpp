@@ -10,7 +10,7 @@ namespace swivel {
 
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
                                       const Budget& budget) {
-  if (chain.free_roll) return RollLattice::make(chain, *arm.srs, path, problem, budget);
+  if (chain.free_roll && !path.unturned()) return RollLattice::make(chain, *arm.srs, path, problem, budget);
   if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
   if (problem.limits.arm_slope != Limits().arm_slope)
     throw InputError(problem.source +

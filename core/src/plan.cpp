@@ -3,10 +3,19 @@
 
 #include <algorithm>
 
+#include "swivel/core/angle.hpp"
+
 namespace swivel {
 
 bool any_rolls(const std::vector<TrajectoryRow>& rows) {
   return std::any_of(rows.begin(), rows.end(), [](const TrajectoryRow& row) { return row.roll != 0; });
+}
+
+std::vector<double> rolls_of(const std::vector<TrajectoryRow>& rows) {
+  std::vector<double> rolls;
+  for (const TrajectoryRow& row : rows)
+    rolls.push_back(rolls.empty() ? row.roll : rolls.back() + wrap_angle(row.roll - rolls.back()));
+  return rolls;
 }
 
 const char* to_string(PlanStatus status) {

@@ -134,6 +134,14 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
 }
 
 std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget) {
+  if (path.unturned()) {
+    std::vector<ArmPlane> planes = carried_planes(arm, *path.unturned(), budget);
+    for (int i = 0; i < path.size(); ++i) {
+      ArmPlane& plane = planes[static_cast<std::size_t>(i)];
+      plane = carry_plane(arm, plane, path.layer(i).tool);
+    }
+    return planes;
+  }
   std::optional<ArmPlane> last;  // of the whole path's layers
   const auto carried = [&](const Pose& tool) { return last ? carry_plane(arm, *last, tool) : first_plane(arm, tool); };
   for (std::size_t i = 0; i < path.before().size(); ++i) {

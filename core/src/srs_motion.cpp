@@ -34,8 +34,8 @@ SrsMotion::SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path
                      double apart, const std::vector<BetweenRow>& between)
     : PathMotion(chain, path, rows, apart, between),
       arm_(&arm),
-      planes_(carried_planes(arm, path)),
-      still_(clearest_direction(planes_)) {
+      planes_(carried_planes(arm, path.unturned() ? *path.unturned() : path)),
+      still_(clearest_direction(carried_planes(arm, path))) {
   std::vector<double> angles;
   for (std::size_t k = 0; k < rows_.size(); ++k) {
     const double angle = still_plane(pose_of(k)).angle_of(arm.elbow_axis(rows_[k].q));
@@ -74,10 +74,11 @@ std::optional<Config> SrsMotion::joints(double travel) const {
 
 TrajectoryRow SrsMotion::row(double travel, const Config& q) const {
   const auto [s, t, i] = place(travel);
-  const Pose tool = path_->at_travel(travel);
   const auto layer = static_cast<std::size_t>(i);
-  const ArmPlane plane = t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], tool);
-  return {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q};
+  const ToolPath& unturned = path_->unturned() ? *path_->unturned() : *path_;
+  ArmPlane plane = t == 1 ? planes_[layer + 1] : carry_plane(*arm_, planes_[layer], unturned.at_travel(travel));
+  if (path_->unturned()) plane = carry_plane(*arm_, plane, path_->at_travel(travel));
+  return {s, plane.angle_of(arm_->elbow_axis(q)), arm_->branch(q), q, path_->roll_at(travel)};
 }
 
 std::optional<PathMotion::Singular> SrsMotion::nearest_singular(const Config& q) const {

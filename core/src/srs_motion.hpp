@@ -19,7 +19,7 @@ class SrsMotion final : public PathMotion {
   [[nodiscard]] ArmPlane still_plane(const Pose& tool) const;
 
   const SrsArm* arm_;
-  std::vector<ArmPlane> planes_;      // carried, of layers
+  std::vector<ArmPlane> planes_;      // carried, of layers, for a tool that is not turned
   Vector3d still_;                    // the direction that stands still
   std::optional<CubicSpline> angle_;  // from the direction that stands still
 };

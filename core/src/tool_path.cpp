@@ -8,6 +8,7 @@
 
 #include "swivel/core/arm.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/invalid_argument.hpp"
 
 namespace swivel {
 
@@ -183,6 +184,7 @@ int ToolPath::step_at(double travel) const {
 }
 
 Pose ToolPath::at_travel(double travel) const {
+  if (unturned_) return rolled(unturned_->at_travel(travel), roll_at(travel));
   return on_curve(segment_of(step_at(travel)), travel);
 }
 
@@ -287,7 +289,9 @@ ToolPath ToolPath::with_rolls(const std::vector<double>& rolls) const {
   ToolPath path = *this;
   for (std::size_t i = 0; i < path.layers_.size(); ++i) path.layers_[i].tool = rolled(path.layers_[i].tool, rolls[i]);
   path.unturned_ = std::make_shared<const ToolPath>(*this);
-  path.rolls_ = rolls;
+  std::vector<double> travels;
+  for (const PathLayer& layer : layers_) travels.push_back(layer.travel);
+  path.roll_ = std::make_shared<const CubicSpline>(std::move(travels), rolls);
   return path;
 }
 
@@ -318,14 +322,17 @@ ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& 
     }
     path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
   }
+  if (!problem.rolls.empty()) {
+    if (problem.rolls.size() != static_cast<std::size_t>(path.size()))
+      throw InvalidArgument("Task: " + std::to_string(problem.rolls.size()) + " rolls: allowed is one for each layer, " +
+                            std::to_string(path.size()));
+    return path.with_rolls(problem.rolls);
+  }
   return path;
 }
 
 Pose ToolPath::at(int i, double t) const {
-  if (unturned_) {
-    const auto k = static_cast<std::size_t>(i);
-    return rolled(unturned_->at(i, t), rolls_[k] + t * (rolls_[k + 1] - rolls_[k]));
-  }
+  if (unturned_) return rolled(unturned_->at(i, t), roll_at(layer(i).travel + t * (layer(i + 1).travel - layer(i).travel)));
   const PathLayer& from = layer(i);
   const PathLayer& to = layer(i + 1);
   if (rounded_ && !(begins_aside_ && i == 0)) return on_curve(segment_of(i), from.travel + t * (to.travel - from.travel));

@@ -201,8 +201,8 @@ CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain, budget);
-  require_same_layout(problem, cut, path.size());
   std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
+  require_same_layout(problem, cut, lattice->layers());
   CutCheck result;
   result.complete = robot.arm_class().complete();
   try {
@@ -213,7 +213,8 @@ CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut
     }
     const World world(robot.world(), problem, budget);
     Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), cut, result, check, budget).run();
-    result.s = {path.layer(cut.first_layer).s, path.layer(cut.first_layer + static_cast<int>(cut.band.size()) - 1).s};
+    result.s = {lattice->path().layer(cut.first_layer).s,
+                lattice->path().layer(cut.first_layer + static_cast<int>(cut.band.size()) - 1).s};
     result.passed = true;
   } catch (const Refused& refused) {
     result.failure = refused.why;

@@ -131,11 +131,34 @@ Problem with_motion_defaults(Problem problem) {
 
 namespace {
 
+/// What rows say, moved off the ends of the range by as little as keeps the spline through it inside.
+std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+  std::vector<double> rolls = rolls_of(rows);
+  if (range.upper - range.lower >= kTwoPi - 1e-9 || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
+  for (double off = 0; off < 0.1 * (range.upper - range.lower); off = std::max(1e-3, 2 * off)) {
+    for (double& roll : rolls) roll = std::clamp(roll, range.lower + off, range.upper - off);
+    const ToolPath turned = path.with_rolls(rolls);
+    bool inside = true;
+    for (int i = 0; i + 1 < path.size() && inside; ++i)
+      for (const double t : {0.2, 0.4, 0.6, 0.8}) {
+        const double roll = turned.roll_at(path.layer(i).travel + t * (path.layer(i + 1).travel - path.layer(i).travel));
+        inside = inside && roll >= range.lower && roll <= range.upper;
+      }
+    if (inside) return rolls;
+  }
+  return rolls;
+}
+
 /// `between_layers`: where the motion through the rows is at fault between them, it may be led through postures of its own there.
 MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                        const TimingOptions& options, bool between_layers, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
+  if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
+    Problem turned = problem;
+    turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll, problem_path(problem, robot.arm().chain, budget), rows);
+    return time_rows(robot, turned, rows, options, between_layers, budget);
+  }
   const auto positive = [&](double value, const char* name) {
     if (!(value > 0) || !std::isfinite(value))
       throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + std::to_string(value) +
@@ -281,7 +304,7 @@ void take(const Refined& refined, const PlanView& view, PlanResult& result) {
   if (!refined.refined) return;
   result.trajectory = refined.rows;
   result.cost = refined.cost;
-  measure_margins(view.robot.arm().chain, view.lattice.path(), result.trajectory, result);
+  measure_margins(view.robot.arm().chain, view.lattice.path_of_rows(), result.trajectory, result);
 }
 
 }  // namespace
@@ -331,7 +354,7 @@ MotionPlan plan_motion(Planner& planner, const PlanOptions& options, bool refine
   if (!refined) return plan;
   take(*plan.refinement, view, result);
   try {
-    measure_rows(view.robot, view.lattice.path(), view.world, result.trajectory, options.evidence, budget, result);
+    measure_rows(view.robot, view.lattice.path_of_rows(), view.world, result.trajectory, options.evidence, budget, result);
   } catch (const Stopped&) {
   }
   return plan;
@@ -341,6 +364,11 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
                                         const std::vector<TrajectoryRow>& rows) {
   validate(problem);
   robot.require_prepared_for(problem);
+  if (robot.arm().chain.free_roll && problem.rolls.empty()) {
+    Problem turned = problem;
+    turned.rolls = rolls_of(rows);
+    return rows_on_path(robot, turned, rows);
+  }
   const ToolPath path = problem_path(problem, robot.arm().chain);
   const auto motion = make_path_motion(robot.arm().chain, robot.arm_class(), path, rows);
   std::vector<TrajectoryRow> laid;

@@ -401,6 +401,11 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
                const RefineOptions& options, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
+  if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
+    Problem turned = problem;
+    turned.rolls = rolls_of(rows);
+    return refine(robot, turned, rows, options, budget);
+  }
   const ToolPath path = problem_path(problem, robot.arm().chain, budget);
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
@@ -444,7 +449,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
     }
   };
   improve(rows, false);
-  if (options.second_seed) {
+  if (options.second_seed && problem.rolls.empty()) {
     constexpr double kWorthIt = 1 - 1e-4;
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;

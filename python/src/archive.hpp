@@ -156,8 +156,8 @@ void serialize(A& archive, Robot& x) {
 }
 template <class A>
 void serialize(A& archive, Task& x) {
-  auto& [path_frame, waypoints, smooth, resolution, limits, start, start_at, start_tolerance, cost, refinement] = x;
-  archive(path_frame, waypoints, smooth, resolution, limits, start, start_at, start_tolerance, cost, refinement);
+  auto& [path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance, cost, refinement] = x;
+  archive(path_frame, waypoints, smooth, resolution, limits, rolls, start, start_at, start_tolerance, cost, refinement);
 }
 /// Members of three classes, which no binding takes apart together.
 template <class A>

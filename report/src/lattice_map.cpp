@@ -8,6 +8,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
@@ -50,6 +51,7 @@ std::string LatticeMap::sheet_name(int sheet) const {
 
 int map_cell(const Lattice& lattice, int layer, int slot) {
   if (dynamic_cast<const SrsLattice*>(&lattice)) return slot;
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->inner(layer, slot);  // all rolls in one cell
   const int angle = static_cast<int>((wrap_angle(lattice.phi(layer, slot)) + kPi) / kTwoPi * kCells);
   return lattice.branch(layer, slot) * kCells + std::clamp(angle, 0, kCells - 1);
 }
@@ -65,6 +67,11 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice)) {
     map.angles = grid->angles();
     map.windings = grid->windings();
+    map.grid = true;
+  }
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
+    map.angles = rolls->at_roll(0).angles();
+    map.windings = rolls->at_roll(0).windings();
     map.grid = true;
   }
   map.joint_names = lattice.chain().joint_names;

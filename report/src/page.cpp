@@ -15,6 +15,8 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
@@ -70,18 +72,33 @@ std::vector<Row> refined_rows(const Lattice& lattice, const LatticeMap& map, con
   return rows;
 }
 
-Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
+/// How far the tool leaves its path on the way to each layer, mm.
+std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& shown, const std::vector<TrajectoryRow>& rows) {
+  std::vector<double> errors(shown.size(), 0);
+  const auto add = [&](std::size_t layer, int step, const Config& from, const Config& to) {
+    for (const double error : path_deviation(lattice.chain(), lattice.path_of_rows(), step, from, to - from))
+      errors[layer] = std::max(errors[layer], 1e3 * error);
+  };
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
+    for (std::size_t layer = 1; layer < shown.size(); ++layer)
+      for (int i = rolls->knots()[layer - 1]; i < rolls->knots()[layer]; ++i)
+        add(layer, i, rows[static_cast<std::size_t>(i)].q, rows[static_cast<std::size_t>(i) + 1].q);
+  } else {
+    for (std::size_t layer = 1; layer < shown.size(); ++layer)
+      add(layer, static_cast<int>(layer) - 1, shown[layer - 1].q, shown[layer].q);
+  }
+  return errors;
+}
+
+Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const std::vector<double>& errors,
+               const Budget& budget) {
   World::Query query(world, Certificates::kOn);
   Json rows = Json::array();
   for (int layer = 0; layer < static_cast<int>(shown.size()); ++layer) {
     budget.poll();
     const Row& at = shown[static_cast<std::size_t>(layer)];
     Json error = nullptr;
-    if (layer > 0) {
-      const Config& previous = shown[static_cast<std::size_t>(layer) - 1].q;
-      const auto deviation = path_deviation(lattice.chain(), lattice.path(), layer - 1, previous, at.q - previous);
-      error = 1e3 * *std::max_element(deviation.begin(), deviation.end());
-    }
+    if (layer > 0) error = errors[static_cast<std::size_t>(layer)];
     Json row = {{"layer", layer},
                 {"s", lattice.path().layer(layer).s},
                 {"phi", at.phi},
@@ -388,7 +405,13 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   const Json& diagnosis = result["diagnosis"];
   Bodies bodies(world, problem.scene);
   const std::vector<Row> found = lattice_rows(lattice, map, view.path);
-  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, *motion.refined, view.path) : found;
+  std::vector<TrajectoryRow> all = motion.refined ? *motion.refined : path_rows(lattice, view.path), refined = all;
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
+      rolls && motion.refined) {  // as many as the lattice has layers
+    refined.clear();
+    for (const int knot : rolls->knots()) refined.push_back(all[static_cast<std::size_t>(knot)]);
+  }
+  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, refined, view.path) : found;
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
@@ -408,7 +431,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"bodies", std::move(bodies.bodies)},
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", std::move(tool_path)},
-      {"rows", rows_json(world, lattice, rows, budget)},
+      {"rows", rows_json(world, lattice, rows, errors_mm(lattice, rows, all), budget)},
       {"beside", motion.refined ? beside_json(found) : Json::array()},
       {"motion", motion.motion ? motion_json(*motion.motion, joint_rates(lattice.chain(), problem.limits, problem.source),
                                              lattice.chain(), rows, path)

@@ -90,6 +90,8 @@ class Lattice {
   /// Whether there are any: of lattices that choose a node every so many layers of the path (roll_lattice.hpp). What nodes and
   /// moves must keep then holds in all of these as well, and is part of an edge's validity.
   [[nodiscard]] virtual bool has_layers_between() const { return false; }
+  /// The path whose layers are the rows of a trajectory: path(), and where has_layers_between() the one with those as well.
+  [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
   /// The rows between row qa (slot a) and row qb (slot b of the next layer), as far as they exist and keep all but clearance; and
   /// what the next row, or the move to it, does not keep.
   struct Between {

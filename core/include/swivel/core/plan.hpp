@@ -28,6 +28,9 @@ struct TrajectoryRow {
 /// Whether any of them says that the tool stands turned.
 [[nodiscard]] bool any_rolls(const std::vector<TrajectoryRow>& rows);
 
+/// Task::rolls that rows say, without jumps of whole turns.
+[[nodiscard]] std::vector<double> rolls_of(const std::vector<TrajectoryRow>& rows);
+
 /// Work done, counted by the one that did it.
 struct Counters {
   std::int64_t ik_nodes = 0;        ///< nodes whose IK was solved (repeats counted)

@@ -131,6 +131,9 @@ struct Task {
   std::optional<PathSmoothing> smooth;  ///< unset: the polyline as it is
   Resolution resolution;
   Limits limits;
+  /// Of seven joints whose tool may stand turned: by how much it does at each layer, rad, once that has been chosen; empty: it is
+  /// still to be.
+  std::vector<double> rolls;
   std::optional<Config> start;  ///< joints to begin with, rad
   /// Where on the path the start stands, m along the whole of it: layers begin there. Only with `start`; default: its beginning.
   std::optional<double> start_at;

@@ -53,8 +53,7 @@ class RollLattice final : public Lattice {
   /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's start_slot().
   [[nodiscard]] const SrsLattice* start() const { return start_.get(); }
 
-  /// The layers of the tool's whole path.
-  [[nodiscard]] const ToolPath& whole_path() const { return *whole_; }
+  [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
   /// Of the whole path: those that are layers of the lattice.
   [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
   /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far as it goes.

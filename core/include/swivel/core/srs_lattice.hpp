@@ -237,7 +237,8 @@ class SrsLattice final : public Lattice {
 };
 
 /// The planes of a path's layers, carried from the beginning of the whole path: where it begins at a start between two layers, that
-/// start changes no other plane.
+/// start changes no other plane. Where the tool stands turned: those of the path without, each under the smallest rotation onto the
+/// turned tool.
 [[nodiscard]] std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget = {});
 
 /// Second-order estimate of the step error in joint space at one end of a step, rad. Paper Eq. (15) with the cross product of Eq.

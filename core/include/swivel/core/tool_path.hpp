@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "swivel/core/budget.hpp"
+#include "swivel/core/cubic_spline.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/types.hpp"
 
@@ -63,8 +64,13 @@ class ToolPath {
   /// Some of its layers, in order, and steps from each to the next that are as long as those between them together. Poses between
   /// layers are not this path's.
   [[nodiscard]] ToolPath with_layers(const std::vector<int>& kept) const;
-  /// The same path for a tool that stands turned about its own z axis at each layer, rad.
+  /// The same path for a tool that stands turned about its own z axis: by so much at each layer, rad, and between layers by the
+  /// natural cubic spline through that over the travel.
   [[nodiscard]] ToolPath with_rolls(const std::vector<double>& rolls) const;
+  /// Of such a path: the one that it is made of; else null.
+  [[nodiscard]] const ToolPath* unturned() const { return unturned_.get(); }
+  /// By how much the tool stands turned, rad.
+  [[nodiscard]] double roll_at(double travel) const { return unturned_ ? roll_->at(travel) : 0; }
   /// In the order of the path.
   [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
   /// The step on which a travel lies: its layer; the first or last one for what is beyond the ends.
@@ -87,7 +93,7 @@ class ToolPath {
 
   std::vector<PathLayer> layers_;
   std::shared_ptr<const ToolPath> unturned_;  // of a path for a tool that is turned
-  std::vector<double> rolls_;                 // by which, at each layer
+  std::shared_ptr<const CubicSpline> roll_;
   std::vector<Pose> before_;
   bool begins_on_layer_ = true;
   bool begins_aside_ = false;  // layer 0 is off the curve
