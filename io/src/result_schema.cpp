@@ -273,7 +273,8 @@ Schema certificate() {
 Schema rows() {
   return list(
       section("", {key("s", number(), "along the path", "m"), key("phi", number(), "as in the [CSV](#trajectory-csv)", "rad"),
-                   key("branch", integer(), "as in the CSV"), key("joints", numbers(kDof), "base to tip", "rad")}));
+                   key("branch", integer(), "as in the CSV"), key("joints", numbers(kDof), "base to tip", "rad"),
+                   key_of_some("roll", number(), "as in the CSV, where the tool stands turned", "rad")}));
 }
 
 Schema robot_pairs() {

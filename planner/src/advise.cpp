@@ -85,6 +85,8 @@ class Adviser {
     for (const SceneObject& object : problem_.scene)
       if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
+    // Last, since it says something about the process, too.
+    if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs) try_once({.change = Change::kFreeRoll});
     std::stable_sort(tried_.begin(), tried_.end(), [](const Advice& a, const Advice& b) {
       if (a.outcome != b.outcome) return a.outcome < b.outcome;
       return a.outcome == Outcome::kFurther && a.reached_s > b.reached_s;

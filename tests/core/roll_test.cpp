@@ -60,7 +60,7 @@ TEST(Roll, IsTheTurnOfTheToolAboutItsOwnAxis) {
   EXPECT_EQ(tried, trials(20) * static_cast<int>(arms_6r().size()));
 }
 
-TEST(Roll, IsForArmsOfSixJoints) {
+TEST(Roll, IsTheSeventhJointOfSixAndOneCoordinateMoreOfSeven) {
   const ArmTable seven = arms_7r()[0], six = arms_6r()[0];
   const RobotModel model = model_of(seven, seven.joints, Pose::Identity()), small = model_of(six, six.joints, Pose::Identity());
   const auto build = [](const RobotModel& robot, const std::map<std::string, double>& hold, const std::optional<Roll>& roll) {
@@ -75,8 +75,11 @@ TEST(Roll, IsForArmsOfSixJoints) {
     return "";
   };
   const std::map<std::string, double> none, first{{"j1", 0.3}};
-  EXPECT_EQ(message(model, none, Roll{}),
-            "panda: path.roll: the arm has seven joints: allowed are arms of six; robot.hold may name 'j1'");
+  // Seven joints keep all seven, and the roll is one coordinate more.
+  const Chain with_free_roll = build(model, none, Roll{-1, 2}).chain;
+  EXPECT_FALSE(with_free_roll.roll);
+  EXPECT_TRUE(with_free_roll.free_roll == Roll(-1, 2) && with_free_roll.tool_may_turn());
+  EXPECT_EQ(with_free_roll.joint_names.front(), "j1");
   EXPECT_EQ(
       message(small, none, std::nullopt),
       "kr6-r900: robot.tip_link: the arm from 'base' to 'l7' has six joints: allowed with a tool that may turn about its own z "

@@ -12,7 +12,10 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/roll_lattice.hpp"
+#include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
+#include "swivel/planner/cut.hpp"
+#include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
@@ -168,6 +171,119 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(between, at_least(count / 5));
   EXPECT_GE(circles, at_least(count / 5));
   EXPECT_GE(inexact, at_least(count / 20));
+}
+
+/// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll that was chosen.
+TEST(RollLattice, PathsAreRefinedAndTimed) {
+  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  problem.resolution.droll = 0.1;
+  problem.resolution.dphi = 0.2;
+  Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
+  const PreparedRobot robot(problem);
+  int refined = 0, turning = 0, timed = 0, partial = 0;
+  const int count = trials(8);
+  for (int trial = 0; trial < count; ++trial) {
+    Problem episode = problem;
+    for (SceneObject& object : episode.scene)
+      if (object.name == "door")
+        object.pose = object.pose *
+                      Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) *
+                      Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vector3d::UnitZ());
+    if (random.coin()) episode.roll = Roll{-0.5, 0.5};
+    Planner planner(with_motion_defaults(episode));
+    const MotionPlan plan = plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
+    if (plan.result.status != PlanStatus::kSolved) continue;
+    const std::string what = "trial " + std::to_string(trial);
+    partial += episode.roll->upper < kPi;
+    const auto& before = plan.lattice_path;
+    const auto& rows = plan.result.trajectory;
+    ASSERT_EQ(rows.size(), before.size()) << what;
+    ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
+    for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_LE(std::abs(wrap_angle(rows[i].roll - before[i].roll)), 1e-12) << what;
+    const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
+    refined += plan.refinement->refined;
+    turning += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+    if (!plan.motion->motion) continue;
+    ++timed;
+    const CheckResult motion = check_motion(planner.prepare(), with_motion_defaults(episode), plan.motion->motion->rows, {});
+    ASSERT_TRUE(motion.passed) << what << ": " << motion.failures[0];
+  }
+  std::printf("%d problems: %d refined, %d turn the tool, %d timed, %d within half a radian\n", count, refined, turning, timed,
+              partial);
+  EXPECT_GE(refined, at_least(count / 2));
+  EXPECT_GE(timed, at_least(count / 2));
+  EXPECT_GE(turning, at_least(2));
+}
+
+/// Proofs that there is no path are verified without the planner, and forged ones refused.
+TEST(RollLattice, CutsAreVerified) {
+  const std::uint64_t base = seed("RollLattice.CutsAreVerified");
+  Random any(base);
+  const auto arms = robots(any);
+  int cuts = 0, forged = 0, edges = 0;
+  for (int trial = 0; trial < 400 && cuts < trials(20); ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
+    if (trial % 2 == 1) {  // what lies between the layers of the lattice ends the paths
+      problem.scene.clear();
+      problem.limits.tool_path_error = 1e-4;
+    }
+    Planner planner(problem);
+    if (planner.plan().status != PlanStatus::kInfeasible) continue;
+    ++cuts;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const Cut cut = find_cut(planner.view());
+    const CutCheck check = check_cut(planner.prepare(), planner.problem(), cut);
+    ASSERT_TRUE(check.passed) << what << ": " << check.failure;
+    edges += std::any_of(cut.band.begin(), cut.band.end(), [](const Cut::Layer& layer) { return !layer.edges.empty(); });
+    Cut wrong = cut;
+    const auto with_removed =
+        std::find_if(wrong.band.begin(), wrong.band.end(), [](const Cut::Layer& layer) { return !layer.removed.empty(); });
+    if (with_removed == wrong.band.end()) continue;
+    with_removed->removed.pop_back();
+    ++forged;
+    ASSERT_FALSE(check_cut(planner.prepare(), planner.problem(), wrong).passed) << what;
+  }
+  std::printf("%d cuts, %d with edges, %d forged\n", cuts, edges, forged);
+  EXPECT_GE(cuts, at_least(20));
+  EXPECT_GE(edges, at_least(3));
+  EXPECT_GE(forged, at_least(6));
+}
+
+/// The caller's check is asked about what lies between the layers of the lattice, too.
+TEST(RollLattice, AsksTheCallersCheckBetween) {
+  class NotBeyond final : public StateCheck {
+   public:
+    NotBeyond(const Chain& chain, double x) : chain_(&chain), x_(x) {}
+    [[nodiscard]] std::string name() const override { return "beyond"; }
+    void states(std::span<const Config> states, std::span<bool> allowed) override {
+      for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = !(chain_->tool(states[k]).translation().x() > x_);
+      asked += static_cast<int>(states.size());
+    }
+    int asked = 0;
+
+   private:
+    const Chain* chain_;
+    double x_;
+  };
+  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  problem.resolution.droll = 0.4;
+  problem.resolution.dphi = 0.4;
+  Planner planner(problem);
+  const Chain& chain = planner.prepare().arm().chain;
+  const PlanResult free = planner.plan();
+  ASSERT_EQ(free.status, PlanStatus::kSolved);
+  double most = 0;  // x of the tool at rows between knots
+  for (const TrajectoryRow& row : free.trajectory) most = std::max(most, chain.tool(row.q).translation().x());
+  PlanOptions options;
+  const auto lets = std::make_shared<NotBeyond>(chain, most + 1e-6), bars = std::make_shared<NotBeyond>(chain, most - 1e-6);
+  options.hooks.check = lets;
+  const PlanResult same = planner.plan(options);
+  EXPECT_EQ(same.cost, free.cost);
+  EXPECT_GE(lets->asked, static_cast<int>(free.trajectory.size()));
+  options.hooks.check = bars;  // every tool pose of that layer is the same for all nodes
+  EXPECT_EQ(planner.plan(options).status, PlanStatus::kInfeasible);
 }
 
 /// What is wrong with a trajectory whose tool turns is found.
