@@ -50,6 +50,18 @@ class ArmAngles final : public LayerSolver {
   std::vector<std::array<ElbowCircle, 2>> circles_;
 };
 
+double nearest_sine(const SrsArm& arm, const Config& q) {
+  return std::min(
+      {std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))), std::abs(std::sin(arm.wrist_angle(q)))});
+}
+
+std::vector<int> changes_of_branch(const std::vector<TrajectoryRow>& rows) {
+  std::vector<int> found;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i)
+    if (rows[i].branch != rows[i + 1].branch) found.push_back(static_cast<int>(i));
+  return found;
+}
+
 class ArmAngleRedundancy final : public Redundancy {
  public:
   ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
@@ -67,17 +79,8 @@ class ArmAngleRedundancy final : public Redundancy {
     for (TrajectoryRow& row : rows) row.phi = wrap_angle(row.phi);
   }
   [[nodiscard]] double most_change() const override { return grid_.most_turn(); }
-  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override {
-    std::vector<int> found;
-    for (std::size_t i = 0; i + 1 < rows.size(); ++i)
-      if (rows[i].branch != rows[i + 1].branch) found.push_back(static_cast<int>(i));
-    return found;
-  }
-  [[nodiscard]] double singular_sine(const Config& q) const override {
-    const SrsArm& arm = grid_.arm();
-    return std::min({std::abs(std::sin(arm.shoulder_angle(q))), std::abs(std::sin(arm.elbow_angle(q))),
-                     std::abs(std::sin(arm.wrist_angle(q)))});
-  }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
+  [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(grid_.arm(), q); }
   [[nodiscard]] double step_error(int layer, const TrajectoryRow& a, const TrajectoryRow& b) const override {
     return std::max(swivel::step_error(grid_, layer, 0, a.branch, a.phi, b.phi - a.phi),
                     swivel::step_error(grid_, layer, 1, b.branch, b.phi, b.phi - a.phi));
@@ -85,6 +88,85 @@ class ArmAngleRedundancy final : public Redundancy {
 
  private:
   SrsLattice grid_;
+};
+
+/// The roll of each layer, about the one that it had; arm angles, branches and joint images stay.
+class Rolls final : public LayerSolver {
+ public:
+  /// `rows`: phi is the roll; `angles`: their arm angles.
+  Rolls(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<ArmPlane>& planes,
+        const std::vector<TrajectoryRow>& rows, std::vector<double> angles)
+      : chain_(&chain), arm_(&arm), path_(&path), planes_(&planes), rows_(&rows), angles_(std::move(angles)) {}
+  [[nodiscard]] int layers() const override { return path_->size(); }
+  [[nodiscard]] double travel(int layer) const override { return path_->layer(layer).travel; }
+  [[nodiscard]] std::optional<Config> joints(int layer, double roll) const override {
+    const auto i = static_cast<std::size_t>(layer);
+    const Pose tool = rolled(path_->layer(layer).tool, roll);
+    const ArmPlane plane = carry_plane(*arm_, (*planes_)[i], tool);
+    if (reach_status(*arm_, plane.reach) != ReachStatus::kReachable) return std::nullopt;
+    std::optional<Config> q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angles_[i], (*rows_)[i].branch);
+    if (!arm_->exact) q = polish(*chain_, *arm_, plane, tool, angles_[i], *q);
+    if (!q) return std::nullopt;
+    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = (*rows_)[i].q[j] + wrap_angle((*q)[j] - (*rows_)[i].q[j]);
+    return q;
+  }
+
+ private:
+  const Chain* chain_;
+  const SrsArm* arm_;
+  const ToolPath* path_;
+  const std::vector<ArmPlane>* planes_;
+  const std::vector<TrajectoryRow>* rows_;
+  std::vector<double> angles_;
+};
+
+class RollRedundancy final : public Redundancy {
+ public:
+  RollRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
+      : arm_(&arm),
+        // Without nodes, which refinement has no use for.
+        lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
+        planes_(carried_planes(arm, path, budget)),
+        most_change_(problem.limits.roll_slope * problem.resolution.ds) {
+    const Roll& free = *chain.free_roll;
+    if (free.upper - free.lower < kTwoPi - 1e-9) range_ = {free.lower, free.upper};
+  }
+  [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
+  [[nodiscard]] bool has_grid() const override { return false; }
+  [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
+    std::vector<double> angles;
+    const std::vector<double> rolls = rolls_of(rows);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      angles.push_back(rows[i].phi);
+      rows[i].phi = rolls[i];
+    }
+    return std::make_unique<Rolls>(lattice_.chain(), *arm_, lattice_.path(), planes_, rows, std::move(angles));
+  }
+  [[nodiscard]] double coordinate(int layer, const Config& q) const override {
+    return roll_between(lattice_.path().layer(layer).tool, lattice_.chain().tool(q));
+  }
+  void label(std::vector<TrajectoryRow>& rows) const override {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      TrajectoryRow& row = rows[i];
+      row.roll = row.phi;
+      const Pose tool = rolled(lattice_.path().layer(static_cast<int>(i)).tool, row.roll);
+      row.phi = wrap_angle(arm_angle(*arm_, carry_plane(*arm_, planes_[i], tool), row.q));
+    }
+  }
+  [[nodiscard]] double most_change() const override { return most_change_; }
+  [[nodiscard]] Range range() const override { return range_; }
+  [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
+  [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(*arm_, q); }
+  [[nodiscard]] double step_error(int, const TrajectoryRow&, const TrajectoryRow&) const override {
+    throw std::logic_error("step error of a tool that may turn");
+  }
+
+ private:
+  const SrsArm* arm_;
+  ExplicitLattice lattice_;
+  std::vector<ArmPlane> planes_;
+  double most_change_;
+  Range range_;
 };
 
 class ArcLengthRedundancy final : public Redundancy {
@@ -134,6 +216,11 @@ std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmC
                                                   const Problem& problem, const Budget& budget) {
   if (arm.srs) return std::make_unique<ArmAngleRedundancy>(chain, *arm.srs, path, problem, budget);
   return std::make_unique<ArcLengthRedundancy>(chain, arm, path, problem);
+}
+
+std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                                                       const Problem& problem, const Budget& budget) {
+  return std::make_unique<RollRedundancy>(chain, arm, path, problem, budget);
 }
 
 }  // namespace swivel

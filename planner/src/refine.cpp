@@ -196,6 +196,7 @@ class Refinery {
         solver_(redundancy.solver(given_)),
         edges_(edges),
         fixed_start_(fixed_start),
+        range_(redundancy.range()),
         jumps_(given.size()),
         budget_(budget) {
     for (const int jump : redundancy.jumps(given))
@@ -210,7 +211,7 @@ class Refinery {
     std::vector<CoordinateBox> boxes(n);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = given_[i].phi;
-      boxes[i] = {x[i] - kFarthest, x[i] + kFarthest};
+      boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range_.low)), std::min(x[i] + kFarthest, std::max(x[i], range_.high))};
     }
     if (fixed_start_) boxes[0] = {x[0], x[0]};
     std::vector<double> node_known(n, std::nan(""));
@@ -302,6 +303,7 @@ class Refinery {
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
   bool fixed_start_;
+  Redundancy::Range range_;
   std::vector<bool> jumps_;  // by layer: to it or from it
   Budget budget_;
 };
@@ -395,23 +397,9 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   return rows;
 }
 
-}  // namespace
-
-Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-               const RefineOptions& options, const Budget& budget) {
-  validate(problem);
-  robot.require_prepared_for(problem);
-  if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
-    Problem turned = problem;
-    turned.rolls = rolls_of(rows);
-    return refine(robot, turned, rows, options, budget);
-  }
-  const ToolPath path = problem_path(problem, robot.arm().chain, budget);
-  if (rows.size() != static_cast<std::size_t>(path.size()))
-    throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
-                          std::to_string(path.size()) + ", one for each layer");
-  const std::unique_ptr<const Redundancy> made = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
-  const Redundancy& redundancy = *made;
+/// Along one coordinate.
+Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+                     const std::vector<TrajectoryRow>& rows, const RefineOptions& options, bool second_seed, const Budget& budget) {
   const Lattice& lattice = redundancy.lattice();
   Judge judge(robot, problem, redundancy, options, budget);
   Refined result;
@@ -449,7 +437,7 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
     }
   };
   improve(rows, false);
-  if (options.second_seed && problem.rolls.empty()) {
+  if (second_seed) {
     constexpr double kWorthIt = 1 - 1e-4;
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
@@ -461,6 +449,55 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   result.nodes_asked = judge.nodes_asked;
   result.edges_asked = judge.edges_asked;
   return result;
+}
+
+/// Of an arm with two coordinates: along one, then the other, for as long as that is worth it.
+Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+                        const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
+  constexpr int kMostTurns = 4;
+  constexpr double kWorthIt = 1 - 1e-3;
+  const Chain& chain = robot.arm().chain;
+  const auto rolls = make_roll_redundancy(chain, robot.srs(), path, problem, budget);
+  Refined result;
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const double before = turn == 0 ? std::numeric_limits<double>::infinity() : result.cost;
+    for (const bool roll : {false, true}) {
+      const std::vector<TrajectoryRow>& from = turn == 0 && !roll ? rows : result.rows;
+      const auto turned = path.with_rolls(rolls_of(from));
+      const auto angles = make_redundancy(chain, robot.arm_class(), turned, problem, budget);
+      Refined found = refine_along(roll ? *rolls : *angles, robot, problem, roll ? path : turned, from, options, false, budget);
+      if (turn == 0 && !roll) {
+        result = std::move(found);
+        continue;
+      }
+      result.rounds += found.rounds;
+      result.nodes_asked += found.nodes_asked;
+      result.edges_asked += found.edges_asked;
+      if (!found.refined) continue;
+      result.refined = true;
+      result.reason.clear();
+      result.rows = std::move(found.rows);
+      result.cost = found.cost;
+      result.bend = found.bend;
+    }
+    if (!(result.cost < kWorthIt * before)) break;
+  }
+  return result;
+}
+
+}  // namespace
+
+Refined refine(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
+               const RefineOptions& options, const Budget& budget) {
+  validate(problem);
+  robot.require_prepared_for(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain, budget);
+  if (rows.size() != static_cast<std::size_t>(path.size()))
+    throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
+                          std::to_string(path.size()) + ", one for each layer");
+  if (robot.arm().chain.free_roll && problem.rolls.empty()) return refine_by_turns(robot, problem, path, rows, options, budget);
+  const auto redundancy = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
+  return refine_along(*redundancy, robot, problem, path, rows, options, options.second_seed && problem.rolls.empty(), budget);
 }
 
 }  // namespace swivel

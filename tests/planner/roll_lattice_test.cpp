@@ -180,7 +180,7 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
   const PreparedRobot robot(problem);
-  int refined = 0, turning = 0, timed = 0, partial = 0;
+  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0;
   const int count = trials(8);
   for (int trial = 0; trial < count; ++trial) {
     Problem episode = problem;
@@ -199,7 +199,7 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
     const auto& rows = plan.result.trajectory;
     ASSERT_EQ(rows.size(), before.size()) << what;
     ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
-    for (std::size_t i = 0; i < rows.size(); ++i) ASSERT_LE(std::abs(wrap_angle(rows[i].roll - before[i].roll)), 1e-12) << what;
+    for (std::size_t i = 0; i < rows.size(); ++i) moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
     const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
     refined += plan.refinement->refined;
@@ -214,6 +214,7 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   EXPECT_GE(refined, at_least(count / 2));
   EXPECT_GE(timed, at_least(count / 2));
   EXPECT_GE(turning, at_least(2));
+  EXPECT_GE(moved, at_least(100));  // rolls of rows
 }
 
 /// Proofs that there is no path are verified without the planner, and forged ones refused.

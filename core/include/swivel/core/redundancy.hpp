@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -30,6 +31,11 @@ class Redundancy {
   virtual void label(std::vector<TrajectoryRow>& rows) const = 0;
   /// Of the coordinate from a layer to the next, rad: what the lattice's window allows.
   [[nodiscard]] virtual double most_change() const = 0;
+  /// What the coordinate may be, rad.
+  struct Range {
+    double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
+  };
+  [[nodiscard]] virtual Range range() const { return {}; }
   /// Layers from which the joints jump to the next: through a singularity, to another solution.
   [[nodiscard]] virtual std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const = 0;
   /// Sine of the angle nearest to singular.
@@ -45,5 +51,10 @@ class Redundancy {
 /// The arm angle of S-R-S arms, of others the length along the self-motion. All arguments but the problem must outlive it.
 [[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                                                 const Problem& problem, const Budget& budget);
+
+/// The roll of the tool of an S-R-S arm that has a free one (Chain::free_roll), at the arm angles that rows have: `path` is that of
+/// the tool as the waypoints have it. All arguments but the problem must outlive it.
+[[nodiscard]] std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                                                                     const Problem& problem, const Budget& budget);
 
 }  // namespace swivel
