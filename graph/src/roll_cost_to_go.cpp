@@ -268,6 +268,16 @@ void RollCostToGo::compute_removals() {
         stale.insert(stale.end(), slots->begin(), slots->end());
       verdicts_.pending.erase(found);
     }
+    // Vector code takes as long for all nodes of a layer as plain loops do for those around so many.
+    constexpr std::size_t kMany = 256;
+    if (ahead.size() + stale.size() > kMany) {
+      const Values before = values;
+      solve_layer(layer);
+      for (std::size_t slot = 0; slot < values.size(); ++slot)
+        if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
+      ahead.swap(changed);
+      continue;
+    }
     const double* own = verdicts_.costs(layer);
     for (const Change& change : ahead) {
       if (change.before == kUnreachable) continue;

@@ -12,6 +12,8 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/roll_lattice.hpp"
+#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/cut.hpp"
@@ -171,6 +173,62 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(between, at_least(count / 5));
   EXPECT_GE(circles, at_least(count / 5));
   EXPECT_GE(inexact, at_least(count / 20));
+}
+
+/// Values after removals, few and many at once, are those of a sweep over what is left.
+TEST(RollLattice, RepairsAreSweeps) {
+  const std::uint64_t base = seed("RollLattice.RepairsAreSweeps");
+  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  problem.resolution.droll = 0.25;
+  problem.resolution.dphi = 0.3;
+  const PreparedRobot robot(problem);
+  const ToolPath path = problem_path(problem, robot.arm().chain);
+  int compared = 0, many = 0, edges = 0;
+  const int count = trials(6);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    if (trial % 3 == 2) {
+      problem.start = plan(robot, problem).trajectory[0].q;
+      problem.resolution.droll = 0.35;
+    }
+    const auto lattice = RollLattice::make(robot.arm().chain, robot.srs(), problem_path(problem, robot.arm().chain), problem);
+    const auto repaired = make_cost_to_go(*lattice);
+    repaired->sweep(lattice->layers() - 1);
+    std::vector<std::pair<int, int>> nodes;
+    std::vector<std::array<int, 3>> cut;
+    for (int round = 0; round < 5; ++round) {
+      const bool at_once = round % 2 == 1;
+      for (int k = 0; k < (at_once ? 2 : 20); ++k) {
+        const int layer = 1 + random.below(lattice->layers() - 1), first = random.below(lattice->slots(layer));
+        for (int slot = first; slot < std::min(lattice->slots(layer), first + (at_once ? 3000 : 3)); ++slot) {
+          if (repaired->verdicts().node(layer, slot) == Verdict::kRemoved) continue;
+          repaired->verdicts().remove_node(layer, slot);
+          nodes.emplace_back(layer, slot);
+        }
+      }
+      std::int64_t expansions = 0;
+      const SlotPath best = repaired->best() == kUnreachable ? SlotPath() : best_path(*repaired, expansions);
+      for (int layer = 0; layer + 1 < static_cast<int>(best.size()); layer += 3) {
+        const int a = best[static_cast<std::size_t>(layer)], b = best[static_cast<std::size_t>(layer) + 1];
+        repaired->remove_edge(layer, a, b);
+        cut.push_back({layer, a, b});
+      }
+      repaired->repair();
+      many += at_once;
+    }
+    edges += static_cast<int>(cut.size());
+    const auto swept = make_cost_to_go(*lattice);
+    for (const auto& [layer, slot] : nodes) swept->verdicts().remove_node(layer, slot);
+    for (const auto& [layer, a, b] : cut) swept->remove_edge(layer, a, b);
+    swept->sweep(lattice->layers() - 1);
+    for (int layer = 0; layer < lattice->layers(); ++layer)
+      for (int slot = 0; slot < lattice->slots(layer); ++slot, ++compared)
+        ASSERT_EQ(repaired->at(layer, slot), swept->at(layer, slot))
+            << "SWIVEL_TEST_SEED " << base << " trial " << trial << " layer " << layer << " slot " << slot;
+  }
+  std::printf("%d values compared, %d repairs of many, %d edges\n", compared, many, edges);
+  EXPECT_GE(many, at_least(12));
+  EXPECT_GE(edges, at_least(20));
 }
 
 /// The door's nozzle, from random poses: refined paths and motions pass the check, with the roll that was chosen.
