@@ -51,7 +51,7 @@ std::string LatticeMap::sheet_name(int sheet) const {
 
 int map_cell(const Lattice& lattice, int layer, int slot) {
   if (dynamic_cast<const SrsLattice*>(&lattice)) return slot;
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->inner(layer, slot);  // all rolls in one cell
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->inner(layer, slot);
   const int angle = static_cast<int>((wrap_angle(lattice.phi(layer, slot)) + kPi) / kTwoPi * kCells);
   return lattice.branch(layer, slot) * kCells + std::clamp(angle, 0, kCells - 1);
 }
@@ -104,12 +104,19 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     pair = query.first_below(*row, Keep::kNode);
     return LatticeMap::Node{pair ? NodeState::kBlocked : NodeState::kFree, 0, decided(query.counters()) > before};
   };
+  int rank = 0;
   for (int layer = 0; layer < map.layers; ++layer) {
     map.s.push_back(lattice.path().layer(layer).s);
     budget.poll(Stage::kDrawing, layer, map.layers);
+    int first = 0, last = lattice.slots(layer);
+    if (const auto* rolls =
+            dynamic_cast<const RollLattice*>(&lattice)) {  // at the roll of the path, behind its end at its last one
+      if (layer < static_cast<int>(view.path.size())) rank = rolls->rank_of(layer, view.path[static_cast<std::size_t>(layer)]);
+      if (last > rolls->width()) first = rolls->slot_of(rank, 0), last = first + rolls->width();
+    }
     lattice.layer_nodes(layer, listed);
-    auto next = listed.begin();
-    for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+    auto next = std::find_if(listed.begin(), listed.end(), [&](const Lattice::Node& node) { return node.slot >= first; });
+    for (int slot = first; slot < last; ++slot) {
       const bool exists = next != listed.end() && next->slot == slot;
       pair.reset();
       const LatticeMap::Node node = exists ? look_at(layer, slot, next->q) : of_fault(layer, slot);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -30,6 +31,7 @@ struct Row {
   Config q;
   double phi = 0, angle = 0;  ///< angle: in cells
   int sheet = 0;
+  std::optional<double> roll = {};  ///< rad
 };
 
 /// The answer layer by layer, or the way to the furthest layer.
@@ -106,6 +108,7 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
                 {"angle", at.angle},
                 {"q", std::vector<double>(at.q.begin(), at.q.end())},
                 {"error_mm", std::move(error)}};
+    if (at.roll) row["roll"] = *at.roll;
     if (const auto clearance = query.clearance(at.q)) {
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[clearance->pair.a], world.body_names()[clearance->pair.b]};
@@ -411,7 +414,12 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
     refined.clear();
     for (const int knot : rolls->knots()) refined.push_back(all[static_cast<std::size_t>(knot)]);
   }
-  const std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, refined, view.path) : found;
+  std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, refined, view.path) : found;
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
+    const std::vector<double> turns = rolls_of(all);
+    for (std::size_t layer = 0; layer < rows.size(); ++layer)
+      rows[layer].roll = turns[static_cast<std::size_t>(rolls->knots()[layer])];
+  }
   Json tool_path = Json::array();
   for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
 
@@ -425,7 +433,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
        {{"ds", problem.resolution.ds},
         {"dphi", problem.resolution.dphi},
         {"clearance_mm", 1e3 * problem.limits.clearance},
-        {"joint_step", problem.limits.joint_step},
+        {"joint_step", lattice.has_layers_between() ? Json(nullptr) : Json(problem.limits.joint_step)},
         {"edges", problem.limits.edges == EdgeMode::kContinuous ? "continuous" : "nodes"}}},
       {"chain", chain_json(lattice.chain())},
       {"bodies", std::move(bodies.bodies)},

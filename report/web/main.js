@@ -24,6 +24,7 @@ window.swivel = { joints: null, frames: 0, line: null };
 const plots = new Plots($('plots'), rows.map((row) => row.s), [
   ...ranges(),
   ...chain.joints.map((joint, k) => ({ title: joint.name, unit: 'deg', values: rows.map((row) => row.q[k] * kDegrees), low: degrees(joint.lower), high: degrees(joint.upper) })),
+  { title: 'roll of the tool', unit: 'deg', values: rows.map((row) => degrees(row.roll)), low: null, high: null },
   { title: 'largest joint step', unit: 'deg', values: rows.map((row, i) => (i ? kDegrees * Math.max(...row.q.map((v, k) => Math.abs(v - rows[i - 1].q[k]))) : null)), low: null, high: degrees(data.settings.joint_step), from0: true },
   { title: 'manipulability', unit: 'm³', values: rows.map((row) => manipulability(chain, row.q)), low: null, high: null, from0: true },
   { title: 'clearance', unit: 'mm', values: rows.map((row) => row.clearance_mm ?? null), low: data.settings.clearance_mm, high: null, from0: true },
@@ -110,7 +111,8 @@ function show(q, pair, line = null, hit = false) {
   Object.assign(window.swivel, { joints: q, line });
 }
 function readout(s, phi, q, note) {
-  $('readout').textContent = `s ${s.toFixed(4)} m   φ ${(phi * kDegrees).toFixed(1)}°\n${chain.joints.map((j, k) => `${j.name}  ${(q[k] * kDegrees).toFixed(2)}°`).join('\n')}\n${note}`;
+  const { roll } = rows[rowAt(s)] ?? {};
+  $('readout').textContent = `s ${s.toFixed(4)} m   φ ${(phi * kDegrees).toFixed(1)}°${roll === undefined ? '' : `   roll ${(roll * kDegrees).toFixed(1)}°`}\n${chain.joints.map((j, k) => `${j.name}  ${(q[k] * kDegrees).toFixed(2)}°`).join('\n')}\n${note}`;
 }
 const lineOf = ({ nearest, clearance_mm }) => (nearest ? { points: nearest, text: `${number(clearance_mm, 3)} mm` } : null);
 
@@ -211,6 +213,7 @@ const unseen = cells.count((state) => state === UNSEEN), known = cells.count((st
 $('map-note').textContent = `s to the right, φ upwards. ${cells.layers_each * cells.angles_each > 1
   ? `A cell stands for up to ${cells.layers_each} × ${cells.angles_each} of the ${number(data.result.lattice.nodes)} nodes and shows a blocked one before a free one, and that before the others. ` : 'A cell is a node. '}`
   + (unseen + known ? `Of the cells that exist in closed form, ${number((100 * unseen) / (unseen + known), 3)} % were never looked at.` : '')
+  + (data.result.lattice.rolls ? ' Each layer is drawn for the roll that the path was found with.' : '')
   + (data.beside.length ? ' The thin dashed line is the path that was found on the lattice, before it was refined.' : '')
   + (!solved && rows.length ? ' The dashed line is where every path has ended.' : '');
 const stem = data.problem.replace(/\.[^.]*$/, '');
