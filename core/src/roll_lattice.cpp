@@ -41,6 +41,8 @@ std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm&
                                                const Budget& budget) {
   if (problem.limits.step_error)
     throw InputError(problem.source + ": limits.step_error: allowed without path.roll, or for arms of six joints");
+  if (problem.cost.roll > 0)
+    throw InputError(problem.source + ": cost.roll: allowed for arms of six joints, or as a narrower path.roll");
   return std::unique_ptr<RollLattice>(new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution)));
 }
 

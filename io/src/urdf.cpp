@@ -41,6 +41,15 @@ class MessageCollector : public console_bridge::OutputHandler {
   std::string text_;
 };
 
+std::string replaced(std::string_view text, std::string_view what, std::string_view by) {
+  std::string result;
+  for (std::size_t at; (at = text.find(what)) != std::string_view::npos; text.remove_prefix(at + what.size()))
+    result.append(text.substr(0, at)).append(by);
+  return result.append(text);
+}
+
+constexpr std::string_view kPercent = "\xEE\x80\xA5";  // U+E025, which no file has a use for
+
 urdf::ModelInterfaceSharedPtr parse_quietly(const std::string& xml, const std::string& file) {
   static std::mutex one_at_a_time;  // console_bridge has one output handler for the whole process
   const std::lock_guard lock(one_at_a_time);
@@ -48,16 +57,36 @@ urdf::ModelInterfaceSharedPtr parse_quietly(const std::string& xml, const std::s
   console_bridge::useOutputHandler(&messages);
   urdf::ModelInterfaceSharedPtr model;
   std::string thrown;
+  const console_bridge::LogLevel level = console_bridge::getLogLevel();
   try {
-    model = urdf::parseURDF(xml);
+    // It hands text of the file to printf as a format: what is wrong is said of one without '%'.
+    model = urdf::parseURDF(replaced(xml, "%", kPercent));
+    if (model && xml.find('%') != std::string::npos) {
+      console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
+      model = urdf::parseURDF(xml);
+    }
   } catch (const std::exception& error) {
     thrown = error.what();
   }
+  console_bridge::setLogLevel(level);
   console_bridge::restorePreviousOutputHandler();
   // A complaint counts even where urdfdom goes on: it drops collision geometry that it cannot read.
   if (!model || !messages.text().empty())
-    bad_input(file, "not a valid robot (" + (thrown.empty() ? messages.text() : thrown) + ")", "a URDF 1.0 robot, xacro expanded");
+    bad_input(file, "not a valid robot (" + replaced(thrown.empty() ? messages.text() : thrown, kPercent, "%") + ")",
+              "a URDF 1.0 robot, xacro expanded");
   return model;
+}
+
+/// Removes comments, text and the like, at any depth: printed and read again they may turn into something else.
+void keep_elements(tinyxml2::XMLElement& element) {
+  for (tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr;) {
+    tinyxml2::XMLNode* const next = child->NextSibling();
+    if (tinyxml2::XMLElement* const inner = child->ToElement())
+      keep_elements(*inner);
+    else
+      element.DeleteChild(child);
+    child = next;
+  }
 }
 
 /// Removes children that are not in `kept`.
@@ -120,12 +149,13 @@ class ModelBuilder {
     tinyxml2::XMLDocument document;
     tinyxml2::XMLElement& robot = load_robot_xml(source_, "URDF", document);
     strip(robot);
+    keep_elements(robot);
     check_name(robot);
     check_names(robot, "link", links_);
     check_names(robot, "joint", joints_);
     check_tree(robot);
     tinyxml2::XMLPrinter printer(nullptr, true);
-    document.Print(&printer);
+    robot.Accept(&printer);  // alone: what stands around it may read otherwise once it is printed
     parsed_ = parse_quietly(printer.CStr(), urdf_.string());
     model_->name = parsed_->getName();
     model_->source = urdf_.string();

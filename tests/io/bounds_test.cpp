@@ -182,6 +182,29 @@ TEST(Bounds, PairsAndShapesOfARobotEnd) {
   expect_message(input_error([&] { (void)load_robot(folder.write("a.urdf", balls + more)); }), {"link 'm'", "too many", "10000"});
 }
 
+/// urdfdom hands text of the file to printf as a format.
+TEST(Bounds, TextOfARobotIsNoFormat) {
+  const TempFolder folder;
+  const std::string wrong =
+      "<robot name='r'><link name='a'><collision><geometry><sphere "
+      "radius='0%.0300000000E%n'/></geometry></collision></link></robot>";
+  expect_message(input_error([&] { (void)load_robot(folder.write("wrong.urdf", wrong)); }), {"wrong.urdf", "0%.0300000000E%n"});
+  const auto named =
+      load_robot(folder.write("named.urdf",
+                              "<robot name='100%s'><link name='%n'/><link name='50% b'/><joint name='%s' type='fixed'>"
+                              "<parent link='%n'/><child link='50% b'/></joint></robot>"));
+  EXPECT_EQ(named->links[1].name, "50% b");
+  EXPECT_EQ(named->joints[0].name, "%s");
+}
+
+/// What stands around the robot, or between its elements, is not read again as something else.
+TEST(Bounds, AWholeRobotInADeclarationIsNone) {
+  const TempFolder folder;
+  const std::string text =
+      "<?&t its ends. -->\n<robot name='r'><link name='a'/></robot>\n?><robot name='s'>text<link name='b'/></robot>\n";
+  EXPECT_EQ(load_robot(folder.write("around.urdf", text))->links.at(0).name, "b");
+}
+
 TEST(Bounds, DeeplyNestedFiles) {
   const ProblemFolder folder;
   const auto nested = [](const std::string& open, int depth) {
