@@ -116,8 +116,10 @@ class Results(unittest.TestCase):
         ("experiment_c.yaml", "--timeout", "1e-6"),
         ("experiment_a_start.yaml", "--advise", "1", "--certificate", "cut.json"),
         ("kr6_weld_pipe.yaml", "--speed", "0.2"),
+        ("torch_door.yaml", "--refine"),
         (made_problem(smooth=None), "--speed", "0.1"),
         (made_problem(walls=["one", "two"]),),
+        (made_problem(walls=["one"], roll=[0.3, 0.6]),),
         (made_problem(frame="far"),),
         # The ball touches link_5 in every posture, and is always 4 mm from link_4.
         (made_problem(attached=[{"name": "ball", "sphere": 0.211, "xyz": [0, 0, -0.126]}]),),
