@@ -8,16 +8,15 @@
 
 namespace swivel {
 
-ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget) : CostToGo(lattice, budget), lattice_(&lattice) {
+ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
+    : LayerValues(lattice, budget), lattice_(&lattice) {
   const auto layers = static_cast<std::size_t>(lattice.layers());
   joints_.resize(layers);
-  value_.resize(layers);
   std::vector<Lattice::Node> nodes;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
     budget_.poll();
     lattice.layer_nodes(layer, nodes);
     const auto count = static_cast<std::size_t>(lattice.slots(layer));
-    value_[static_cast<std::size_t>(layer)].assign(count, kUnreachable);
     for (std::size_t k = 0; k < kDof; ++k) {
       Values& joint = joints_[static_cast<std::size_t>(layer)][k];
       joint.resize(count);
@@ -27,7 +26,7 @@ ExplicitCostToGo::ExplicitCostToGo(const Lattice& lattice, const Budget& budget)
   }
 }
 
-void ExplicitCostToGo::relax(int step_layer, int layer, int other_layer, const Values& others, Values& out) {
+void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values& others, Values& out) {
   const auto& from = joints_[static_cast<std::size_t>(layer)];
   const auto& to = joints_[static_cast<std::size_t>(other_layer)];
   const std::size_t count = from[0].size(), partners = others.size();
@@ -43,7 +42,7 @@ void ExplicitCostToGo::relax(int step_layer, int layer, int other_layer, const V
     task.wraps |= turns;
     task.turn[k] = turns ? kTwoPi : 0;
     task.scale[k] = lattice_->cost_scale()[k];
-    task.bound[k] = lattice_->step_bound(step_layer)[static_cast<Eigen::Index>(k)];
+    task.bound[k] = lattice_->step_bound(step)[static_cast<Eigen::Index>(k)];
     task.from[k] = from[k].data();
     task.to[k] = to[k].data();
   }
@@ -82,37 +81,6 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
   return best;
 }
 
-void ExplicitCostToGo::solve_layer(int layer, Values& out) {
-  const int count = lattice_->slots(layer);
-  if (layer == goal_)
-    out.assign(static_cast<std::size_t>(count), 0.0);
-  else
-    relax(layer, layer, layer + 1, value_[static_cast<std::size_t>(layer) + 1], out);
-  for (int slot = 0; slot < count; ++slot)
-    if (removed(layer, slot)) out[static_cast<std::size_t>(slot)] = kUnreachable;
-  if (const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer))
-    for (const auto& [a, heads] : edges->tails) {
-      double& value = out[static_cast<std::size_t>(a)];
-      const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
-      if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
-    }
-  if (const double* own = verdicts_.costs(layer))
-    for (double& value : out) value += *own++;
-}
-
-void ExplicitCostToGo::compute(int goal_layer) {
-  const TraceSpan span("sweep");
-  verdicts_.pending.clear();
-  for (int layer = lattice_->layers() - 1; layer > goal_layer; --layer) {
-    Values& values = value_[static_cast<std::size_t>(layer)];
-    std::fill(values.begin(), values.end(), kUnreachable);
-  }
-  for (int layer = goal_layer; layer >= 0; --layer) {
-    budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
-    solve_layer(layer, value_[static_cast<std::size_t>(layer)]);
-  }
-}
-
 void ExplicitCostToGo::compute_removals() {
   const TraceSpan span("repair");
   bool changed = false;  // the layer after
@@ -126,36 +94,6 @@ void ExplicitCostToGo::compute_removals() {
     Values& values = value_[static_cast<std::size_t>(layer)];
     changed = settled != values;
     values.swap(settled);
-  }
-}
-
-double ExplicitCostToGo::best() const {
-  const Values& first = value_.front();
-  return first.empty() ? kUnreachable : *std::min_element(first.begin(), first.end());
-}
-
-int ExplicitCostToGo::deepest_reachable() {
-  const TraceSpan span("reach");
-  Values before(value_.front().size(), 0.0), here;
-  for (int layer = 0;; ++layer) {
-    budget_.poll();
-    if (layer > 0) {
-      relax(layer - 1, layer, layer - 1, before, here);
-      if (const auto* edges = verdicts_.removed_edges(layer - 1))
-        for (const auto& [b, tails] : edges->heads) {
-          double& value = here[static_cast<std::size_t>(b)];
-          const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
-            return edge.cost + before[static_cast<std::size_t>(edge.other)] == value;
-          };
-          if (value != kUnreachable && std::any_of(tails.begin(), tails.end(), gives_value))
-            value = relax_one_forward(layer, b, before);
-        }
-      before.swap(here);
-    }
-    for (int slot = 0; slot < lattice_->slots(layer); ++slot)
-      if (removed(layer, slot)) before[static_cast<std::size_t>(slot)] = kUnreachable;
-    if (std::all_of(before.begin(), before.end(), [](double value) { return value == kUnreachable; })) return layer - 1;
-    if (layer + 1 == lattice_->layers()) return layer;
   }
 }
 

@@ -15,15 +15,12 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of joints that are 
 }  // namespace
 
 RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
-    : CostToGo(lattice, budget),
+    : LayerValues(lattice, budget),
       lattice_(&lattice),
       angles_(lattice.at_roll(0).angles()),
       sheets_(lattice.at_roll(0).sheets()),
       pad_(lattice.widest_phi_window()),
-      solved_(static_cast<std::size_t>(lattice.layers())) {
-  for (int layer = 0; layer < lattice.layers(); ++layer)
-    value_.emplace_back(static_cast<std::size_t>(lattice.slots(layer)), kUnreachable);
-}
+      solved_(static_cast<std::size_t>(lattice.layers())) {}
 
 const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
   Solved& solved = solved_[static_cast<std::size_t>(layer)];
@@ -63,11 +60,10 @@ Config RollCostToGo::config(int layer, int slot) {
   return nodes(layer, lattice_->rank_of(layer, slot)).config(inner / angles_, pad_ + inner % angles_);
 }
 
-void RollCostToGo::take_around(int layer, const Values& values) {
+void RollCostToGo::take_around(const Values& values) {
   const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * sheets_;
   around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length), kUnreachable);
   around_.finite.assign(static_cast<std::size_t>(rows), {});
-  if (begins(layer)) return;
   for (int row = 0; row < rows; ++row) {
     const double* from = values.data() + static_cast<std::ptrdiff_t>(row) * angles_;
     const auto is_finite = [](double value) { return value != kUnreachable; };
@@ -96,10 +92,24 @@ void RollCostToGo::runs_of(const LayerNodes& nodes, int sheet) {
   }
 }
 
-void RollCostToGo::relax(int step, int layer, int other, Values& out) {
+void RollCostToGo::relax(int step, int layer, int other, const Values& others, Values& out) {
+  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
+  if (begins(layer)) {
+    if (lattice_->node(0, 0)) out[0] = relax_one(0, 0);
+    return;
+  }
+  if (begins(other)) {
+    std::vector<Lattice::SlotRun> runs;
+    lattice_->successors(0, 0, runs);
+    for (const Lattice::SlotRun& run : runs)
+      for (int b = run.first; b < run.last; ++b)
+        if (others[0] != kUnreachable && lattice_->node(layer, b))
+          out[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, others);
+    return;
+  }
+  take_around(others);
   const int window = lattice_->phi_window(step), length = angles_ + 2 * pad_;
   const int windings = lattice_->at_roll(0).windings();
-  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
   RelaxTask<double> task;
   task.offsets = std::min(2 * window + 1, angles_);
   task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
@@ -205,48 +215,17 @@ double RollCostToGo::relax_one_forward(int layer, int slot, const Values& before
   return best;
 }
 
-void RollCostToGo::solve_layer(int layer) {
-  Values& out = value_[static_cast<std::size_t>(layer)];
+void RollCostToGo::begin(int layer, Values& out) {
+  out.assign(static_cast<std::size_t>(lattice_->slots(layer)), kUnreachable);
   if (begins(layer)) {
-    const bool exists = lattice_->node(0, 0).has_value();
-    out[0] = !exists || removed(0, 0) ? kUnreachable : layer == goal_ ? 0.0 : relax_one(0, 0);
-  } else if (layer == goal_) {
-    out.assign(out.size(), kUnreachable);
-    for (int rank = 0; rank < lattice_->rolls(); ++rank) {
-      const LayerNodes& own = nodes(layer, rank);
-      for (int sheet = 0; sheet < sheets_; ++sheet)
-        for (int j = 0; own.alive(sheet) && j < angles_; ++j)
-          if (own.valid(sheet, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, sheet * angles_ + j))] = 0;
-    }
-  } else {
-    take_around(layer + 1, value_[static_cast<std::size_t>(layer) + 1]);
-    relax(layer, layer, layer + 1, out);
+    if (lattice_->node(0, 0)) out[0] = 0;
+    return;
   }
-  if (!begins(layer) && verdicts_.removed() > 0) {
-    for (int slot = 0; slot < static_cast<int>(out.size()); ++slot)
-      if (removed(layer, slot)) out[static_cast<std::size_t>(slot)] = kUnreachable;
-    if (const auto* edges = layer == goal_ ? nullptr : verdicts_.removed_edges(layer))
-      for (const auto& [a, heads] : edges->tails) {
-        double& value = out[static_cast<std::size_t>(a)];
-        const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return edge.cost + at(layer + 1, edge.other) == value; };
-        if (value != kUnreachable && std::any_of(heads.begin(), heads.end(), gives_value)) value = relax_one(layer, a);
-      }
-  }
-  if (const double* own = verdicts_.costs(layer))
-    for (double& value : out) value += *own++;
-}
-
-void RollCostToGo::compute(int goal_layer) {
-  const TraceSpan span("sweep");
-  verdicts_.pending.clear();
-  for (int layer = lattice_->layers() - 1; layer > goal_layer; --layer) {
-    Values& values = value_[static_cast<std::size_t>(layer)];
-    std::fill(values.begin(), values.end(), kUnreachable);
-  }
-  for (int layer = goal_layer; layer >= 0; --layer) {
-    budget_.poll(Stage::kSweep, goal_layer - layer, goal_layer);
-    solve_layer(layer);
-    if (layer < goal_layer) forget(layer + 1);  // fresh pages would take longer than solving it again where it is wanted
+  for (int rank = 0; rank < lattice_->rolls(); ++rank) {
+    const LayerNodes& own = nodes(layer, rank);
+    for (int sheet = 0; sheet < sheets_; ++sheet)
+      for (int j = 0; own.alive(sheet) && j < angles_; ++j)
+        if (own.valid(sheet, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, sheet * angles_ + j))] = 0;
   }
 }
 
@@ -272,7 +251,7 @@ void RollCostToGo::compute_removals() {
     constexpr std::size_t kMany = 256;
     if (ahead.size() + stale.size() > kMany) {
       const Values before = values;
-      solve_layer(layer);
+      solve_layer(layer, values);
       for (std::size_t slot = 0; slot < values.size(); ++slot)
         if (values[slot] != before[slot]) changed.push_back({static_cast<int>(slot), before[slot]});
       ahead.swap(changed);
@@ -306,55 +285,6 @@ void RollCostToGo::compute_removals() {
       value = fresh;
     }
     ahead.swap(changed);
-  }
-}
-
-double RollCostToGo::best() const {
-  const Values& first = value_.front();
-  return first.empty() ? kUnreachable : *std::min_element(first.begin(), first.end());
-}
-
-int RollCostToGo::deepest_reachable() {
-  const TraceSpan span("reach");
-  Values before, here;
-  for (int layer = 0;; ++layer) {
-    budget_.poll();
-    const int count = lattice_->slots(layer);
-    here.assign(static_cast<std::size_t>(count), kUnreachable);
-    if (begins(layer)) {
-      if (lattice_->node(0, 0)) here[0] = 0;
-    } else if (layer == 0) {
-      for (int slot = 0; slot < count; ++slot) {
-        const int inner = lattice_->inner(0, slot);
-        const LayerNodes& own = nodes(0, lattice_->rank_of(0, slot));
-        if (own.alive(inner / angles_) && own.valid(inner / angles_, pad_ + inner % angles_))
-          here[static_cast<std::size_t>(slot)] = 0;
-      }
-    } else if (begins(layer - 1)) {
-      std::vector<Lattice::SlotRun> runs;
-      lattice_->successors(0, 0, runs);
-      for (const Lattice::SlotRun& run : runs)
-        for (int b = run.first; b < run.last; ++b)
-          if (before[0] != kUnreachable && lattice_->node(layer, b))
-            here[static_cast<std::size_t>(b)] = relax_one_forward(layer, b, before);
-    } else {
-      take_around(layer - 1, before);
-      relax(layer - 1, layer, layer - 1, here);
-      if (const auto* edges = verdicts_.removed_edges(layer - 1))
-        for (const auto& [b, tails] : edges->heads) {
-          double& value = here[static_cast<std::size_t>(b)];
-          const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
-            return edge.cost + before[static_cast<std::size_t>(edge.other)] == value;
-          };
-          if (value != kUnreachable && std::any_of(tails.begin(), tails.end(), gives_value))
-            value = relax_one_forward(layer, b, before);
-        }
-    }
-    for (int slot = 0; slot < count; ++slot)
-      if (removed(layer, slot)) here[static_cast<std::size_t>(slot)] = kUnreachable;
-    if (std::all_of(here.begin(), here.end(), [](double value) { return value == kUnreachable; })) return layer - 1;
-    if (layer + 1 == lattice_->layers()) return layer;
-    before.swap(here);
   }
 }
 

@@ -1,37 +1,32 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "layer_values.hpp"
 #include "swivel/core/roll_lattice.hpp"
-#include "swivel/graph/cost_to_go.hpp"
 
 namespace swivel {
 
 /// Cost-to-go of a grid of rolls and arm angles, in vector code: the circle of arm angles of each roll and sheet against those of
 /// the rolls nearby, of the same branch. A removal is repaired backwards, node by node, for as long as values change.
 /// Memory: 9 bytes a node; joints besides, some 40 bytes a node of the layers that are kept.
-class RollCostToGo final : public CostToGo {
+class RollCostToGo final : public LayerValues {
  public:
   explicit RollCostToGo(const RollLattice& lattice, const Budget& budget = {});
 
   [[nodiscard]] const RollLattice& lattice() const override { return *lattice_; }
-  [[nodiscard]] double at(int layer, int slot) const override {
-    return value_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
-  }
-  [[nodiscard]] double best() const override;
-  [[nodiscard]] int deepest_reachable() override;
   [[nodiscard]] Config config(int layer, int slot) override;
   void steps(int layer, int slot, double bound, std::vector<Step>& out) override;
 
  private:
-  using Values = std::vector<double>;  // [slot]
-  void compute(int goal_layer) override;
   void compute_removals() override;
-  void save() override { saved_ = {goal_, value_}; }
-  void restore() override { std::tie(goal_, value_) = saved_; }
+  void begin(int layer, Values& out) override;
+  void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
+  [[nodiscard]] double relax_one(int layer, int slot) override;
+  [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
+  void done_with(int layer) override { forget(layer); }  // fresh pages would take longer than solving it again where it is wanted
 
   [[nodiscard]] bool begins(int layer) const { return layer == 0 && lattice_->has_start(); }
   /// The nodes of a layer that is not a given start, for one roll: arm angle j at entry pad_ + j, and around the circle on both
@@ -44,22 +39,14 @@ class RollCostToGo final : public CostToGo {
     std::vector<std::pair<int, int>> finite;  // [rank][sheet]: those that are lie from the first to before the second
   };
   void runs_of(const LayerNodes& nodes, int sheet);
-  void take_around(int layer, const Values& values);
-  /// Least edge cost plus value over a neighbouring layer, around_, for every node of a layer, infinite where there is no node.
-  void relax(int step, int layer, int other, Values& out);
+  void take_around(const Values& values);
   /// `visit(slot b, its joints)` for the nodes of a neighbouring layer that a node may be joined to, whether removed or not, whose
   /// `worth(b)` is true.
   template <class Worth, class Visit>
   void each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit);
-  [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
-  [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before);
-  void solve_layer(int layer);
-  [[nodiscard]] bool removed(int layer, int slot) const { return verdicts_.node(layer, slot) == Verdict::kRemoved; }
 
   const RollLattice* lattice_;
   int angles_, sheets_, pad_;
-  std::vector<Values> value_;  // [layer]
-  std::tuple<int, std::vector<Values>> saved_;
   Around around_;
   std::vector<std::pair<int, int>> runs_;  // of arm angles, first and behind the last
   struct Solved {
