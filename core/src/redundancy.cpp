@@ -19,6 +19,17 @@ namespace swivel {
 
 namespace {
 
+/// Joints at an arm angle, of the row's branch and the images nearest to its joints.
+std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
+                                  const std::array<ElbowCircle, 2>& circles, const Pose& tool, double angle,
+                                  const TrajectoryRow& row) {
+  std::optional<Config> q = srs_ik(arm, circles, angle, row.branch);
+  if (!arm.exact) q = polish(chain, arm, plane, tool, angle, *q);
+  if (!q) return std::nullopt;
+  for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
+  return q;
+}
+
 /// The arm angle of each layer, about the angle that it had; branches and joint images stay.
 class ArmAngles final : public LayerSolver {
  public:
@@ -35,12 +46,8 @@ class ArmAngles final : public LayerSolver {
     const auto i = static_cast<std::size_t>(layer);
     const TrajectoryRow& row = (*rows_)[i];
     if (!reachable_[i]) return std::nullopt;
-    std::optional<Config> q = srs_ik(lattice_->arm(), circles_[i], angle, row.branch);
-    if (!lattice_->arm().exact)
-      q = polish(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), lattice_->path().layer(layer).tool, angle, *q);
-    if (!q) return std::nullopt;
-    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
-    return q;
+    return joints_near(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), circles_[i], lattice_->path().layer(layer).tool,
+                       angle, row);
   }
 
  private:
@@ -104,11 +111,7 @@ class Rolls final : public LayerSolver {
     const Pose tool = rolled(path_->layer(layer).tool, roll);
     const ArmPlane plane = carry_plane(*arm_, (*planes_)[i], tool);
     if (reach_status(*arm_, plane.reach) != ReachStatus::kReachable) return std::nullopt;
-    std::optional<Config> q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angles_[i], (*rows_)[i].branch);
-    if (!arm_->exact) q = polish(*chain_, *arm_, plane, tool, angles_[i], *q);
-    if (!q) return std::nullopt;
-    for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = (*rows_)[i].q[j] + wrap_angle((*q)[j] - (*rows_)[i].q[j]);
-    return q;
+    return joints_near(*chain_, *arm_, plane, elbow_circles(*arm_, plane, tool), tool, angles_[i], (*rows_)[i]);
   }
 
  private:

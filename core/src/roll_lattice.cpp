@@ -82,9 +82,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   set_row_step_bounds(std::move(bounds));
 
   const Roll& range = *chain.free_roll;
-  double nominal = std::clamp(0.0, range.lower, range.upper);
   circle_ = range.upper - range.lower >= kTwoPi - 1e-9;
-  if (circle_) nominal = 0;
+  double nominal = circle_ ? 0 : std::clamp(0.0, range.lower, range.upper);
   if (problem.start) {
     double roll = roll_between(path.layer(0).tool, chain.tool(*problem.start));
     if (!circle_) roll += kTwoPi * std::round(((range.lower + range.upper) / 2 - roll) / kTwoPi);

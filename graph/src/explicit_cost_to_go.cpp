@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kernels/relax.hpp"
+#include "relax_task.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -32,21 +32,13 @@ void ExplicitCostToGo::relax(int step, int layer, int other_layer, const Values&
   const std::size_t count = from[0].size(), partners = others.size();
   out.assign(count, kUnreachable);
   if (partners == 0 || count == 0) return;
-  RelaxTask<double> task;
+  RelaxTask<double> task = relax_task(*lattice_, step);
   task.n = static_cast<int>(count);
   task.offsets = static_cast<int>(partners);
-  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
-  task.wraps = false;
   for (std::size_t k = 0; k < kDof; ++k) {
-    const bool turns = lattice_->continuous()[k];
-    task.wraps |= turns;
-    task.turn[k] = turns ? kTwoPi : 0;
-    task.scale[k] = lattice_->cost_scale()[k];
-    task.bound[k] = lattice_->step_bound(step)[static_cast<Eigen::Index>(k)];
     task.from[k] = from[k].data();
     task.to[k] = to[k].data();
   }
-  task.unit = lattice_->cost_unit();
   task.value = others.data();
   task.best = out.data();
   edges_ += static_cast<std::int64_t>(count * partners);

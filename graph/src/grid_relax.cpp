@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "grid_tiles.hpp"
-#include "kernels/relax.hpp"
+#include "relax_task.hpp"
 
 namespace swivel {
 
@@ -74,22 +74,13 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
 void GridCostToGo::relax_run(int step_layer, const Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
                              double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
-  RelaxTask<double> task;
+  RelaxTask<double> task = relax_task(*lattice_, step_layer);
   task.n = count;
   task.offsets = 2 * window + 1;
-  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
-  task.wraps = false;
-  const Config& bound = lattice_->step_bound(step_layer);
   for (int j = 0; j < kDof; ++j) {
-    const bool turns = lattice_->continuous()[static_cast<std::size_t>(j)];
-    task.wraps |= turns;
-    task.turn[j] = turns ? kTwoPi : 0;
-    task.scale[j] = lattice_->cost_scale()[static_cast<std::size_t>(j)];
-    task.bound[j] = bound[j];
     task.from[j] = from.nodes().q(sheet, j) + window + first;
     task.to[j] = to.nodes().q(other, j) + first;
   }
-  task.unit = lattice_->cost_unit();
   task.best = best;
   task.value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
   edges_ += static_cast<std::int64_t>(count) * task.offsets;

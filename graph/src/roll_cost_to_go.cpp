@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "kernels/relax.hpp"
+#include "relax_task.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -110,18 +110,8 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
   take_around(others);
   const int window = lattice_->phi_window(step), length = angles_ + 2 * pad_;
   const int windings = lattice_->at_roll(0).windings();
-  RelaxTask<double> task;
+  RelaxTask<double> task = relax_task(*lattice_, step);
   task.offsets = std::min(2 * window + 1, angles_);
-  task.metric = lattice_->cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
-  task.wraps = false;
-  for (std::size_t k = 0; k < kDof; ++k) {
-    const bool turns = lattice_->continuous()[k];
-    task.wraps |= turns;
-    task.turn[k] = turns ? kTwoPi : 0;
-    task.scale[k] = lattice_->cost_scale()[k];
-    task.bound[k] = lattice_->step_bound(step)[static_cast<Eigen::Index>(k)];
-  }
-  task.unit = lattice_->cost_unit();
   for (int rank = 0; rank < lattice_->rolls(); ++rank) {
     budget_.poll();
     const LayerNodes& own = nodes(layer, rank);

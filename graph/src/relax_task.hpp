@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include "kernels/relax.hpp"
+#include "swivel/core/lattice.hpp"
+
+namespace swivel {
+
+/// What a lattice's metric and the joints' largest moves on a step ask of the kernels; the runs that are to meet are the caller's.
+inline RelaxTask<double> relax_task(const Lattice& lattice, int step) {
+  RelaxTask<double> task;
+  task.metric = lattice.cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
+  task.wraps = false;
+  const Config& bound = lattice.step_bound(step);
+  for (int j = 0; j < kDof; ++j) {
+    const bool turns = lattice.continuous()[static_cast<std::size_t>(j)];
+    task.wraps |= turns;
+    task.turn[j] = turns ? kTwoPi : 0;
+    task.scale[j] = lattice.cost_scale()[static_cast<std::size_t>(j)];
+    task.bound[j] = bound[j];
+  }
+  task.unit = lattice.cost_unit();
+  return task;
+}
+
+}  // namespace swivel
