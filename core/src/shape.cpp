@@ -3,50 +3,59 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
-#include <functional>
-#include <unordered_map>
 
 #include "swivel/core/vertex_numbers.hpp"
 
 namespace swivel {
 
 std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
-  using Position = std::array<double, 3>;
-  struct Hash {
-    std::size_t operator()(const Position& p) const {
-      const std::hash<double> hash;  // one of 0 and -0, which are equal
-      return 31 * (31 * hash(p[0]) + hash(p[1])) + hash(p[2]);
+  // A table of places with room for twice as many; one that is taken by another vertex leads to the next.
+  const std::size_t places = std::bit_ceil(2 * mesh.vertices.size() + 1);
+  std::vector<int> first(places, -1);  // vertex there
+  const auto place_of = [places](const Vector3d& p) {
+    std::uint64_t hash = 0;
+    for (const double x : p) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15;  // one of 0 and -0, which are equal
+      hash ^= hash >> 32;
     }
+    return hash & (places - 1);
   };
-  std::unordered_map<Position, int, Hash> known;
-  known.reserve(mesh.vertices.size());
   std::vector<int> numbers;
   numbers.reserve(mesh.vertices.size());
-  for (const Vector3d& p : mesh.vertices)
-    numbers.push_back(known.try_emplace({p.x(), p.y(), p.z()}, static_cast<int>(known.size())).first->second);
+  int known = 0;
+  for (const Vector3d& p : mesh.vertices) {
+    std::size_t place = place_of(p);
+    while (first[place] >= 0 && mesh.vertices[static_cast<std::size_t>(first[place])] != p) place = (place + 1) & (places - 1);
+    if (first[place] < 0) {
+      first[place] = static_cast<int>(numbers.size());
+      numbers.push_back(known++);
+    } else {
+      numbers.push_back(numbers[static_cast<std::size_t>(first[place])]);
+    }
+  }
   return numbers;
 }
 
 bool is_closed(const TriangleMesh& mesh) {
   const std::vector<int> number = vertex_numbers(mesh);
-  struct Uses {
-    int forth = 0, back = 0;
-  };
-  std::unordered_map<std::uint64_t, Uses> edges;  // by both ends, the lesser one first
-  edges.reserve(3 * mesh.triangles.size() / 2);
+  std::vector<std::uint64_t> edges;  // both ends, the lesser one first, and whether it is walked from there
+  edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
-    std::array<int, 3> v{};
-    for (std::size_t k = 0; k < 3; ++k) v[k] = number[static_cast<std::size_t>(triangle[k])];
+    std::array<std::uint64_t, 3> v{};
+    for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<std::uint64_t>(number[static_cast<std::size_t>(triangle[k])]);
     if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;  // a sliver has no area and bounds nothing
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto from = static_cast<std::uint32_t>(v[k]), to = static_cast<std::uint32_t>(v[(k + 1) % 3]);
-      Uses& uses = edges[std::uint64_t{std::min(from, to)} << 32 | std::max(from, to)];
-      ++(from < to ? uses.forth : uses.back);
+      const std::uint64_t from = v[k], to = v[(k + 1) % 3];
+      edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | static_cast<std::uint64_t>(from < to));
     }
   }
-  return !edges.empty() &&
-         std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second.forth == 1 && edge.second.back == 1; });
+  // Each is walked once either way.
+  std::sort(edges.begin(), edges.end());
+  bool closed = !edges.empty() && edges.size() % 2 == 0;
+  for (std::size_t k = 0; closed && k < edges.size(); k += 2) closed = edges[k] % 2 == 0 && edges[k + 1] == edges[k] + 1;
+  return closed;
 }
 
 std::vector<Ball> bounding_balls(const Shape& shape) {

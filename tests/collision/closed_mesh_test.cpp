@@ -4,10 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "reference.hpp"
 #include "support.hpp"
+#include "swivel/core/vertex_numbers.hpp"
 
 namespace swivel {
 namespace {
@@ -61,6 +64,57 @@ TEST(ClosedMesh, RaysThroughCornersAndEdgesCountOnce) {
         ++checks;
       }
   EXPECT_EQ(checks, 150);
+}
+
+TEST(ClosedMesh, EdgesAndPositionsAreCountedAsByHand) {
+  Random random(12);
+  int closed = 0, open = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    // A closed surface of few corners, every corner stored anew, as STL does; often a triangle is missing, doubled or turned.
+    TriangleMesh mesh = box_mesh(Vector3d(1, 1, 1), 1 + random.index(2));
+    TriangleMesh soup;
+    for (const auto& t : mesh.triangles) {
+      const int at = static_cast<int>(soup.vertices.size());
+      for (const int v : t) {
+        soup.vertices.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+        for (double& x : soup.vertices.back())
+          if (x == 0 && random.index(2) == 0) x = -0.0;
+      }
+      soup.triangles.push_back({at, at + 1, at + 2});
+    }
+    for (int change = random.index(3); change > 0; --change) {
+      const auto which = static_cast<std::size_t>(random.index(static_cast<int>(soup.triangles.size())));
+      auto& t = soup.triangles[which];
+      switch (random.index(3)) {
+        case 0:
+          soup.triangles.erase(soup.triangles.begin() + static_cast<std::ptrdiff_t>(which));
+          break;
+        case 1:
+          soup.triangles.push_back(t);
+          break;
+        default:
+          std::swap(t[0], t[1]);
+      }
+    }
+    const std::vector<int> number = vertex_numbers(soup);
+    int known = 0;
+    for (std::size_t k = 0; k < number.size(); ++k) {
+      const auto same = std::find(soup.vertices.begin(), soup.vertices.end(), soup.vertices[k]) - soup.vertices.begin();
+      ASSERT_EQ(number[k], static_cast<std::size_t>(same) < k ? number[static_cast<std::size_t>(same)] : known++) << trial;
+    }
+    std::map<std::pair<int, int>, int> walked;
+    for (const auto& t : soup.triangles)
+      for (std::size_t k = 0; k < 3; ++k)
+        ++walked[{number[static_cast<std::size_t>(t[k])], number[static_cast<std::size_t>(t[(k + 1) % 3])]}];
+    const bool by_hand = !walked.empty() && std::all_of(walked.begin(), walked.end(), [&](const auto& edge) {
+      const auto back = walked.find({edge.first.second, edge.first.first});
+      return edge.second == 1 && back != walked.end() && back->second == 1;
+    });
+    ASSERT_EQ(is_closed(soup), by_hand) << trial;
+    ++(by_hand ? closed : open);
+  }
+  EXPECT_GT(closed, 1000);
+  EXPECT_GT(open, 1000);
 }
 
 TEST(ClosedMesh, OnePointPerPart) {
