@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "swivel/collision/world.hpp"
 
@@ -113,10 +114,20 @@ double signed_distance(const Solid& solid, const Vector3d& p) {
   return out > 0 ? out : -depth(solid, p);
 }
 
-/// A corner or the middle of the triangle is at a gap below `low`.
-template <class Gap>
-bool finds_nearer(double low, const Gap& gap, const Triangle& t) {
-  return gap(t.a) < low || gap(t.a + t.ab) < low || gap(t.a + t.ac) < low || gap(t.a + (t.ab + t.ac) / 3) < low;
+/// Whether signed_distance() is below `low`.
+bool is_nearer(const Box& box, const Vector3d& p, double low) {
+  const Vector3d out = p.cwiseAbs() - box.size / 2;
+  const double most = out.maxCoeff();
+  return most < low && (most <= 0 || out.cwiseMax(0).squaredNorm() < low * low);
+}
+bool is_nearer(const Cylinder& cylinder, const Vector3d& p, double low) {
+  return signed_distance(cylinder, p) < low;
+}
+
+/// A corner or the middle of the triangle is one of the points of which `holds` holds.
+template <class Holds>
+bool any_point(const Holds& holds, const Triangle& t) {
+  return holds(t.a) || holds(t.a + t.ab) || holds(t.a + t.ac) || holds(t.a + (t.ab + t.ac) / 3);
 }
 /// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`; deeper in it than -low
 /// where that is below zero. False for bodies of other kinds.
@@ -125,8 +136,9 @@ bool finds_deeper(double low, const PlacedShapeRef& solid, const PlacedShapeRef&
   const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
   const auto seek = [&](const auto& shape) {
     const auto gap = [&](const Vector3d& p) { return signed_distance(shape, to_solid * p); };
+    const auto nearer = [&](const Vector3d& p) { return is_nearer(shape, to_solid * p, low); };
     return body.shape->triangles->seek(
-        low, gap, [&](const Triangle& t) { return finds_nearer(low, gap, t); }, first);
+        low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, first);
   };
   if (const auto* box = std::get_if<Box>(&solid.shape->shape)) return seek(*box);
   return seek(std::get<Cylinder>(solid.shape->shape));
@@ -143,6 +155,11 @@ bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& b
 double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   return a.shape->triangles->distance(*b.shape->triangles, b_in_a, enough, limit, witness);
+}
+
+double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& witness) {
+  if (!a.shape->triangles || !b.shape->triangles) return std::numeric_limits<double>::infinity();
+  return a.shape->triangles->distance_at(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, witness);
 }
 
 namespace {
@@ -194,8 +211,9 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
     const Segment core = in_frame(core_of(a), *b.pose);
     const double radius = radius_of(a.shape->shape);
     const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
+    const auto nearer = [&](const Vector3d& p) { return gap(p) < low; };
     return b.shape->triangles->seek(
-        low, gap, [&](const Triangle& t) { return finds_nearer(low, gap, t); }, witness.b);
+        low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, witness.b);
   }
   int unused = 0;  // nothing but the distance of the core decides where b has no triangles of its own
   return prove_round(a, b, d, 0, unused).certificate == Certificate::kColliding;

@@ -31,6 +31,8 @@ inline constexpr double kTriangleBand = 1e-6;
 /// Of the triangles of two bodies that have some, m, where it lies in [enough, limit]; else as TriangleTree::distance.
 [[nodiscard]] double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit,
                                       TrianglePair& witness);
+/// What the distance of such surfaces is at most, m: that of the two triangles. Infinite where a body has none.
+[[nodiscard]] double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& witness);
 /// Whether both bodies are nothing but triangles: meshes and boxes.
 [[nodiscard]] bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b);
 /// Of such bodies: surface_distance, but 0 where one holds the other.

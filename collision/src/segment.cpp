@@ -54,6 +54,29 @@ bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   return to > from && (to - from) * (to - from) >= limit * between.squaredNorm();
 }
 
+/// From the nearest point of t to that of s.
+Vector3d shortest(const Segment& s, const Segment& t) {
+  const Vector3d between = s.start - t.start;
+  const double ss = s.along.squaredNorm(), tt = t.along.squaredNorm(), st = s.along.dot(t.along);
+  const double s_between = s.along.dot(between), t_between = t.along.dot(between);
+  const auto nearest_on_s = [&](double y) { return ss > 0 ? on_unit((y * st - s_between) / ss) : 0; };
+  const double determinant = ss * tt - st * st;
+  double x = determinant > 0 ? on_unit((st * t_between - s_between * tt) / determinant) : 0;
+  double y = tt > 0 ? (st * x + t_between) / tt : 0;
+  if (y <= 0 || y >= 1) {
+    y = on_unit(y);
+    x = nearest_on_s(y);
+  }
+  return between + x * s.along - y * t.along;
+}
+
+/// The way parts them by `limit`.
+bool apart_along(const Vector3d& way, const Triangle& s, const Triangle& t, double limit) {
+  const double from = way.dot(s.a - t.a) + std::min({0.0, way.dot(s.ab), way.dot(s.ac)});
+  const double to = std::max({0.0, way.dot(t.ab), way.dot(t.ac)});
+  return from > to && (from - to) * (from - to) >= limit * way.squaredNorm();
+}
+
 }  // namespace
 
 Triangle::Triangle(const Vector3d& corner, const Vector3d& b, const Vector3d& c)
@@ -73,18 +96,7 @@ Triangle Triangle::moved(const Pose& pose) const {
 }
 
 double squared_distance(const Segment& s, const Segment& t) {
-  const Vector3d between = s.start - t.start;
-  const double ss = s.along.squaredNorm(), tt = t.along.squaredNorm(), st = s.along.dot(t.along);
-  const double s_between = s.along.dot(between), t_between = t.along.dot(between);
-  const auto nearest_on_s = [&](double y) { return ss > 0 ? on_unit((y * st - s_between) / ss) : 0; };
-  const double determinant = ss * tt - st * st;
-  double x = determinant > 0 ? on_unit((st * t_between - s_between * tt) / determinant) : 0;
-  double y = tt > 0 ? (st * x + t_between) / tt : 0;
-  if (y <= 0 || y >= 1) {
-    y = on_unit(y);
-    x = nearest_on_s(y);
-  }
-  return (between + x * s.along - y * t.along).squaredNorm();
+  return shortest(s, t).squaredNorm();
 }
 
 double squared_distance(const Segment& s, const Triangle& t, double limit) {
@@ -95,12 +107,18 @@ double squared_distance(const Segment& s, const Triangle& t, double limit) {
 
 double squared_distance(const Triangle& s, const Triangle& t, double limit) {
   if (surely_further(s, t, limit)) return limit;
+  double least = limit;
+  for (int k = 0; k < 3; ++k)
+    for (int l = 0; l < 3; ++l) {
+      const Vector3d way = shortest(s.edge(k), t.edge(l));
+      least = std::min(least, way.squaredNorm());
+      if (apart_along(way, s, t, least)) return least;
+    }
   for (int k = 0; k < 3; ++k) {
-    limit = std::min(limit, squared_distance_over_inside(s.edge(k), t, limit));
-    limit = std::min(limit, squared_distance_over_inside(t.edge(k), s, limit));
-    for (int l = 0; l < 3; ++l) limit = std::min(limit, squared_distance(s.edge(k), t.edge(l)));
+    least = std::min(least, squared_distance_over_inside(s.edge(k), t, least));
+    least = std::min(least, squared_distance_over_inside(t.edge(k), s, least));
   }
-  return limit;
+  return least;
 }
 
 }  // namespace swivel::detail

@@ -25,6 +25,8 @@ class TriangleTree {
   /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
                                 TrianglePair& first) const;
+  /// Of one triangle from one of the other tree, m.
+  [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const;
   /// The triangles that are nearer than `limit` to one of the other tree, and those of the other tree, by their places in the lists
   /// that the trees were made of, in ascending order.
   [[nodiscard]] std::array<std::vector<int>, 2> nearer(const TriangleTree& other, const Pose& pose, double limit) const;
@@ -39,18 +41,32 @@ class TriangleTree {
     Vector3d center, half;   ///< of the box
     int begin = 0, end = 0;  ///< its triangles
     int right = 0;           ///< second child; the first is the next node; 0: a leaf
+    int leaf = 0;            ///< of leaves: its place in `leaves_`
+  };
+  /// A node's box once more, in single precision; the fourth numbers are zero.
+  struct SingleBox {
+    Eigen::Array4f center, half;
+  };
+  /// A box along the axes of what it holds: a leaf is a patch of a surface, and thin.
+  struct OrientedBox {
+    std::array<Eigen::Array4f, 3> axes, rows;  ///< columns and rows of the matrix of its axes
+    Eigen::Array4f center, half;
   };
   struct Item {
     Vector3d center;
     int triangle;
   };
   Eigen::AlignedBox3d build(std::vector<Item>& items, int begin, int end);
+  [[nodiscard]] OrientedBox oriented_box(const Node& leaf) const;
 
   static constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
 
   std::vector<Triangle> triangles_;
   std::vector<int> places_;  // of triangles_ in the list given
   std::vector<Node> nodes_;
+  std::vector<SingleBox> single_;  // of nodes_
+  std::vector<OrientedBox> leaves_;
+  double reach_ = 0;  // no point is further from the frame's origin, m
 };
 
 template <class Gap, class Proves>

@@ -208,8 +208,9 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
       TrianglePair anywhere;
       const double own = triangle_distance(a, b, 0, 10, anywhere);
       ASSERT_NEAR(own, clearance, clearance > kTriangleBand ? kTriangleBand / 2 : 2 * kTriangleBand) << where << " kind " << kind;
-      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand; d > 0 && clearance > 0)
+      if (const double d = clearance - random.uniform(-2, 4) * kTriangleBand; d > 0 && clearance > 0) {
         ASSERT_TRUE(!proves_beyond(a, b, d, anywhere) || clearance > d) << where;
+      }
       ++triangles;
     }
     Verdicts& tally = clearance == 0 ? touching : kind <= 2 ? round : kind <= 4 ? solid : mesh;
