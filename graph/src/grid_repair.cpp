@@ -128,9 +128,8 @@ void GridCostToGo::propagate_removals() {
     std::fill(here_changed.begin(), here_changed.end(), std::uint8_t{0});
     bool here_any = false;
     const auto set = [&](int slot, double value) {
-      double& known = value_at(layer, slot);
-      if (known == value) return;
-      known = value;
+      if (at(layer, slot) == value) return;
+      value_at(layer, slot) = value;
       here_changed[static_cast<std::size_t>(lattice_->angle_of(slot) / kTileWidth)] = 1;
       here_any = true;
     };
@@ -144,15 +143,22 @@ void GridCostToGo::propagate_removals() {
     } else if (any) {
       const ColumnSet dependent = widened(changed);
       load_tiles(layer + 1, widened(dependent), *next);
+      publish_values(*next);
       load_tiles(layer, dependent, *here);
       relax(layer, *here, *next);
       apply_masks(*here);
       add_node_costs(*here);
       relax_removed(*here);
       prune_above_limit(*here);
-      for (const Tile& tile : here->tiles)
-        for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
-          set(slot, here->row[static_cast<std::size_t>(slot)]);
+      for (const Tile& tile : here->tiles) {
+        const double* const values = here->row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n + tile.begin();
+        TileTable::Costs& known = tiles_.hold(tile_index(layer, tile.sheet, tile.column));
+        const auto count = static_cast<std::size_t>(tile.end(n) - tile.begin());
+        if (std::equal(values, values + count, known.begin())) continue;
+        std::copy_n(values, count, known.begin());
+        here_changed[static_cast<std::size_t>(tile.column)] = 1;
+        here_any = true;
+      }
     }
     std::swap(here, next);  // its joints serve once more
     if (pending != verdicts_.pending.end()) {

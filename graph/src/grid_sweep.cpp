@@ -90,12 +90,13 @@ void GridCostToGo::load_tiles(int layer, const ColumnSet& columns, Workspace& wo
     for (int column = 0; column < tile_columns(); ++column) {
       const std::size_t held = tile_index(layer, sheet, column);
       if (!columns[static_cast<std::size_t>(column)] || !tiles_.holds(held)) continue;
+      const TileTable::Costs& costs = tiles_[held];
+      if (*std::min_element(costs.begin(), costs.end()) == kUnreachable) continue;
       solve_columns(*workspace.joints, lattice_->family_of(sheet), column, column + 1);
       const Tile& tile = workspace.tiles.emplace_back(Tile{sheet, column, true});
-      std::copy_n(tiles_[held].begin(), tile.end(n) - tile.begin(),
+      std::copy_n(costs.begin(), tile.end(n) - tile.begin(),
                   workspace.row.begin() + static_cast<std::ptrdiff_t>(sheet) * n + tile.begin());
     }
-  publish_values(workspace);
 }
 
 GridCostToGo::~GridCostToGo() = default;

@@ -138,37 +138,42 @@ class Search {
       joints.push_back(cost_to_go_.config(i, path[static_cast<std::size_t>(i)]));
     }
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
+    asked_ = 0;
+    left_to_grow_ = most_grown();
     std::vector<NodeQuestion> nodes;
     for (int i = 0; i < layers; ++i)
       if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
-    fail_first_.order(nodes);
-    const auto known = layers - static_cast<int>(nodes.size());
-    for (std::size_t first = 0; first < nodes.size(); first += batch()) {
-      cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(first), layers);
-      const std::vector<Failure> failed =
-          ask(std::span<const NodeQuestion>(nodes).subspan(first, std::min(batch(), nodes.size() - first)));
-      for (const Failure& node : failed) fail_first_.failed(node.layer);
-      if (!failed.empty()) {
-        grow(failed);
-        return false;
-      }
-    }
+    const auto node_unknown = [&](const NodeQuestion& x) { return verdicts_.node(x.layer, x.slot) == Verdict::kUnknown; };
+    if (!all_valid(nodes, node_unknown, layers)) return false;
     if (!validity_.asks_edges()) return true;
     std::vector<EdgeQuestion> edges;
     for (int i = 0; i + 1 < layers; ++i)
       if (verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
         edges.push_back({i, path[at(i)], path[at(i + 1)], joints[at(i)], joints[at(i + 1)]});
-    fail_first_.order(edges);
-    for (std::size_t first = 0; first < edges.size(); first += batch()) {
-      const std::vector<EdgeQuestion> failed =
-          ask(std::span<const EdgeQuestion>(edges).subspan(first, std::min(batch(), edges.size() - first)));
-      for (const EdgeQuestion& edge : failed) fail_first_.failed(edge.layer);
-      if (!failed.empty()) {
-        grow(failed);
-        return false;
-      }
+    const auto edge_unknown = [&](const EdgeQuestion& x) { return verdicts_.edge(x.layer, x.a, x.b) == Verdict::kUnknown; };
+    return all_valid(edges, edge_unknown, layers);
+  }
+
+  /// Asks about a path's nodes or edges, and the regions around those that fail. Where some do, the others are asked about all the
+  /// same as long as that costs less than the next round will: many rounds would each find one of them.
+  template <class Question, class Unknown>
+  bool all_valid(std::vector<Question>& questions, const Unknown& unknown, int layers) {
+    fail_first_.order(questions);
+    const auto known = layers - static_cast<std::int64_t>(questions.size());
+    bool all = true;
+    std::vector<Question> some;
+    for (std::size_t next = 0; next < questions.size() && (all || asked_ < kWorthARound);) {
+      cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
+      some.clear();
+      for (; next < questions.size() && some.size() < batch(); ++next)
+        if (unknown(questions[next])) some.push_back(questions[next]);
+      const auto failed = ask(std::span<const Question>(some));
+      for (const auto& x : failed) fail_first_.failed(x.layer);
+      if (failed.empty()) continue;
+      all = false;
+      grow(failed);
     }
-    return true;
+    return all;
   }
 
   /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
@@ -186,9 +191,9 @@ class Search {
     };
     for (const Failure& node : failed) add_neighbours(node);
     std::vector<NodeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !frontier.empty();) {
+    for (int& left = left_to_grow_; left > 0 && !frontier.empty();) {
       questions.clear();
-      while (!frontier.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+      while (!frontier.empty() && questions.size() < std::min(kGrownAtOnce, static_cast<std::size_t>(left))) {
         const auto [layer, slot, failure] = frontier.front();
         frontier.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
@@ -222,10 +227,10 @@ class Search {
     for (const EdgeQuestion& edge : failed) add_neighbours(edge);
     std::vector<Edge> asked;
     std::vector<EdgeQuestion> questions;
-    for (int left = most_grown(); left > 0 && !frontier.empty();) {
+    for (int& left = left_to_grow_; left > 0 && !frontier.empty();) {
       asked.clear();
       questions.clear();
-      while (!frontier.empty() && questions.size() < std::min(batch(), static_cast<std::size_t>(left))) {
+      while (!frontier.empty() && questions.size() < std::min(kGrownAtOnce, static_cast<std::size_t>(left))) {
         const Edge x = frontier.front();
         frontier.pop_front();
         if (cost_to_go_.at(x.layer, x.a) == kUnreachable || cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
@@ -248,6 +253,7 @@ class Search {
 
   /// Asks about nodes, keeps or removes them, returns those that failed.
   std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
+    asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<Failure> failed;
     answers_.assign(questions.size(), {});
     validity_.nodes(questions, answers_);
@@ -268,6 +274,7 @@ class Search {
   }
 
   std::vector<EdgeQuestion> ask(std::span<const EdgeQuestion> questions) {
+    asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<EdgeQuestion> failed;
     edge_answers_.assign(questions.size(), 0);
     validity_.edges(questions, edge_answers_);
@@ -293,6 +300,11 @@ class Search {
   bool asks_costs_;
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;  // neighbours on either side that costs_more() asks about
+  /// Questions that cost about as much as a repair and the path after it.
+  static constexpr std::int64_t kWorthARound = 128;
+  std::int64_t asked_ = 0;  // in this round
+  int left_to_grow_ = 0;    // questions about neighbours, in this round
+  static constexpr std::size_t kGrownAtOnce = 32;
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
