@@ -61,9 +61,6 @@ Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
 }
 
 /// How far inside the solid a point lies that does.
-double depth(const Box& box, const Vector3d& p) {
-  return (box.size / 2 - p.cwiseAbs()).minCoeff();
-}
 double depth(const Cylinder& cylinder, const Vector3d& p) {
   return std::min(cylinder.radius - std::hypot(p.x(), p.y()), cylinder.length / 2 - std::abs(p.z()));
 }
@@ -108,13 +105,16 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
 }
 
 /// Less than 0 inside.
-template <class Solid>
-double signed_distance(const Solid& solid, const Vector3d& p) {
-  const double out = way_out(solid, p).norm();
-  return out > 0 ? out : -depth(solid, p);
+double signed_distance(const Box& box, const Vector3d& p) {
+  const Vector3d out = p.cwiseAbs() - box.size / 2;
+  const double most = out.maxCoeff();
+  return most <= 0 ? most : out.cwiseMax(0).norm();
 }
-
-/// Whether signed_distance() is below `low`.
+double signed_distance(const Cylinder& cylinder, const Vector3d& p) {
+  const double out = way_out(cylinder, p).norm();
+  return out > 0 ? out : -depth(cylinder, p);
+}
+/// Whether that is below `low`.
 bool is_nearer(const Box& box, const Vector3d& p, double low) {
   const Vector3d out = p.cwiseAbs() - box.size / 2;
   const double most = out.maxCoeff();

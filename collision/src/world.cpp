@@ -31,7 +31,7 @@ constexpr double kBoundSafety = 1e-6;
 /// A clearance kept says "free" only where FCL would.
 constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
 /// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
-constexpr double kMargin = 0.01;
+constexpr double kMargin = 0.005;
 
 std::string millimetres(double metres) {
   char text[32];
