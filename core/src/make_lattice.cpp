@@ -1,12 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/make_lattice.hpp"
 
+#include <algorithm>
+
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
+
+namespace {
+
+/// The tool's z axis is that of the last joint, and the tool may turn about it as it likes.
+bool turns_about_last_joint(const Chain& chain) {
+  constexpr double kApart = 1e-9;  // m and rad
+  if (!chain.free_roll || chain.free_roll->upper - chain.free_roll->lower < kTwoPi - 1e-9) return false;
+  Config turned = Config::Zero();
+  turned[kDof - 1] = kPi / 2;
+  const Pose one = chain.tool(Config::Zero()), other = chain.tool(turned);
+  return (one.translation() - other.translation()).norm() <= kApart &&
+         (one.linear().col(2) - other.linear().col(2)).norm() <= kApart;
+}
+
+}  // namespace
 
 std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
                                       const Budget& budget) {
@@ -16,6 +33,19 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
     throw InputError(problem.source +
                      ": limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
   return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
+}
+
+std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm, const Problem& problem) {
+  if (!arm.srs || problem.start || !problem.rolls.empty() || !turns_about_last_joint(chain)) return std::nullopt;
+  const JointLimit& limit = chain.limit.back();
+  if (limit.continuous) return 0.0;
+  return limit.wide() ? std::clamp(0.0, limit.lower, limit.upper) : (limit.lower + limit.upper) / 2;
+}
+
+std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem,
+                                              const Budget& budget) {
+  const auto rest = last_joint_at_rest(chain, arm, problem);
+  return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest) : nullptr;
 }
 
 std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots) {

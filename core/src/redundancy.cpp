@@ -20,10 +20,16 @@ namespace swivel {
 namespace {
 
 /// Joints at an arm angle, of the row's branch and the images nearest to its joints.
-std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
-                                  const std::array<ElbowCircle, 2>& circles, const Pose& tool, double angle,
-                                  const TrajectoryRow& row) {
+std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, ArmPlane plane, const std::array<ElbowCircle, 2>& circles,
+                                  Pose tool, double angle, const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
   std::optional<Config> q = srs_ik(arm, circles, angle, row.branch);
+  if (last_joint) {
+    (*q)[kDof - 1] = *last_joint;
+    if (!arm.exact) {
+      tool = rolled(tool, roll_between(tool, chain.tool(*q)));
+      plane = carry_plane(arm, plane, tool);
+    }
+  }
   if (!arm.exact) q = polish(chain, arm, plane, tool, angle, *q);
   if (!q) return std::nullopt;
   for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
@@ -47,7 +53,7 @@ class ArmAngles final : public LayerSolver {
     const TrajectoryRow& row = (*rows_)[i];
     if (!reachable_[i]) return std::nullopt;
     return joints_near(lattice_->chain(), lattice_->arm(), lattice_->plane(layer), circles_[i], lattice_->path().layer(layer).tool,
-                       angle, row);
+                       angle, row, lattice_->last_joint());
   }
 
  private:
@@ -71,8 +77,9 @@ std::vector<int> changes_of_branch(const std::vector<TrajectoryRow>& rows) {
 
 class ArmAngleRedundancy final : public Redundancy {
  public:
-  ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
-      : grid_(chain, arm, path, problem, budget) {}
+  ArmAngleRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
+                     std::optional<double> last_joint = {})
+      : grid_(chain, arm, path, problem, budget, {}, last_joint) {}
   [[nodiscard]] const Lattice& lattice() const override { return grid_; }
   [[nodiscard]] bool has_grid() const override { return true; }
   [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
@@ -80,10 +87,15 @@ class ArmAngleRedundancy final : public Redundancy {
     return std::make_unique<ArmAngles>(grid_, rows);
   }
   [[nodiscard]] double coordinate(int layer, const Config& q) const override {
-    return arm_angle(grid_.arm(), grid_.plane(layer), q);
+    const ArmPlane& plane = grid_.plane(layer);
+    return arm_angle(grid_.arm(), grid_.last_joint() ? carry_plane(grid_.arm(), plane, grid_.chain().tool(q)) : plane, q);
   }
   void label(std::vector<TrajectoryRow>& rows) const override {
-    for (TrajectoryRow& row : rows) row.phi = wrap_angle(row.phi);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      TrajectoryRow& row = rows[i];
+      row.phi = wrap_angle(row.phi);
+      if (grid_.last_joint()) row.roll = roll_between(grid_.path().layer(static_cast<int>(i)).tool, grid_.chain().tool(row.q));
+    }
   }
   [[nodiscard]] double most_change() const override { return grid_.most_turn(); }
   [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
@@ -219,6 +231,11 @@ std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmC
                                                   const Problem& problem, const Budget& budget) {
   if (arm.srs) return std::make_unique<ArmAngleRedundancy>(chain, *arm.srs, path, problem, budget);
   return std::make_unique<ArcLengthRedundancy>(chain, arm, path, problem);
+}
+
+std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                                                          const Problem& problem, double last_joint, const Budget& budget) {
+  return std::make_unique<ArmAngleRedundancy>(chain, arm, path, problem, budget, last_joint);
 }
 
 std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,

@@ -38,12 +38,13 @@ bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& 
 }  // namespace
 
 std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
-                                               const Budget& budget) {
+                                               const Budget& budget, std::optional<double> last_joint) {
   if (problem.limits.step_error)
     throw InputError(problem.source + ": limits.step_error: allowed without path.roll, or for arms of six joints");
   if (problem.cost.roll > 0)
     throw InputError(problem.source + ": cost.roll: allowed for arms of six joints, or as a narrower path.roll");
-  return std::unique_ptr<RollLattice>(new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution)));
+  return std::unique_ptr<RollLattice>(
+      new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
 }
 
 RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resolution& resolution) {
@@ -64,9 +65,10 @@ RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resoluti
 }
 
 RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-                         Knots knots)
+                         Knots knots, std::optional<double> last_joint)
     : Lattice(chain, *knots.path, problem, arm.misfit),
       arm_(&arm),
+      last_joint_(last_joint),
       whole_(&path),
       knots_(std::move(knots.layers)),
       knot_path_(std::move(knots.path)),
@@ -95,7 +97,10 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     }
     nominal = roll;
   }
-  choose_rolls(nominal, resolution.droll);
+  if (last_joint_)
+    value_of_ = rank_ = {0}, values_ = {0};
+  else
+    choose_rolls(nominal, resolution.droll);
 
   Problem of_nodes = problem;
   of_nodes.start.reset();
@@ -104,7 +109,8 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
     const double roll = values_[static_cast<std::size_t>(value)];
     ToolPath turned = knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
     std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
-    turned_.push_back(std::make_unique<Turned>(roll, std::move(turned), chain, arm, of_nodes, budget, std::move(planes)));
+    turned_.push_back(
+        std::make_unique<Turned>(roll, std::move(turned), chain, arm, of_nodes, budget, std::move(planes), last_joint_));
   }
   if (problem.start) {
     start_path_ = std::make_unique<const ToolPath>(turned_.front()->path);
@@ -295,8 +301,10 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
     return std::nullopt;
   }
   for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
+  if (last_joint_) q[kDof - 1] = *last_joint_;
   if (!arm_->exact) {
-    const auto row = polish(*chain_, *arm_, plane, tool, phi, q);
+    const Pose turned = last_joint_ ? rolled(tool, roll_between(tool, chain_->tool(q))) : tool;
+    const auto row = polish(*chain_, *arm_, last_joint_ ? carry_plane(*arm_, plane, turned) : plane, turned, phi, q);
     if (!row) {
       fault.fault = Between::Fault::kNoIk;
       return std::nullopt;
@@ -315,6 +323,10 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
   return fault.fault == Between::Fault::kNone ? std::optional(q) : std::nullopt;
 }
 
+double RollLattice::roll_at(int i, const Config& q, double chosen) const {
+  return last_joint_ ? roll_between(whole_->layer(i).tool, chain_->tool(q)) : chosen;
+}
+
 template <class Visit>
 Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
   Between between;
@@ -325,6 +337,7 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
   const int branch = this->branch(layer, a);
   const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
   Config from = qa;
+  double from_roll = roll_at(first, qa, roll);
   for (int i = first; i < last; ++i) {
     const double t = (whole_->layer(i + 1).travel - begin) / way;
     std::optional<Config> to;
@@ -335,8 +348,11 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
     if (!to) return between;
     between.q = *to;
     const Config move = *to - from;
+    const double to_roll = roll_at(i + 1, *to, roll + t * droll);
+    const double most_turn = limits_.roll_slope * (whole_->layer(i + 1).travel - whole_->layer(i).travel);
     const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-    if (!((move.cwiseAbs().array() <= bound.array()).all())) {
+    if (!((move.cwiseAbs().array() <= bound.array()).all()) ||
+        (last_joint_ && !(std::abs(wrap_angle(to_roll - from_roll)) <= most_turn))) {
       between.fault = Between::Fault::kStep;
     } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
       between.fault = Between::Fault::kPathError;
@@ -346,10 +362,11 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
     if (between.fault != Between::Fault::kNone) return between;
     if (i + 1 < last) {
       between.rows.push_back(*to);
-      visit(TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to,
-                          circle_ ? wrap_angle(roll + t * droll) : roll + t * droll});
+      visit(
+          TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to, circle_ ? wrap_angle(to_roll) : to_roll});
     }
     from = *to;
+    from_roll = to_roll;
   }
   return between;
 }
@@ -369,7 +386,8 @@ std::vector<TrajectoryRow> RollLattice::rows(const std::vector<int>& slots) cons
                              [&](const TrajectoryRow& row) { rows.push_back(row); }));
       q = rows.back().q + delta(rows.back().q, q);
     }
-    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q, roll(rank_of(k, slot))});
+    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
+                    roll_at(knots_[static_cast<std::size_t>(k)], q, roll(rank_of(k, slot)))});
   }
   return rows;
 }

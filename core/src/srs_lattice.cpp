@@ -23,6 +23,7 @@ constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole tu
 constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
 constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
+constexpr std::size_t kLastJoint = kDof - 1;
 
 int wrapped_index(long long j, int n) {
   return static_cast<int>(((j % n) + n) % n);
@@ -52,9 +53,10 @@ std::string gigabytes(double bytes) {
 }  // namespace
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-                       std::vector<ArmPlane> planes)
-    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm), planes_(std::move(planes)) {
+                       std::vector<ArmPlane> planes, std::optional<double> last_joint)
+    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm), last_joint_(last_joint), planes_(std::move(planes)) {
   const TraceSpan span("lattice");
+  if (last_joint_) continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
   const Resolution& resolution = problem.resolution;
   const double wanted = std::ceil(kTwoPi / resolution.dphi - 1e-9);
   double windings = 1;
@@ -62,7 +64,9 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   for (std::size_t j = 0; j < kDof; ++j) {
     const JointLimit& limit = chain.limit[j];
     Images& images = images_[j];
-    if (continuous_[j]) {
+    if (last_joint_ && j == kLastJoint) {
+      images = {*last_joint_ - kPi, std::numeric_limits<double>::infinity(), 1};
+    } else if (continuous_[j]) {
       images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
     } else {
       const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
@@ -387,6 +391,8 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
                          : unlimited.data() + (static_cast<std::size_t>(triple) * 2 + s) * static_cast<std::size_t>(task.n);
     circle_kernels().solve_triple(task);
   }
+  for (std::size_t s = 0; s < 2 && last_joint_; ++s)
+    std::fill(data + sign[s].q[kLastJoint] + begin, data + sign[s].q[kLastJoint] + end, *last_joint_);
   std::fill(data + sign[0].q[kElbowJoint] + begin, data + sign[0].q[kElbowJoint] + end,
             image_from(circle.q4, images_[kElbowJoint].base));
   const std::size_t n = static_cast<std::size_t>(out.count_);
@@ -472,6 +478,7 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
     excess += mask[sign];
   }
   q[kElbowJoint] = image_from(circle.q4, images_[kElbowJoint].base);
+  if (last_joint_) q[kLastJoint] = *last_joint_;
   if (windings_ > 1)
     for (int j = 0; j < kDof; ++j) {
       q[j] += kTwoPi * static_cast<double>(winding_images(sheet_of(slot) % windings_, j));
@@ -480,10 +487,17 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
   return excess <= 0 ? std::optional(q) : std::nullopt;
 }
 
+std::optional<Config> SrsLattice::polished(int layer, int slot, const Config& q) const {
+  const Pose& tool = path_->layer(layer).tool;
+  if (!last_joint_) return polish(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
+  const Pose turned = rolled(tool, roll_between(tool, chain_->tool(q)));
+  return polish(*chain_, *arm_, carry_plane(*arm_, plane(layer), turned), turned, phi(layer, slot), q);
+}
+
 std::optional<Config> SrsLattice::row(int layer, int slot, const Config& q) const {
   if (arm_->exact) return q;
   if (layer == 0 && start_) return start_->row;
-  auto row = polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
+  auto row = polished(layer, slot, q);
   if (row && joints_outside(*row)) row.reset();
   return row;
 }
@@ -499,6 +513,7 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   Config q = given ? start_->row : srs_ik(*arm_, circles_[static_cast<std::size_t>(layer)], phi(layer, slot), branch_of(slot));
   if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
+  if (last_joint_) q[kLastJoint] = *last_joint_;
   const int winding = sheet_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
@@ -510,11 +525,10 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   }
   fault.q = q;
   if (!arm_->exact) {
-    const auto polished =
-        polish(*chain_, *arm_, planes_[static_cast<std::size_t>(layer)], path_->layer(layer).tool, phi(layer, slot), q);
-    if (!polished) return {NodeStatus::kNoIk};
-    fault.q = *polished;
-    if (const std::uint8_t outside = joints_outside(*polished)) fault.joints = outside;
+    const auto row = polished(layer, slot, q);
+    if (!row) return {NodeStatus::kNoIk};
+    fault.q = *row;
+    if (const std::uint8_t outside = joints_outside(*row)) fault.joints = outside;
   }
   if (fault.joints) fault.status = NodeStatus::kLimit;
   return fault;
@@ -544,7 +558,9 @@ int SrsLattice::along(int layer, int slot, int by) const {
 }
 
 void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000;  // bit g: of group g
+  constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000,
+                     kTool = 0b10000000;  // bit g: of group g
+  if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();
   const int signs =

@@ -159,11 +159,16 @@ struct Planner::Impl {
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
         : path(problem_path(problem, robot.arm().chain, budget)),
-          first{make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget), nullptr} {}
+          first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget), nullptr},
+          coaxial(first.lattice != nullptr) {
+      if (!coaxial) first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
+    }
     ToolPath path;
-    Searched first;                 // by every plan
-    std::optional<Searched> wound;  // after it by the last plan, whose path left the limits of joints taken as circles
-    [[nodiscard]] Searched& last() { return wound ? *wound : first; }
+    Searched first;  // by every plan
+    bool coaxial;    // first, whose having no path is not the last word
+    /// After it by the last plan: where its path left the limits of joints taken as circles, or a coaxial one had none.
+    std::optional<Searched> second;
+    [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
   std::unique_ptr<CostToGo> retired;  // of another lattice
@@ -272,7 +277,7 @@ struct Planner::Impl {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
-    layout->wound.reset();
+    layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
     world_is_old = false;
@@ -286,12 +291,17 @@ struct Planner::Impl {
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
     was_eager = is_eager(options);
     Found found = search(layout->first, !once, rule, options, budget, result);
+    if (layout->coaxial && found.decided && found.outcome.path.empty()) {
+      layout->second = Searched{make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget), nullptr};
+      result.lattice = info_of(*layout->second->lattice, robot->arm_class());
+      return search(*layout->second, false, rule, options, budget, result);
+    }
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
       if (!found.decided || found.outcome.path.empty() || !path_joints(lattice, found.outcome.path).empty()) return found;
-      layout->wound = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
-      result.lattice.nodes = layout->wound->lattice->nodes();
-      found = search(*layout->wound, false, rule, options, budget, result);
+      layout->second = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
+      result.lattice.nodes = layout->second->lattice->nodes();
+      found = search(*layout->second, false, rule, options, budget, result);
     }
   }
   /// `remembered`: what the plans before came to know serves, and what this one does is kept.

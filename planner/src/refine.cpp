@@ -11,6 +11,7 @@
 #include "asked_hooks.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/make_lattice.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/redundancy.hpp"
 #include "swivel/core/smooth_path.hpp"
@@ -451,6 +452,28 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
   return result;
 }
 
+/// Whether the tool turns no faster along the rows of a path than limits.roll_slope allows.
+bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& rows, const Limits& limits) {
+  const std::vector<double> rolls = rolls_of(rows);
+  for (std::size_t i = 0; i + 1 < rolls.size(); ++i) {
+    const double way = path.layer(static_cast<int>(i) + 1).travel - path.layer(static_cast<int>(i)).travel;
+    if (!(std::abs(rolls[i + 1] - rolls[i]) <= limits.roll_slope * way)) return false;
+  }
+  return true;
+}
+
+/// Of a path along which joint 7 rests: as it does, where the tool then turns no faster than it may.
+std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
+                                      const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
+  constexpr double kRests = 1e-3;  // rad; rows of arms that are not exact are not quite at rest
+  const auto rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem);
+  if (!rest || std::any_of(rows.begin(), rows.end(), [&](const auto& row) { return std::abs(row.q[kDof - 1] - *rest) > kRests; }))
+    return std::nullopt;
+  const auto angles = make_coaxial_redundancy(robot.arm().chain, robot.srs(), path, problem, *rest, budget);
+  Refined refined = refine_along(*angles, robot, problem, path, rows, options, options.second_seed, budget);
+  return keeps_roll_slope(path, refined.rows, problem.limits) ? std::optional(std::move(refined)) : std::nullopt;
+}
+
 /// Of an arm with two coordinates: along one, then the other, for as long as that is worth it.
 Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
                         const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
@@ -495,7 +518,10 @@ Refined refine(const PreparedRobot& robot, const Problem& problem, const std::ve
   if (rows.size() != static_cast<std::size_t>(path.size()))
     throw InvalidArgument("refine: " + std::to_string(rows.size()) + " rows: allowed are those of plan(), " +
                           std::to_string(path.size()) + ", one for each layer");
-  if (robot.arm().chain.free_roll && problem.rolls.empty()) return refine_by_turns(robot, problem, path, rows, options, budget);
+  if (robot.arm().chain.free_roll && problem.rolls.empty()) {
+    auto coaxial = refine_coaxial(robot, problem, path, rows, options, budget);
+    return coaxial ? *std::move(coaxial) : refine_by_turns(robot, problem, path, rows, options, budget);
+  }
   const auto redundancy = make_redundancy(robot.arm().chain, robot.arm_class(), path, problem, budget);
   return refine_along(*redundancy, robot, problem, path, rows, options, options.second_seed && problem.rolls.empty(), budget);
 }

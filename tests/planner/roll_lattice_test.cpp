@@ -11,6 +11,7 @@
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/make_lattice.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 #include "swivel/graph/path_first.hpp"
@@ -36,8 +37,15 @@ std::vector<TestRobot> robots(Random& random) {
 
 /// Small enough for brute force. Some tools stand at an angle to the last joint, so that their wrist centre moves with the roll.
 Problem roll_problem(const TestRobot& robot, Random& random) {
-  TestRobot angled = robot;
-  Problem problem = random_problem(angled, random);
+  Problem problem = random_problem(robot, random);
+  if (random.coin(0.4)) {
+    const Pose angled = Eigen::Translation3d(0.05, 0, 0.1) * Eigen::AngleAxisd(random.uniform(0.2, 1), Vector3d::UnitY());
+    problem.tool = problem.tool * angled;
+    for (Waypoint& waypoint : problem.waypoints) {
+      const Pose moved = Pose(Eigen::Translation3d(waypoint.position) * waypoint.orientation) * angled;
+      waypoint = {moved.translation(), Quaterniond(moved.linear())};
+    }
+  }
   problem.limits.step_error.reset();
   problem.roll = random.coin(0.4) ? Roll{} : Roll{random.uniform(-2, -0.1), random.uniform(0.1, 2)};
   if (random.coin(0.2)) problem.roll = Roll{random.uniform(0.2, 0.4), random.uniform(0.6, 4)};
@@ -82,6 +90,7 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   Random any(base);
   const auto arms = robots(any);
   int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0, inexact = 0, turned = 0, between = 0;
+  int at_rest = 0, moved_after_all = 0;
   const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -91,7 +100,11 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     const PreparedRobot robot(problem);
     const Chain& chain = robot.arm().chain;
     const ToolPath path = problem_path(problem, chain);
-    const auto lattice = RollLattice::make(chain, robot.srs(), path, problem);
+    // Joint 7 at rest where that is enough.
+    std::unique_ptr<Lattice> made = make_coaxial_lattice(chain, robot.arm_class(), path, problem);
+    const bool coaxial = made != nullptr;
+    if (!coaxial) made = make_lattice(chain, robot.arm_class(), path, problem);
+    const auto* lattice = dynamic_cast<const RollLattice*>(made.get());
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
     // Own words for what may follow what: cells on circles.
     const auto in_window = [&](int layer, int a, int b) {
@@ -120,7 +133,14 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
       const double cells = std::floor(problem.limits.roll_slope * way / problem.resolution.droll + 1e-9);
       return apart <= std::min(cells, circle ? (n - 1) / 2 : n - 1.0);
     };
-    const Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
+    Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
+    at_rest += coaxial && truth.solved;
+    if (coaxial && !truth.solved) {
+      made = make_lattice(chain, robot.arm_class(), path, problem);
+      lattice = dynamic_cast<const RollLattice*>(made.get());
+      truth = brute_force(*lattice, robot.world(), rule, in_window);
+      moved_after_all += truth.solved;
+    }
 
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -163,8 +183,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   std::printf(
       "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a start, %d continuous, %d with "
       "obstacles, "
-      "%d with all rolls, %d on arms that are not exactly S-R-S\n",
-      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact);
+      "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved after all in %d\n",
+      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact, at_rest, moved_after_all);
   EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GE(infeasible, at_least(count / 20));
   EXPECT_GE(started, at_least(count / 10));
@@ -173,6 +193,101 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(between, at_least(count / 5));
   EXPECT_GE(circles, at_least(count / 5));
   EXPECT_GE(inexact, at_least(count / 20));
+  EXPECT_GE(at_rest, at_least(count / 20));
+}
+
+/// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more than the least of all rolls.
+TEST(RollLattice, JointSevenRests) {
+  const std::uint64_t base = seed("RollLattice.JointSevenRests");
+  Random any(base);
+  auto arms = all_robots();
+  arms.push_back(rounded(arms.front(), 1e-4));
+  int both = 0, cheaper = 0, neither = 0, refined = 0, inexact = 0;
+  const int count = trials(24);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
+    problem.limits = {};
+    problem.limits.joint_step = 2;
+    problem.limits.roll_slope = 1000;
+    problem.cost.metric = trial % 3 == 0 ? CostMetric::kMax : CostMetric::kL2;
+    problem.scene.clear();
+    problem.start.reset();
+    problem.roll = Roll{};
+    problem.resolution.knot = 2 * problem.resolution.ds;
+    problem.resolution.droll = 0.2;
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
+    const PreparedRobot robot(problem);
+    const ToolPath path = problem_path(problem, robot.arm().chain);
+    const auto rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem);
+    if (!rest) continue;  // its tool turns about another axis
+    const auto least = [&](const std::unique_ptr<Lattice>& lattice) {
+      const auto cost_to_go = make_cost_to_go(*lattice);
+      cost_to_go->sweep(lattice->layers() - 1);
+      return cost_to_go->best();
+    };
+    const double resting = least(make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem));
+    const double moving = least(make_lattice(robot.arm().chain, robot.arm_class(), path, problem));
+    ASSERT_LE(resting, moving + 1e-9) << what;
+    both += moving < kUnreachable;
+    cheaper += resting < moving - 1e-6;
+    neither += resting == kUnreachable;
+    inexact += !robot.srs().exact;
+
+    Planner planner(with_motion_defaults(problem));
+    const MotionPlan plan = plan_motion(planner, {.check = true}, true, std::nullopt);
+    if (plan.result.status != PlanStatus::kSolved || plan.result.lattice.grid->rolls > 1) continue;
+    ASSERT_LE(plan.result.cost, plan.refinement->cost_before) << what;
+    refined += plan.refinement->refined;
+    for (const auto* rows : {&plan.lattice_path, &plan.result.trajectory}) {
+      expect_rows_on_path(robot, planner.problem(), *rows, what);
+      for (const TrajectoryRow& row : *rows) ASSERT_NEAR(row.q[kDof - 1], *rest, robot.srs().exact ? 0 : 1e-3) << what;
+      const CheckResult check = check_trajectory(with_motion_defaults(problem), *rows);
+      ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
+    }
+  }
+  std::printf("%d problems: %d solved both ways, %d cheaper at rest, %d not at all; %d refined; %d on arms that are not exact\n",
+              count, both, cheaper, neither, refined, inexact);
+  EXPECT_GE(both, at_least(count / 4));
+  EXPECT_GE(cheaper, at_least(count / 20));
+  EXPECT_GE(refined, at_least(count / 8));
+  EXPECT_GE(inexact, at_least(count / 10));
+}
+
+/// What the tool meets hangs on where joint 7 rests: it moves where there is no path otherwise.
+TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
+  class NotNear final : public StateCheck {
+   public:
+    explicit NotNear(double rest) : rest_(rest) {}
+    [[nodiscard]] std::string name() const override { return "rest"; }
+    void states(std::span<const Config> states, std::span<bool> allowed) override {
+      for (std::size_t k = 0; k < states.size(); ++k) allowed[k] = std::abs(states[k][kDof - 1] - rest_) > 0.5;
+    }
+
+   private:
+    double rest_;
+  };
+  Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
+  problem.tool = Eigen::Translation3d(0, 0, 0.2) * Pose::Identity();
+  problem.attached.clear();
+  problem.resolution.droll = 0.3;
+  problem.resolution.dphi = 0.3;
+  Planner planner(problem);
+  const PreparedRobot& robot = planner.prepare();
+  const double rest = last_joint_at_rest(robot.arm().chain, robot.arm_class(), problem).value();
+  for (const PlannerKind kind : kPlanners) {
+    PlanOptions options{.planner = kind};
+    const PlanResult resting = planner.plan(options);
+    ASSERT_EQ(resting.status, PlanStatus::kSolved);
+    EXPECT_EQ(resting.lattice.grid->rolls, 1);
+    for (const TrajectoryRow& row : resting.trajectory) EXPECT_EQ(row.q[kDof - 1], rest);
+    options.hooks.check = std::make_shared<NotNear>(rest);
+    const PlanResult moving = planner.plan(options);
+    ASSERT_EQ(moving.status, PlanStatus::kSolved) << to_string(kind);
+    EXPECT_GT(moving.lattice.grid->rolls, 1);
+    EXPECT_GE(moving.cost, resting.cost);
+    EXPECT_TRUE(check_trajectory(robot, problem, moving.trajectory).passed);
+  }
 }
 
 /// Values after removals, few and many at once, are those of a sweep over what is left.

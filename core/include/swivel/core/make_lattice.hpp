@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "swivel/core/arm_class.hpp"
@@ -15,6 +16,17 @@ namespace swivel {
 /// Throws as the lattices do; Stopped. The arguments but the problem and the budget must outlive it.
 [[nodiscard]] std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                                     const Problem& problem, const Budget& budget = {});
+
+/// Where joint 7 stays, rad, of an S-R-S arm whose tool may turn by any roll about that joint's own axis, without a start: as far
+/// from its limits as it can. The other six joints alone put the tool where it has to be, so that a path along which joint 7 moves
+/// costs no less than the same with joint 7 at rest.
+[[nodiscard]] std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm, const Problem& problem);
+
+/// The lattice of such an arm with joint 7 at rest, of arm angles alone; else null. No path of make_lattice() is cheaper than its
+/// cheapest one by the joints; but what the tool's bodies meet hangs on where joint 7 rests: where there is no path here, there may
+/// be one there. Arguments and what is thrown as there.
+[[nodiscard]] std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
+                                                            const Problem& problem, const Budget& budget = {});
 
 /// The joints of the rows of a path, one slot in each layer from the first on: continuous joints go on without jumps. Empty where
 /// the lattice takes bounded joints of more than a turn as circles and their values leave the limits along this path.

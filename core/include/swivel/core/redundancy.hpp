@@ -52,6 +52,12 @@ class Redundancy {
 [[nodiscard]] std::unique_ptr<const Redundancy> make_redundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                                                 const Problem& problem, const Budget& budget);
 
+/// The arm angle of an S-R-S arm whose joint 7 rests (last_joint_at_rest): the tool turns as the other joints make it. All
+/// arguments but the problem must outlive it.
+[[nodiscard]] std::unique_ptr<const Redundancy> make_coaxial_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,
+                                                                        const Problem& problem, double last_joint,
+                                                                        const Budget& budget);
+
 /// The roll of the tool of an S-R-S arm that has a free one (Chain::free_roll), at the arm angles that rows have: `path` is that of
 /// the tool as the waypoints have it. All arguments but the problem must outlive it.
 [[nodiscard]] std::unique_ptr<const Redundancy> make_roll_redundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path,

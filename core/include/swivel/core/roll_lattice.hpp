@@ -27,8 +27,10 @@ class RollLattice final : public Lattice {
  public:
   /// Of the whole path, which must outlive it, as arm and chain must. Throws as SrsLattice does, and InputError for a start whose
   /// roll is outside the range, a roll_slope of less than a cell from knot to knot, and step_error. Throws Stopped.
+  /// `last_joint`: where joint 7 stays (last_joint_at_rest). There is no roll to choose then: joint 7 would only undo it.
   [[nodiscard]] static std::unique_ptr<RollLattice> make(const Chain& chain, const SrsArm& arm, const ToolPath& path,
-                                                         const Problem& problem, const Budget& budget = {});
+                                                         const Problem& problem, const Budget& budget = {},
+                                                         std::optional<double> last_joint = {});
 
   // --- rolls
   [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
@@ -94,7 +96,7 @@ class RollLattice final : public Lattice {
     std::unique_ptr<const ToolPath> path;
   };
   RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
-              Knots knots);
+              Knots knots, std::optional<double> last_joint);
   static Knots knots_along(const ToolPath& path, const Resolution& resolution);
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const { return layer == 0 && start_ ? *start_ : at_roll(slot / width_); }
@@ -102,13 +104,15 @@ class RollLattice final : public Lattice {
   /// `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
   Between walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
+  /// The roll at a layer of the whole path: the one that was chosen, or what joint 7's rest makes it.
+  [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
   /// The joints at a layer of the whole path, near those of the layer before; or why there are none.
   [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const;
 
   struct Turned {
     Turned(double by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem, const Budget& budget,
-           std::vector<ArmPlane> planes)
-        : roll(by), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes)) {}
+           std::vector<ArmPlane> planes, const std::optional<double>& last_joint)
+        : roll(by), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
     double roll;
     ToolPath path;
     SrsLattice lattice;
@@ -118,6 +122,7 @@ class RollLattice final : public Lattice {
   };
 
   const SrsArm* arm_;
+  std::optional<double> last_joint_;
   const ToolPath* whole_;
   std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;

@@ -81,9 +81,10 @@ class SrsLattice final : public Lattice {
  public:
   /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
   /// of the machine. Throws Stopped.
-  /// `planes`: of the path's layers, where they are not carried_planes().
+  /// `planes`: of the path's layers, where they are not carried_planes(). `last_joint`: where joint 7 stays, rad, of an arm whose
+  /// tool turns freely about that joint's axis; without a start.
   SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget = {},
-             std::vector<ArmPlane> planes = {});
+             std::vector<ArmPlane> planes = {}, std::optional<double> last_joint = {});
 
   [[nodiscard]] int angles() const { return angles_; }
   [[nodiscard]] int sheets() const { return kBranches * windings_; }
@@ -121,8 +122,10 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int beside(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
-  /// The last link and the tool stand where the layer puts them; links 3 and 4 where arm angle and sign of the elbow do; links 1
-  /// and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's.
+  /// Where joint 7 stays, rad: the tool turns about its axis as the other joints make it.
+  [[nodiscard]] const std::optional<double>& last_joint() const { return last_joint_; }
+  /// The last link and the tool stand where the layer puts them, with links 5 and 6 where joint 7 stays; links 3 and 4 where arm
+  /// angle and sign of the elbow do; links 1 and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's.
   [[nodiscard]] bool stand_alike(unsigned) const override { return true; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
@@ -218,8 +221,12 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 
+  /// The row of a node on the exact chain, limits aside; for the tool as the node turns it where joint 7 stays.
+  [[nodiscard]] std::optional<Config> polished(int layer, int slot, const Config& q) const;
+
   std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
   const SrsArm* arm_;
+  std::optional<double> last_joint_;
   int angles_ = 0, windings_ = 1, window_ = 1;
   std::array<Images, kDof> images_;
   std::size_t tracks_ = 0;             // arrays in a LayerNodes
