@@ -41,19 +41,32 @@ Pose joint_motion(const Joint& joint, double position) {
   throw InputError(robot.source + ": " + what);
 }
 
-/// Joints from base to tip, in order.
-std::vector<int> joints_between(const RobotModel& robot, int base, int tip) {
-  std::vector<int> path;
-  for (int link = tip; link != base;) {
-    const int joint = robot.links[static_cast<std::size_t>(link)].parent_joint;
-    if (joint < 0)
-      fail(robot, "robot.tip_link: '" + robot.links[static_cast<std::size_t>(tip)].name + "' is not below base_link '" +
-                      robot.links[static_cast<std::size_t>(base)].name + "': allowed are links that hang from it");
-    path.push_back(joint);
-    link = robot.joints[static_cast<std::size_t>(joint)].parent_link;
-  }
-  std::reverse(path.begin(), path.end());
-  return path;
+/// The way through the tree of links from base to tip: up to the link that both hang from, which may be the base itself, then down.
+struct Way {
+  std::vector<int> links, joints;  // joint k leads from link k to link k + 1
+  std::size_t up = 0;              // so many joints lead from child to parent
+};
+Way way_between(const RobotModel& robot, int base, int tip) {
+  const auto above = [&](int link) {
+    std::vector<int> links{link};
+    for (int joint; (joint = robot.links[static_cast<std::size_t>(links.back())].parent_joint) >= 0;)
+      links.push_back(robot.joints[static_cast<std::size_t>(joint)].parent_link);
+    return links;
+  };
+  std::vector<int> up = above(base), down = above(tip);
+  int common = -1;
+  for (; !up.empty() && !down.empty() && up.back() == down.back(); up.pop_back(), down.pop_back()) common = up.back();
+  if (common < 0)
+    fail(robot, "robot.tip_link: '" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
+                    robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
+  Way way;
+  way.up = up.size();
+  way.links = std::move(up);
+  way.links.push_back(common);
+  way.links.insert(way.links.end(), down.rbegin(), down.rend());
+  for (std::size_t k = 0; k + 1 < way.links.size(); ++k)
+    way.joints.push_back(robot.links[static_cast<std::size_t>(way.links[k < way.up ? k : k + 1])].parent_joint);
+  return way;
 }
 
 int require_link(const RobotModel& robot, const std::string& key, const std::string& name) {
@@ -98,8 +111,6 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     const int j = robot.find_joint(name);
     if (j < 0) fail(robot, "robot.hold: unknown joint '" + name + "': allowed are the joints of this file");
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    if (std::find(arm.begin(), arm.end(), j) != arm.end())
-      fail(robot, "robot.hold: joint '" + name + "' is one of the arm's: allowed are the others");
     if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
     if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
     if (joint.type != Joint::Type::kContinuous && (value < joint.lower - 1e-9 || value > joint.upper + 1e-9))
@@ -170,24 +181,23 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
                    const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll) {
   const int base = require_link(robot, "robot.base_link", base_link);
   const int tip = require_link(robot, "robot.tip_link", tip_link);
+  const Way way = way_between(robot, base, tip);
   std::vector<int> arm;
-  for (const int j : joints_between(robot, base, tip)) {
+  for (const int j : way.joints) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    if (joint.movable() && !joint.mimic) arm.push_back(j);
+    if (joint.movable() && !joint.mimic && hold.count(joint.name) == 0) arm.push_back(j);
   }
-  // A seventh joint that turns makes the roll one coordinate more, unless the user holds it.
-  const bool seven = arm.size() >= kDof && [&] {
-    const Joint& seventh = robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])];
-    return !roll || (seventh.type != Joint::Type::kPrismatic && hold.count(seventh.name) == 0);
-  }();
+  // A seventh joint that turns makes the roll one coordinate more.
+  const bool seven = arm.size() >= kDof &&
+                     (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type != Joint::Type::kPrismatic);
   const std::size_t joints = seven || !roll ? kDof : kDof - 1;
   if (!roll && arm.size() == kDof - 1)
     fail(robot, "robot.tip_link: the arm from '" + base_link + "' to '" + tip_link +
                     "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
                     "in rad, to `path`");
   if (arm.size() < joints)
-    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints between '" + base_link + "' and '" +
-                    tip_link + "': allowed are at least seven, or six with path.roll");
+    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints that are not held between '" + base_link +
+                    "' and '" + tip_link + "': allowed are at least seven, or six with path.roll");
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
@@ -213,20 +223,36 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
       const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
       const LinkPlacement& parent = model.links[static_cast<std::size_t>(joint.parent_link)];
       LinkPlacement& placement = model.links[static_cast<std::size_t>(waiting.back())];
-      const auto in_arm = std::find(arm.begin(), arm.end(), j);
-      placement.group = in_arm == arm.end() ? parent.group : static_cast<int>(in_arm - arm.begin()) + 1;
       placement.pose = parent.pose * joint.origin * joint_motion(joint, position[static_cast<std::size_t>(j)]);
     }
   }
   const Pose root_in_base = model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
   for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
 
+  // A link moves with the link of the way that it hangs from; what hangs from none, with the one that all of them hang from.
+  constexpr int kUnknown = -1;
+  for (LinkPlacement& placement : model.links) placement.group = kUnknown;
+  int group = 0;
+  for (std::size_t k = 0; k < way.links.size(); ++k) {
+    group += k > 0 && std::find(arm.begin(), arm.end(), way.joints[k - 1]) != arm.end();
+    model.links[static_cast<std::size_t>(way.links[k])].group = group;
+  }
+  const int above_all = model.links[static_cast<std::size_t>(way.links[way.up])].group;
+  for (std::size_t link = 0; link < robot.links.size(); ++link) {
+    auto from = link;
+    int j = 0;
+    while (model.links[from].group == kUnknown && (j = robot.links[from].parent_joint) >= 0)
+      from = static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(j)].parent_link);
+    model.links[link].group = model.links[from].group == kUnknown ? above_all : model.links[from].group;
+  }
+
   Chain& chain = model.chain;
   for (std::size_t k = 0; k < joints; ++k) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
     const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
     chain.joint_names[k] = joint.name;
-    chain.axis[k] = (frame.linear() * joint.axis).normalized();
+    const auto place = static_cast<std::size_t>(std::find(way.joints.begin(), way.joints.end(), arm[k]) - way.joints.begin());
+    chain.axis[k] = (place < way.up ? -1.0 : 1.0) * (frame.linear() * joint.axis).normalized();
     chain.point[k] = frame.translation();
     chain.turn[k] = turn_about(chain.axis[k], chain.point[k]);
     chain.limit[k] = {joint.lower,        joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous,

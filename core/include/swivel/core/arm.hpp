@@ -70,10 +70,11 @@ struct LinkPlacement {
   Pose pose = Pose::Identity();  ///< link in base, q = 0, other joints held
 };
 
-/// The arm: the last seven movable joints before the tip; with `roll`, where there are no more than six that turn and are not held
-/// by name, these, of which the tool's roll makes seven. Every other joint is held at `hold` (default 0 or its nearest limit).
-/// Throws InputError for unknown names, a held joint that belongs to the arm or lies outside its limits, fewer joints, and a
-/// prismatic joint among them.
+/// The arm: the last seven movable joints before the tip that are not held by name; with `roll`, where no more than six of them
+/// turn, these, of which the tool's roll makes seven. Every other joint is held at `hold` (default 0 or its nearest limit). The
+/// tip need not hang from the base: where the part is in the hand and the tool stands, the hand is the base, and the chain leads
+/// through the arm backwards.
+/// Throws InputError for unknown names, a held joint outside its limits, fewer joints, and a prismatic joint among them.
 struct ArmModel {
   Chain chain;
   std::vector<LinkPlacement> links;  ///< by RobotModel link index
