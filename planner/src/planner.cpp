@@ -290,8 +290,11 @@ struct Planner::Impl {
   /// Paths that do not stay within the limits of joints taken as circles are none: those joints' values are told apart then.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
     was_eager = is_eager(options);
-    Found found = search(layout->first, !once, rule, options, budget, result);
-    if (layout->coaxial && found.decided && found.outcome.path.empty()) {
+    // What a caller's states cost may hang on joint 7.
+    const bool rests = layout->coaxial && !options.hooks.cost;
+    Found found;
+    if (rests || !layout->coaxial) found = search(layout->first, !once, rule, options, budget, result);
+    if (layout->coaxial && (!rests || (found.decided && found.outcome.path.empty()))) {
       layout->second = Searched{make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget), nullptr};
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
       return search(*layout->second, false, rule, options, budget, result);

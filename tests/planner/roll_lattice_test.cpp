@@ -267,6 +267,17 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
    private:
     double rest_;
   };
+  class Away final : public StateCost {
+   public:
+    explicit Away(double liked) : liked_(liked) {}
+    [[nodiscard]] std::string name() const override { return "away"; }
+    void costs(std::span<const Config> states, std::span<double> costs) override {
+      for (std::size_t k = 0; k < states.size(); ++k) costs[k] = 10 * std::abs(states[k][kDof - 1] - liked_);
+    }
+
+   private:
+    double liked_;
+  };
   Problem problem = io::load_problem(data_dir() / "problems/torch_door.yaml");
   problem.tool = Eigen::Translation3d(0, 0, 0.2) * Pose::Identity();
   problem.attached.clear();
@@ -287,6 +298,11 @@ TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
     EXPECT_GT(moving.lattice.grid->rolls, 1);
     EXPECT_GE(moving.cost, resting.cost);
     EXPECT_TRUE(check_trajectory(robot, problem, moving.trajectory).passed);
+    // A caller's cost may be of joint 7.
+    options.hooks = {.check = nullptr, .cost = std::make_shared<Away>(rest + 1)};
+    const PlanResult liked = planner.plan(options);
+    ASSERT_EQ(liked.status, PlanStatus::kSolved) << to_string(kind);
+    for (const TrajectoryRow& row : liked.trajectory) EXPECT_NEAR(row.q[kDof - 1], rest + 1, 0.5);
   }
 }
 
