@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import pty
+import selectors
 import shutil
 import stat
 import subprocess
@@ -49,6 +50,24 @@ class Project(unittest.TestCase):
         executable(self.root / "program", '#!/bin/sh\necho "$PWD:$*"\nexit 3\n')
         self.environment = {name: value for name, value in os.environ.items() if name not in ("CI", "SWIVEL_PRESET")}
 
+    def build_until_told(self, then=""):
+        """The build goes on until let_go(), two minutes at most."""
+        (self.root / "work.cmake").write_text(f"""
+foreach(tick RANGE 1200)
+  if(EXISTS {self.root}/go)
+    break()
+  endif()
+  execute_process(COMMAND sleep 0.1)
+endforeach()
+{then}
+""")
+
+    def let_go(self):
+        (self.root / "go").touch()
+
+    def begin(self, stderr=subprocess.PIPE):
+        return subprocess.Popen([self.root / "swivel"], env=self.environment, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=stderr)
+
     def call(self, *arguments, cwd=None, **environment):
         return subprocess.run([self.root / "swivel", *arguments], cwd=cwd or self.root, env=self.environment | environment, text=True,
                               stdin=subprocess.DEVNULL, capture_output=True, timeout=120)
@@ -78,25 +97,33 @@ class Wrapper(Project):
         self.assertLess(min(times), 1)
 
     def test_a_long_build_shows_how_far_it_is(self):
-        (self.root / "work.cmake").write_text("execute_process(COMMAND sleep 3)")
-        done = self.call()
-        self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r"swivel: building release, [01] of 2 steps; output in .*release.log\n")
-        self.assertEqual(done.stderr.count("building"), 1, "one line each half minute")
+        self.build_until_told()
+        call, shown = self.begin(), ""
+        while "building" not in shown:
+            line = call.stderr.readline()
+            self.assertTrue(line, shown)
+            shown += line
+        self.let_go()
+        shown += call.communicate(timeout=120)[1]
+        self.assertEqual(call.returncode, 3)
+        self.assertRegex(shown, r"swivel: building release, [01] of 2 steps; output in .*release.log\n")
 
     def test_a_terminal_gets_one_line_that_moves(self):
         self.call()
-        (self.root / "work.cmake").write_text("execute_process(COMMAND sleep 3)")
+        self.build_until_told()
         try:
             master, slave = pty.openpty()
         except OSError as error:
             self.skipTest(str(error))  # a chroot without /dev/pts
-        done = subprocess.run([self.root / "swivel"], env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=slave, timeout=120)
+        call, shown = self.begin(stderr=slave), ""
+        while shown.count("\r\033[Kswivel: building release") < 2:
+            shown += os.read(master, 65536).decode()
+        self.let_go()
+        call.communicate(timeout=120)
+        shown += os.read(master, 65536).decode()
         os.close(slave)
-        shown = os.read(master, 65536).decode()
         os.close(master)
-        self.assertEqual(done.returncode, 3)
-        self.assertGreaterEqual(shown.count("\r\033[Kswivel: building release"), 2)
+        self.assertEqual(call.returncode, 3)
         self.assertNotIn("\n", shown)
         self.assertTrue(shown.endswith("\r\033[K"), "the line is removed")
 
@@ -132,13 +159,22 @@ class Wrapper(Project):
         self.assertEqual(self.call("plan", "--report", "x.html").stderr, "")
 
     def test_calls_at_once_build_once(self):
-        (self.root / "work.cmake").write_text(f"execute_process(COMMAND sleep 3)\nfile(APPEND {self.root}/count x)")
-        calls = [subprocess.Popen([self.root / "swivel"], env=self.environment, text=True, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                  stderr=subprocess.PIPE) for _ in range(3)]
+        self.build_until_told(then=f"file(APPEND {self.root}/count x)")
+        calls = [self.begin() for _ in range(3)]
+        waiting = selectors.DefaultSelector()
+        for call in calls:
+            waiting.register(call.stderr, selectors.EVENT_READ)
+        shown = ""
+        while shown.count("waiting for another call") < 2:
+            for ready, _ in waiting.select(timeout=120):
+                text = os.read(ready.fd, 65536).decode()
+                self.assertTrue(text, shown)
+                shown += text
+        self.let_go()
         ends = [(call.communicate(timeout=120)[1], call.returncode) for call in calls]
         self.assertEqual([code for _, code in ends], [3, 3, 3])
         self.assertEqual((self.root / "count").read_text(), "x")
-        self.assertEqual(sum("waiting for another call" in text for text, _ in ends), 2)
+        self.assertEqual((shown + "".join(text for text, _ in ends)).count("waiting for another call"), 2)
 
 
 class Pages(unittest.TestCase):
