@@ -99,7 +99,7 @@ class Wrapper(Project):
     def test_a_long_build_shows_how_far_it_is(self):
         self.build_until_told()
         call, shown = self.begin(), ""
-        while "building" not in shown:
+        while "of 2 steps" not in shown:  # a line each half minute, the first perhaps before the steps are known
             line = call.stderr.readline()
             self.assertTrue(line, shown)
             shown += line
