@@ -6,8 +6,10 @@
 #include <random>
 #include <utility>
 
+#include "polish_turned.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/srs.hpp"
+#include "swivel/core/tool_path.hpp"
 
 namespace swivel {
 
@@ -124,6 +126,12 @@ Config measure_misfit(const Chain& chain, const SrsArm& arm) {
     if (apart.maxCoeff() <= kMostPolished) misfit = misfit.cwiseMax(apart);
   }
   return misfit;
+}
+
+std::optional<Config> polish_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
+                                    const Config& seed) {
+  const Pose turned = rolled(tool, roll_between(tool, chain.tool(seed)));
+  return polish(chain, arm, carry_plane(arm, plane, turned), turned, phi, seed);
 }
 
 }  // namespace swivel

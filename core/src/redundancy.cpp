@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "polish_turned.hpp"
 #include "swivel/core/alignment.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arc_lattice.hpp"
@@ -20,17 +21,12 @@ namespace swivel {
 namespace {
 
 /// Joints at an arm angle, of the row's branch and the images nearest to its joints.
-std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, ArmPlane plane, const std::array<ElbowCircle, 2>& circles,
-                                  Pose tool, double angle, const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
+std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
+                                  const std::array<ElbowCircle, 2>& circles, const Pose& tool, double angle,
+                                  const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
   std::optional<Config> q = srs_ik(arm, circles, angle, row.branch);
-  if (last_joint) {
-    (*q)[kDof - 1] = *last_joint;
-    if (!arm.exact) {
-      tool = rolled(tool, roll_between(tool, chain.tool(*q)));
-      plane = carry_plane(arm, plane, tool);
-    }
-  }
-  if (!arm.exact) q = polish(chain, arm, plane, tool, angle, *q);
+  if (last_joint) (*q)[kDof - 1] = *last_joint;
+  if (!arm.exact) q = last_joint ? polish_turned(chain, arm, plane, tool, angle, *q) : polish(chain, arm, plane, tool, angle, *q);
   if (!q) return std::nullopt;
   for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
   return q;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "polish_turned.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
@@ -303,8 +304,7 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
   for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
   if (last_joint_) q[kDof - 1] = *last_joint_;
   if (!arm_->exact) {
-    const Pose turned = last_joint_ ? rolled(tool, roll_between(tool, chain_->tool(q))) : tool;
-    const auto row = polish(*chain_, *arm_, last_joint_ ? carry_plane(*arm_, plane, turned) : plane, turned, phi, q);
+    const auto row = last_joint_ ? polish_turned(*chain_, *arm_, plane, tool, phi, q) : polish(*chain_, *arm_, plane, tool, phi, q);
     if (!row) {
       fault.fault = Between::Fault::kNoIk;
       return std::nullopt;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "kernels/kernels.hpp"
+#include "polish_turned.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
@@ -489,9 +490,8 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
 
 std::optional<Config> SrsLattice::polished(int layer, int slot, const Config& q) const {
   const Pose& tool = path_->layer(layer).tool;
-  if (!last_joint_) return polish(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
-  const Pose turned = rolled(tool, roll_between(tool, chain_->tool(q)));
-  return polish(*chain_, *arm_, carry_plane(*arm_, plane(layer), turned), turned, phi(layer, slot), q);
+  return last_joint_ ? polish_turned(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q)
+                     : polish(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
 }
 
 std::optional<Config> SrsLattice::row(int layer, int slot, const Config& q) const {
