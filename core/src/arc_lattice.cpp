@@ -73,7 +73,7 @@ struct Box {
   Config middle, radius;
   /// False where the cubic is surely further than `within` from q.
   [[nodiscard]] bool maybe_near(const Config& q, double within) const {
-    for (int j = 0; j < kDof; ++j) {
+    for (int j = kDof - 1; j >= 0; --j) {  // the last joints turn most: most chords are told by them
       const double apart = std::abs(q[j] - middle[j]), reach = radius[j] + within;
       if (apart > reach && apart < kTwoPi - reach) return false;
     }
@@ -252,9 +252,12 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
   for (const Image& image : images) {
     if (image.source < 0) continue;
     // The node that continues the source: its image, or what stands in its way.
+    const auto begin = lengths_.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto above = static_cast<std::size_t>(std::lower_bound(begin, lengths_.end(), image.place.length) - lengths_.begin());
     std::size_t nearest = first;
     double least_gap = -1;
-    for (std::size_t k = first; k < end; ++k) {
+    for (const std::size_t k : {first, above - 1, above, end - 1}) {  // the ends are neighbours where the arc is closed
+      if (k < first || k >= end) continue;
       double gap = std::abs(lengths_[k] - image.place.length);
       if (arc.closed) gap = std::min(gap, whole - gap);
       if (least_gap < 0 || gap < least_gap) {
@@ -288,6 +291,8 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
                                      const Budget& budget) {
   const TraceSpan span("arcs");
   const SelfMotion motion(chain, method, problem.limits.joint_margin, weights_of(chain, problem.cost));
+  // Nodes drift with the tool as the cost would have it.
+  const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm : SelfMotion::Least::kLargest;
   Layers result;
   for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
   std::vector<Point> before;
@@ -297,7 +302,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     // Without a closed form the arcs of the layer before are followed.
     std::vector<Config> nodes, followed;
     for (const Point& point : before) nodes.push_back(point.q);
-    const std::vector<std::optional<Config>> moved = motion.images(nodes, tool);
+    const std::vector<std::optional<Config>> moved = motion.images(nodes, tool, least);
     for (const auto& q : moved)
       if (method.best < 0 && q) followed.push_back(*q);
     std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed);

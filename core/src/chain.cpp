@@ -268,7 +268,7 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     chain.axis.back() = -chain.home.linear().col(2);
     chain.point.back() = chain.home.translation();
     chain.turn.back() = turn_about(chain.axis.back(), chain.point.back());
-    chain.limit.back() = {roll->lower, roll->upper, 0, roll->upper - roll->lower >= kTwoPi - 1e-9};
+    chain.limit.back() = {roll->lower, roll->upper, 0, roll->circle()};
   }
   return model;
 }

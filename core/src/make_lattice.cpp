@@ -15,7 +15,7 @@ namespace {
 /// The tool's z axis is that of the last joint, and the tool may turn about it as it likes.
 bool turns_about_last_joint(const Chain& chain) {
   constexpr double kApart = 1e-9;  // m and rad
-  if (!chain.free_roll || chain.free_roll->upper - chain.free_roll->lower < kTwoPi - 1e-9) return false;
+  if (!chain.free_roll || !chain.free_roll->circle()) return false;
   Config turned = Config::Zero();
   turned[kDof - 1] = kPi / 2;
   const Pose one = chain.tool(Config::Zero()), other = chain.tool(turned);

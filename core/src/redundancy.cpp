@@ -140,7 +140,7 @@ class RollRedundancy final : public Redundancy {
         planes_(carried_planes(arm, path, budget)),
         most_change_(problem.limits.roll_slope * problem.resolution.ds) {
     const Roll& free = *chain.free_roll;
-    if (free.upper - free.lower < kTwoPi - 1e-9) range_ = {free.lower, free.upper};
+    if (!free.circle()) range_ = {free.lower, free.upper};
   }
   [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
   [[nodiscard]] bool has_grid() const override { return false; }

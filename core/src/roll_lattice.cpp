@@ -85,7 +85,7 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   set_row_step_bounds(std::move(bounds));
 
   const Roll& range = *chain.free_roll;
-  circle_ = range.upper - range.lower >= kTwoPi - 1e-9;
+  circle_ = range.circle();
   double nominal = circle_ ? 0 : std::clamp(0.0, range.lower, range.upper);
   if (problem.start) {
     double roll = roll_between(path.layer(0).tool, chain.tool(*problem.start));

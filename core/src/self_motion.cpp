@@ -24,14 +24,19 @@ constexpr double kLongChord = 0.7;     // rad: joined directly; longer ones are 
 constexpr double kNear = 0.02;         // rad from a chord: a seed there is known
 constexpr double kSeed = 5e-3;         // rad: a start this near a seed is the seed
 constexpr double kFar = 1;             // rad: more than a chord and what is near it
-constexpr double kFarSlack = 1;        // relative discriminant of complex roots that give seeds
+constexpr double kFarTriple = 0.25;    // relative discriminant of complex roots that give seeds: of a spherical triple,
+constexpr double kFarParallel = 1;     // and of three parallel axes
 constexpr int kMostPoints = 4000;      // of one curve
+constexpr int kFollowed = 64;          // of those that are followed ahead of time
+constexpr int kAround = 40;            // after as many, tracing may have come round to what is known
 constexpr double kSingular = 1e-6;     // rad from alignment of a triple
 constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
 constexpr double kLeastWeight = 1e-2;  // of the largest
 constexpr int kStarts = 96;            // of Newton, where there is no closed form
 constexpr int kApproachSteps = 30;     // from such a start
+constexpr int kDepth = 3;              // as often a chord is halved
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
+constexpr double kMostDrift = 0.2;     // rad of self-motion by which an image may leave the nearest one
 constexpr int kCloseSteps = 4;         // and from a guess on a curve
 const Config kPlain = Config::Ones();
 
@@ -85,6 +90,30 @@ struct Vertex : Point {
   std::array<int, 2> next{-1, -1};  // 2 * neighbour + the neighbour's side; -1: open
 };
 
+/// The other way to turn a rigid body as three axes do that meet in a point, each perpendicular to the next: a half turn about the
+/// first, the second on the other side of alignment, a half turn back about the third. All else may stand, so curves come in pairs.
+class Flip {
+ public:
+  Flip() = default;
+  Flip(int first, double aligned) : first_(first), aligned_(aligned) {}
+  [[nodiscard]] bool none() const { return first_ < 0; }
+  /// Of a pair one is on this side; at the alignment, to rounding, both.
+  [[nodiscard]] bool kept(const Config& q) const { return none() || std::sin(q[first_ + 1] - aligned_) > -1e-9; }
+  void apply(Config& q) const {
+    q[first_] += kPi;
+    q[first_ + 1] = 2 * aligned_ - q[first_ + 1];
+    q[first_ + 2] += kPi;
+  }
+  void apply(Point& p) const {
+    apply(p.q);
+    p.tangent[first_ + 1] = -p.tangent[first_ + 1];
+  }
+
+ private:
+  int first_ = -1;  // joint, 0-based; -1: there is no such triple
+  double aligned_ = 0;
+};
+
 double turned_away(const Config& direction, const Config& chord, double length) {
   return 1 - direction.dot(chord) / length;
 }
@@ -99,6 +128,7 @@ struct SelfMotionData {
   std::array<bool, kDof> circle{};
   Config scale, scale2;
   std::vector<Alignment> alignments;
+  Flip flip;                                         // of curves, one of two is sought
   std::vector<std::pair<double, ClosedForm>> forms;  // by lock value; none without a lock
   std::vector<Config> starts;                        // of Newton, without a lock
 
@@ -165,15 +195,25 @@ class Curves {
   void join_neighbours();
   /// How badly a smooth curve fits the move from a half-edge to another; none where it does not.
   [[nodiscard]] std::optional<double> misfit(int half, int other) const;
-  /// Of the free points of a lock value the one that fits the curve ahead of a best; -1: none.
-  template <class Free>
-  [[nodiscard]] int partner(int a, std::size_t group, const Free& free) const;
   [[nodiscard]] bool straight(int half, int other, const Config& chord) const;
   [[nodiscard]] Config middle(int half, int other) const;
-  /// Links two half-edges, with points between where the chord bends.
-  bool join(int half, int other, int depth);
-  /// The same over the point to which Newton leads from `guess`.
-  bool join(int half, int other, int depth, const Config& chord, const Config& guess, const std::optional<Point>& middle);
+  /// A way between two half-edges that is closed over the point to which Newton leads from `guess`.
+  struct Gap {
+    int half, other;
+    Config guess;
+    double within;  // rad: as far from the guess that point may lie
+  };
+  /// A way that turns more than a chord may, as a fold does.
+  struct Turn {
+    double miss;  // part of the chord by which it leaves the bisector of the tangents
+    Gap gap;
+  };
+  [[nodiscard]] std::optional<Turn> turning(int half, int other) const;
+  /// Links two half-edges, or adds the gap between them; neither where no curve is seen to join them.
+  void join(int half, int other, int depth, std::vector<Gap>& gaps);
+  /// Closes all gaps at once, then those that are left on either side of the points found.
+  void close(std::vector<Gap> gaps);
+  void bridge_ends();
 
   /// A point on its way along a curve.
   struct Walk {
@@ -208,8 +248,9 @@ class Curves {
   /// Follows all trails at once, links nothing.
   void follow(std::vector<Trail>& trails) const;
   void trace_all();
-  [[nodiscard]] bool known(const Config& q, const Config& tangent) const;
-  void add_hidden(std::span<const Config> points);
+  /// Whether a chord that is linked runs by, no further off than `near` and a part of its length.
+  [[nodiscard]] bool known(const Config& q, const Config& tangent, double near, double part) const;
+  void add_hidden(std::vector<Config> points);
 
   const SelfMotionData& data_;
   const Pose& tool_;
@@ -237,7 +278,9 @@ void Curves::add_seeds() {
     auto& list = exact ? solved : started;
     const std::size_t before = list.q.size();
     for (const Config6& six : exact ? form.solve(tool_) : form.starts(tool_, 1e-2)) {
-      list.q.push_back(with_joint(six, data_.lock, value));
+      const Config q = with_joint(six, data_.lock, value);
+      if (!data_.flip.kept(q)) continue;
+      list.q.push_back(q);
       list.lock.push_back(value);
     }
     counts.push_back(list.q.size() - before);
@@ -264,7 +307,7 @@ void Curves::add_seeds() {
       add(*p, static_cast<int>(k));
       ++count;
     }
-    few_.push_back(count < 8);
+    few_.push_back(count < (data_.flip.none() ? 8 : 4));
   }
   first_.push_back(static_cast<int>(vertices_.size()));
 }
@@ -295,81 +338,108 @@ Config Curves::middle(int half, int other) const {
   return at(half).q + cubic.at(0.5);
 }
 
-bool Curves::join(int half, int other, int depth) {
-  const Config chord = difference(at(other).q, at(half).q);
-  if (depth == 0 || straight(half, other, chord)) {
-    link(half, other);
-    return true;
-  }
-  const Config guess = middle(half, other);
-  return join(half, other, depth, chord, guess, data_.newton.nearest(guess, tool_, kPlain, kCloseSteps));
+std::optional<Curves::Turn> Curves::turning(int half, int other) const {
+  constexpr double kLong = 1.2;          // rad
+  constexpr double kLeastCosine = -0.6;  // of the whole turn
+  constexpr double kOff = 0.25;          // part of the chord
+  constexpr double kWithin = 0.2;        // likewise
+  if (!maybe_near(at(other).q, at(half).q, kLong)) return std::nullopt;
+  const Config chord = difference(at(other).q, at(half).q), t0 = outward(half), t1 = -outward(other);
+  const double length = chord.norm();
+  if (!(length > 0 && length < kLong) || t0.dot(t1) < kLeastCosine) return std::nullopt;
+  // An arc of a circle has its chord along the bisector of its tangents.
+  const Config sum = t0 + t1;
+  const double both = sum.norm(), along = chord.dot(sum) / both;
+  const double miss = (chord - (along / both) * sum).norm() / length;
+  if (!(along > 0 && miss < kOff) || data_.passes_alignment(at(half).q, chord)) return std::nullopt;
+  // With tangents of this length a cubic passes the middle of the circle's arc.
+  const double tangent = length / (0.5 + 0.25 * both);
+  return Turn{miss, {half, other, at(half).q + chord / 2 + (tangent / 8) * (t0 - t1), kWithin * length}};
 }
 
-bool Curves::join(int half, int other, int depth, const Config& chord, const Config& guess, const std::optional<Point>& middle) {
-  if (!middle || (middle->q - guess).norm() > 0.1 * chord.norm() || data_.aligned(middle->q)) return false;
-  Point p = *middle;
-  if (p.tangent.dot(chord) < 0) p.tangent = -p.tangent;
-  const int v = add(p, -1);
-  if (misfit(half, 2 * v) && misfit(2 * v + 1, other) && join(half, 2 * v, depth - 1)) {
-    if (join(2 * v + 1, other, depth - 1)) return true;
-    add_end(2 * v + 1);  // tracing goes on from here
-    return true;
+void Curves::join(int half, int other, int depth, std::vector<Gap>& gaps) {
+  if (misfit(half, other)) {
+    const Config chord = difference(at(other).q, at(half).q);
+    if (depth == 0 || straight(half, other, chord))
+      link(half, other);
+    else
+      gaps.push_back({half, other, middle(half, other), 0.1 * chord.norm()});
+  } else if (depth > 0) {
+    if (const auto turn = turning(half, other)) gaps.push_back(turn->gap);
   }
-  return false;
 }
 
-template <class Free>
-int Curves::partner(int a, std::size_t group, const Free& free) const {
-  int best = -1;
-  double least = 0;
-  for (int b = first_[group]; b < first_[group + 1]; ++b) {
-    if (!free(b)) continue;
-    const auto miss = misfit(2 * a + 1, 2 * b);
-    if (miss && (best < 0 || *miss < least)) {
-      best = b;
-      least = *miss;
+void Curves::close(std::vector<Gap> gaps) {
+  std::vector<Config> guesses;
+  std::vector<Gap> left;
+  PoseNewton::Points middles;
+  for (int depth = kDepth; !gaps.empty(); --depth) {
+    guesses.clear();
+    for (const Gap& gap : gaps) guesses.push_back(gap.guess);
+    data_.newton.nearest(guesses, tool_, kPlain, kCloseSteps, middles);
+    left.clear();
+    for (std::size_t k = 0; k < gaps.size(); ++k) {
+      const Gap& gap = gaps[k];
+      auto p = middles.at(k);
+      if (!p || (p->q - gap.guess).norm() > gap.within || data_.aligned(p->q)) continue;
+      if (p->tangent.dot(difference(at(gap.other).q, at(gap.half).q)) < 0) p->tangent = -p->tangent;
+      const int v = add(*p, -1);
+      join(gap.half, 2 * v, depth - 1, left);
+      join(2 * v + 1, gap.other, depth - 1, left);
     }
+    gaps.swap(left);
   }
-  return best;
 }
 
 void Curves::join_neighbours() {
-  constexpr int kDepth = 3;
-  const std::size_t count = data_.forms.size(), seeds = vertices_.size();
-  // As it goes where every join succeeds: what Newton is asked then is asked at once.
-  std::vector<int> partners(seeds, -1), question(seeds, -1);
-  std::vector<char> taken(seeds, 0);
-  std::vector<Config> chords, guesses;
+  const std::size_t count = data_.forms.size();
+  std::vector<Gap> gaps;
+  std::vector<char> taken(vertices_.size(), 0);
   for (std::size_t k = 0; k < count; ++k)
     for (int a = first_[k]; a < first_[k + 1]; ++a) {
-      const int b = partners[static_cast<std::size_t>(a)] =
-          partner(a, (k + 1) % count, [&](int other) { return taken[static_cast<std::size_t>(other)] == 0; });
-      if (b < 0) continue;
-      taken[static_cast<std::size_t>(b)] = 1;
-      const Config chord = difference(at(2 * b).q, at(2 * a).q);
-      if (straight(2 * a + 1, 2 * b, chord)) continue;
-      question[static_cast<std::size_t>(a)] = static_cast<int>(guesses.size());
-      chords.push_back(chord);
-      guesses.push_back(middle(2 * a + 1, 2 * b));
+      const std::size_t next = (k + 1) % count;
+      int best = -1;
+      double least = 0;
+      for (int b = first_[next]; b < first_[next + 1]; ++b) {
+        if (taken[static_cast<std::size_t>(b)] != 0) continue;
+        const auto miss = misfit(2 * a + 1, 2 * b);
+        if (miss && (best < 0 || *miss < least)) {
+          best = b;
+          least = *miss;
+        }
+      }
+      if (best < 0) continue;
+      taken[static_cast<std::size_t>(best)] = 1;
+      join(2 * a + 1, 2 * best, kDepth, gaps);
     }
-  PoseNewton::Points middles;
-  data_.newton.nearest(guesses, tool_, kPlain, kCloseSteps, middles);
+  close(std::move(gaps));
+}
+
+void Curves::bridge_ends() {
+  const std::size_t count = data_.forms.size();
+  std::vector<Gap> gaps;
+  std::vector<int> ends;  // that lie between two lock values
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t next = (k + 1) % count;
-    bool failed = false;  // a join of this group did: others may have another partner
-    for (int a = first_[k]; a < first_[k + 1]; ++a) {
-      const auto number = static_cast<std::size_t>(a);
-      const int b = failed ? partner(a, next, [&](int other) { return open(2 * other); }) : partners[number];
-      if (b < 0) continue;
-      if (const int known = question[number]; b == partners[number] && known >= 0) {
-        const auto at = static_cast<std::size_t>(known);
-        join(2 * a + 1, 2 * b, kDepth, chords[at], guesses[at], middles.at(at));
-      } else {
-        join(2 * a + 1, 2 * b, kDepth);
+    ends.clear();
+    for (int v = first_[k]; v < first_[k + 1]; ++v)
+      if (open(2 * v + 1)) ends.push_back(2 * v + 1);
+    for (int v = first_[next]; v < first_[next + 1]; ++v)
+      if (open(2 * v)) ends.push_back(2 * v);
+    while (!ends.empty()) {
+      const int end = ends.front();
+      ends.erase(ends.begin());
+      std::optional<Turn> best;
+      for (const int other : ends) {
+        const auto turn = turning(end, other);
+        if (turn && (!best || turn->miss < best->miss)) best = turn;
       }
-      failed = failed || open(2 * b);
+      if (!best) continue;
+      std::erase(ends, best->gap.other);
+      gaps.push_back(best->gap);
     }
   }
+  close(std::move(gaps));
 }
 
 double Curves::first_step(const Point& p, double step) const {
@@ -424,7 +494,7 @@ int Curves::met(int from, int count, const Point& p, const Config& move) const {
 void Curves::trace(int half, const Trail* trail) {
   double step = kStep / 4;
   Walk walk{{at(half).q, outward(half)}};
-  int here = half;
+  int here = half, again = 0;
   for (int count = 0; count < kMostPoints; ++count) {
     std::optional<Point> next;
     bool alone = false;  // no open half-edge was there when the trail was followed: there are fewer now
@@ -441,6 +511,9 @@ void Curves::trace(int half, const Trail* trail) {
       link(here, other);
       return;
     }
+    // Where curves nearly cross, a chord may have led from one to the other: the end that it left out has no continuation.
+    again = count >= kAround && known(next->q, next->tangent, 1e-3, 0.03) ? again + 1 : 0;
+    if (again == 3) return;
     walk.go(*next);
     const int v = add(*next, -1);
     link(here, 2 * v);
@@ -479,7 +552,7 @@ void Curves::follow(std::vector<Trail>& trails) const {
       trail.points.push_back(*next);
       trail.steps.push_back(walker.step);
       trail.met = met(trail.half, count, walker.walk.here, next->q - walker.walk.here.q);
-      if (trail.met >= 0 || count + 1 == kMostPoints) {
+      if (trail.met >= 0 || count + 1 == kFollowed) {
         walker.trail = nullptr;
         continue;
       }
@@ -517,11 +590,11 @@ void Curves::trace_all() {
     if (open(half)) trace(half, trail_of[static_cast<std::size_t>(half)]);
 }
 
-bool Curves::known(const Config& q, const Config& tangent) const {
+bool Curves::known(const Config& q, const Config& tangent, double near, double part) const {
   constexpr double kBeside = 0.2;                     // rad: more than what is near a chord lies beside it
   constexpr double kAway = 1.2 * kLongChord + kNear;  // rad: what is near a chord is not further from its ends
   for (const Vertex& v : vertices_) {
-    if (!maybe_near(v.q, q, kAway)) continue;
+    if (!maybe_near(v.q, q, data_.lock, kAway) || !maybe_near(v.q, q, kAway)) continue;
     const double before = difference(v.q[data_.lock], q[data_.lock]);
     if (std::abs(before) > kFar) continue;
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
@@ -538,18 +611,20 @@ bool Curves::known(const Config& q, const Config& tangent) const {
       const double along = way.dot(chord) / (length * length);
       if (!(along > -0.1 && along < 1.1)) continue;
       if (std::abs(tangent.dot(chord)) < 0.8 * length) continue;
-      if ((way - along * chord).norm() < kNear + 0.1 * length) return true;
+      if ((way - along * chord).norm() < near + part * length) return true;
     }
   }
   return false;
 }
 
-void Curves::add_hidden(std::span<const Config> points) {
+void Curves::add_hidden(std::vector<Config> points) {
+  for (Config& q : points)
+    if (!data_.flip.kept(q)) data_.flip.apply(q);
   PoseNewton::Points found;
   data_.newton.tangents(points, tool_, found);
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto p = found.at(k);
-    if (!p || data_.aligned(p->q) || known(p->q, p->tangent)) continue;
+    if (!p || data_.aligned(p->q) || known(p->q, p->tangent, kNear, 0.1)) continue;
     const int v = add(*p, -1);
     open_.clear();
     add_end(2 * v);
@@ -562,14 +637,15 @@ void Curves::add_hidden(std::span<const Config> points) {
 void Curves::find(std::span<const Config> known_points) {
   add_seeds();
   join_neighbours();
+  bridge_ends();
   for (int v = 0; v < static_cast<int>(vertices_.size()); ++v)
     for (const int half : {2 * v, 2 * v + 1})
-      if (open(half) && at(half).group >= 0) add_end(half);
+      if (open(half) && (at(half).group >= 0 || !open(half ^ 1))) add_end(half);
   trace_all();
-  add_hidden(known_points);
+  add_hidden({known_points.begin(), known_points.end()});
   if (data_.forms.empty()) {
     for (const Config& start : data_.starts)
-      if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden(std::span(&p->q, 1));
+      if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden({p->q});
     return;
   }
   // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
@@ -577,8 +653,10 @@ void Curves::find(std::span<const Config> known_points) {
   for (std::size_t k = 0; k < data_.forms.size(); ++k) {
     if (few_[k] == 0) continue;
     const auto& [value, form] = data_.forms[k];
-    for (const Config6& six : form.starts(tool_, kFarSlack)) {
+    const bool parallel = form.fit().structure == Structure::kParallel;
+    for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple)) {
       const Config start = with_joint(six, data_.lock, value);
+      if (!data_.flip.kept(start)) continue;
       const auto seed = [&](const Vertex& v) {
         return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;
       };
@@ -590,7 +668,7 @@ void Curves::find(std::span<const Config> known_points) {
   data_.newton.nearest(starts, tool_, kPlain, 8, found);
   for (std::size_t k = 0; k < starts.size(); ++k)
     if (found.found[k] != 0) hidden.push_back(found.q[k]);
-  add_hidden(hidden);
+  add_hidden(std::move(hidden));
 }
 
 template <class Visit>
@@ -612,6 +690,9 @@ void Curves::visit(const Visit& visit) const {
       }
       half = next ^ 1;  // in by one side, out by the other
     }
+    visit(points, closed);
+    if (data_.flip.none()) return;
+    for (Point& p : points) data_.flip.apply(p);
     visit(points, closed);
   };
   for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {
@@ -867,6 +948,30 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
 
 }  // namespace
 
+namespace {
+
+/// That of the triple of all closed forms, where they are the chain's own.
+Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignments,
+             const std::vector<std::pair<double, ClosedForm>>& forms) {
+  constexpr double kPerpendicular = 1e-12;  // cosine
+  if (forms.empty()) return {};
+  const ClosedFormFit& fit = forms.front().second.fit();
+  const bool one = std::all_of(forms.begin(), forms.end(), [&](const auto& form) {
+    return form.second.fit().exact && form.second.fit().structure == fit.structure && form.second.fit().first == fit.first;
+  });
+  if (!one || fit.structure == Structure::kParallel) return {};
+  const int first = fit.first < lock ? fit.first : fit.first + 1;
+  if (first < lock && lock <= first + 2) return {};  // the lock is among the three
+  const auto axis = [&](int joint) { return chain.axis[static_cast<std::size_t>(joint)]; };
+  if (std::abs(axis(first).dot(axis(first + 1))) > kPerpendicular ||
+      std::abs(axis(first + 1).dot(axis(first + 2))) > kPerpendicular)
+    return {};
+  const auto at = std::find_if(alignments.begin(), alignments.end(), [&](const Alignment& a) { return a.joint == first + 1; });
+  return at == alignments.end() ? Flip() : Flip(first, at->angle);
+}
+
+}  // namespace
+
 SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
   auto data = std::make_unique<SelfMotionData>(chain);
   // Without a lock any joint does: it settles where closed arcs begin.
@@ -899,6 +1004,7 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
     const double value = kTwoPi * (k + 0.5) / kSeeds - kPi;
     if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
   }
+  data->flip = flip_of(chain, data->lock, data->alignments, data->forms);
   data_ = std::move(data);
 }
 
@@ -936,9 +1042,61 @@ std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const
   return p->q;
 }
 
-std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool) const {
+namespace {
+
+/// Of moves  move + x along  with |x| <= most, the x at which the largest weighted joint moves least; of several the one nearest 0.
+/// That is the largest of fourteen lines, which is convex: downhill from 0, from corner to corner.
+double least_largest(const Config& move, const Config& along, const Config& weight, double most) {
+  std::array<double, 2 * kDof> value, slope;
+  for (int j = 0; j < kDof; ++j)
+    for (const int sign : {1, -1}) {
+      const auto line = static_cast<std::size_t>(2 * j + (sign < 0 ? 1 : 0));
+      value[line] = sign * weight[j] * move[j];
+      slope[line] = sign * weight[j] * along[j];
+    }
+  double top = *std::max_element(value.begin(), value.end());
+  double right = -kFar, left = -kFar;  // the steepest on top, to either side
+  for (std::size_t k = 0; k < value.size(); ++k) {
+    if (value[k] < top) continue;
+    right = std::max(right, slope[k]);
+    left = std::max(left, -slope[k]);
+  }
+  if (right >= 0 && left >= 0) return 0;
+  const double way = right < 0 ? 1 : -1;
+  double x = 0, steep = right < 0 ? right : left;
+  while (steep < 0 && x < most) {
+    double until = most - x, next = steep;
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      const double rise = way * slope[k];
+      if (rise <= steep) continue;
+      const double corner = std::max(0.0, (top - (value[k] + x * rise)) / (rise - steep));
+      if (corner >= until) continue;
+      until = corner;
+      next = rise;
+    }
+    x += until;
+    top += steep * until;
+    if (next == steep) break;
+    steep = next;
+  }
+  return way * x;
+}
+
+}  // namespace
+
+std::vector<std::optional<Config>> SelfMotion::images(std::span<const Config> q, const Pose& tool, Least least) const {
   PoseNewton::Points found;
   data_->newton.nearest(q, tool, data_->scale2, kImageSteps, found);
+  if (least == Least::kLargest) {
+    std::vector<Config> guesses = found.q;
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (found.found[k] != 0)
+        guesses[k] += least_largest(found.q[k] - q[k], found.tangent[k], data_->scale, kMostDrift) * found.tangent[k];
+    PoseNewton::Points drifted;
+    data_->newton.nearest(guesses, tool, data_->scale2, kImageSteps, drifted);
+    for (std::size_t k = 0; k < q.size(); ++k)
+      if (found.found[k] != 0 && drifted.found[k] != 0) found.q[k] = drifted.q[k];
+  }
   std::vector<std::optional<Config>> result(q.size());
   for (std::size_t k = 0; k < q.size(); ++k)
     if (found.found[k] != 0) result[k] = found.q[k];

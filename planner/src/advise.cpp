@@ -155,8 +155,7 @@ class Adviser {
 
   /// What stands in the way of the given rolls may not stand in that of others.
   void free_roll() {
-    if (problem_.roll && problem_.roll->upper - problem_.roll->lower < kTwoPi && !problem_.start)
-      try_once({.change = Change::kFreeRoll});
+    if (problem_.roll && !problem_.roll->circle() && !problem_.start) try_once({.change = Change::kFreeRoll});
   }
   void finer() {
     if (result_.diagnosis.holds() != Diagnosis::Holds::kEveryResolution) try_once({.change = Change::kFiner});

@@ -168,7 +168,7 @@ class Check {
   [[nodiscard]] double roll_change(std::size_t k) const {
     if (!chain_.free_roll) return 0;
     const double change = rows_[k].roll - rows_[k - 1].roll;
-    return chain_.free_roll->upper - chain_.free_roll->lower >= kTwoPi - 1e-9 ? wrap_angle(change) : change;
+    return chain_.free_roll->circle() ? wrap_angle(change) : change;
   }
 
   [[nodiscard]] bool examined(std::size_t k) const { return !candidates_[k].empty(); }
@@ -182,8 +182,8 @@ class Check {
       fail("row %zu: has values that are not finite", k);
       return false;
     }
-    if (const auto& range = chain_.free_roll; range && range->upper - range->lower < kTwoPi - 1e-9 &&
-                                              !(row.roll >= range->lower - kPose && row.roll <= range->upper + kPose)) {
+    if (const auto& range = chain_.free_roll;
+        range && !range->circle() && !(row.roll >= range->lower - kPose && row.roll <= range->upper + kPose)) {
       fail("row %zu: roll %.9g is outside its range", k, row.roll);
       return false;
     }

@@ -134,7 +134,7 @@ namespace {
 /// What rows say, moved off the ends of the range by as little as keeps the spline through it inside.
 std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
   std::vector<double> rolls = rolls_of(rows);
-  if (range.upper - range.lower >= kTwoPi - 1e-9 || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
+  if (range.circle() || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
   for (double off = 0; off < 0.1 * (range.upper - range.lower); off = std::max(1e-3, 2 * off)) {
     for (double& roll : rolls) roll = std::clamp(roll, range.lower + off, range.upper - off);
     const ToolPath turned = path.with_rolls(rolls);

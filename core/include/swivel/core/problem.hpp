@@ -83,7 +83,7 @@ struct Resolution {
   double ds = 0.005;    ///< m
   double dphi = 0.05;   ///< rad
   double dalpha = 0.1;  ///< rad of tool rotation
-  double arc = 0.2;     ///< rad of self-motion between nodes, of arms that have no arm angle
+  double arc = 0.175;   ///< rad of self-motion between nodes, of arms that have no arm angle
   bool arcs = false;    ///< of S-R-S arms: nodes on arcs of arm angles that lie between those of the grid
   double droll = 0.1;   ///< rad, of the roll, of seven-joint arms
   double knot = 0.025;  ///< m between layers at which the roll and the arm angle of seven-joint arms are chosen together
@@ -108,6 +108,7 @@ struct Variation {
 /// torch or a milling cutter change nothing for the work. A range of a turn or more is a circle.
 struct Roll {
   double lower = -kPi, upper = kPi;
+  [[nodiscard]] bool circle() const { return upper - lower >= kTwoPi - 1e-9; }
   bool operator==(const Roll&) const = default;
 };
 

@@ -30,9 +30,10 @@ struct SelfMotionData;
 /// Curves along which a seven-joint chain moves while the tool stays. A six-joint arm with a free tool axis is such a chain, its
 /// last joint the turn of the tool.
 /// The closed form at 32 values of the locked joint gives points inside and outside the limits (in-limit points alone miss arcs);
-/// neighbouring values are joined by their tangents; folds between them are traced. Curves between two lock values are found from
-/// complex roots. Pieces end where a joint meets its limit, and where a triple is within 1e-6 rad of alignment. A bounded joint
-/// with a range of more than a turn is a circle here.
+/// neighbouring values are joined by their tangents, as are the ends of folds; what is left is traced. Curves between two lock
+/// values are found from complex roots. Of the pairs that a triple of perpendicular axes makes, one curve is sought. Pieces end
+/// where a joint meets its limit, and where a triple is within 1e-6 rad of alignment. A bounded joint with a range of more than a
+/// turn is a circle here.
 /// Without a lock curves are those to which Newton leads from 96 points spread over the joints' ranges, and from configurations
 /// known: not all are found.
 class SelfMotion {
@@ -51,8 +52,11 @@ class SelfMotion {
 
   /// The configuration at the pose to which at most six Newton steps of least weighted norm lead from q.
   [[nodiscard]] std::optional<Config> image(const Config& q, const Pose& tool) const;
-  /// The same of many, in vector code, to the same bits.
-  [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q, const Pose& tool) const;
+  /// What is least of the way to an image: its weighted norm, or its largest weighted joint, to first order.
+  enum class Least { kNorm, kLargest };
+  /// The same of many, in vector code; by the norm to the same bits.
+  [[nodiscard]] std::vector<std::optional<Config>> images(std::span<const Config> q, const Pose& tool,
+                                                          Least least = Least::kNorm) const;
   /// The point of the pose's arc at chord k and u, exactly on the curve and within the limits. None where Newton fails.
   [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const;
   /// q with every joint in the winding that arcs have; whether it is inside the limits.
