@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "self_motion_data.hpp"
+
+namespace swivel {
+
+/// The points of a curve in order, tangents along it.
+using VisitCurve = std::function<void(const std::vector<self_motion::Point>& points, bool closed)>;
+
+/// Visits every curve of self-motion at a pose, limits ignored: SelfMotion says how they are found, and what `known` is.
+void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known, const VisitCurve& visit);
+
+}  // namespace swivel
