@@ -6,6 +6,7 @@
 #include <random>
 
 #include "certificate.hpp"
+#include "distances_about.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
 #include "swivel/core/timeline.hpp"
@@ -139,11 +140,6 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     const PlacedPair placed(*this, pair, moved);
     return fcl.clearance(placed.a(), placed.b(), &witness);
   };
-  const auto own = [&](const std::array<Pose, kDof + 1>& moved) {
-    budget.poll();
-    const PlacedPair placed(*this, pair, moved);
-    return triangle_distance(placed.a(), placed.b(), 0, kFarAway, witness);
-  };
   const auto middle_of = [&](std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(kHalf);
     std::nth_element(values.begin(), middle, values.end());
@@ -153,7 +149,14 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   const PlacedPair first(*this, pair, *near.front());
   const bool triangles = are_triangles(first.a(), first.b());
   std::vector<double> clearances;
-  for (const auto* moved : near) clearances.push_back(triangles ? own(*moved) : exact(*moved));
+  if (triangles)
+    clearances = distances_about(near.size(), kHalf, kFarAway, 3 * kTriangleBand, [&](std::size_t k, double enough, double limit) {
+      budget.poll();
+      const PlacedPair placed(*this, pair, *near[k]);
+      return triangle_distance(placed.a(), placed.b(), enough, limit, witness);
+    });
+  else
+    for (const auto* moved : near) clearances.push_back(exact(*moved));
   const double middle = middle_of(clearances);
   if (!triangles) return middle;
   for (std::size_t k = 0; k < near.size(); ++k)

@@ -95,7 +95,7 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
     const Angle& a = ends[k].phi;
     inside[k] = allowed(count == 1 ? Angle{-a.cosine, -a.sine} : between(a, ends[k + 1 < count ? k + 1 : 0].phi));
   }
-  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count), [](bool x) { return x; })) {
+  if (std::all_of(inside.begin(), inside.begin() + static_cast<std::ptrdiff_t>(count), [](bool in) { return in; })) {
     out.push_back({-kPi, kPi});
     return;
   }

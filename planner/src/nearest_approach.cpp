@@ -29,9 +29,9 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     if (nearest && is_further(row, q)) return;
     std::optional<World::Query::Clearance> here;
     if (nearest && nearest->clearance.distance > 0) {
-      World::Query::Clearance so_far = nearest->clearance;
-      so_far.least = nearest->least;
-      here = query.clearance_below(q, so_far);
+      World::Query::Clearance below = nearest->clearance;
+      below.least = nearest->least;
+      here = query.clearance_below(q, below);
     } else {
       here = query.clearance(q);
     }
