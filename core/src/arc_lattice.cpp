@@ -138,7 +138,21 @@ class Finder {
 struct Image {
   Place place;
   Config q;
-  int source = -1;  // slot of the layer before; -1: none
+  int source = -1;  // slot of the layer before that it continues; -1: none
+};
+
+/// Nodes of the layer before, of those with twins one of two, whose twins come behind them. The start of a path follows as the
+/// last.
+struct Before {
+  std::vector<Config> q;
+  int nodes = 0;  // slots of the layer
+  bool start = false;
+  [[nodiscard]] int start_slot() const { return nodes; }
+  /// The slot of a node's twin; of the start, one that nothing else has.
+  [[nodiscard]] int twin_of(int slot) const {
+    if (slot < 0) return slot;
+    return slot >= nodes ? slot ^ 1 : slot < nodes / 2 ? slot + nodes / 2 : slot - nodes / 2;
+  }
 };
 
 /// Adds the points of an arc at which the roll is 0, where it costs least. They take the place of images nearby.
@@ -172,6 +186,8 @@ class Layer {
   Layer(const SelfMotion& motion, const Pose& tool, double spacing) : motion_(motion), tool_(tool), spacing_(spacing) {}
   /// `images` of one arc, in the order of their lengths.
   void place(const SelfMotionArc& arc, const std::vector<Image>& images);
+  /// Adds the twins of all points.
+  void add_twins(const Before& before);
   std::vector<Point> points;
   std::vector<std::pair<int, int>> continued;  // slot of the layer before, and the slot here that continues it
 
@@ -270,6 +286,20 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
   }
 }
 
+void Layer::add_twins(const Before& before) {
+  const auto half = points.size(), links = continued.size();
+  const auto by = static_cast<int>(half);
+  for (std::size_t k = 0; k < half; ++k) {
+    Point point = points[k];
+    point.q = motion_.twin(point.q);
+    for (int& slot : point.beside)
+      if (slot >= 0) slot += by;
+    point.along[0] = before.twin_of(point.along[0]);
+    points.push_back(point);
+  }
+  for (std::size_t k = 0; k < links; ++k) continued.emplace_back(before.twin_of(continued[k].first), continued[k].second + by);
+}
+
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
   std::array<double, kDof> weights = cost.weights;
   for (std::size_t j = 0; cost.metric == CostMetric::kTime && j < kDof; ++j)
@@ -295,27 +325,32 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm : SelfMotion::Least::kLargest;
   Layers result;
   for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
-  std::vector<Point> before;
+  const bool twins = motion.twins();
+  Before before;
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
     const Pose& tool = path.layer(i).tool;
     // Without a closed form the arcs of the layer before are followed.
-    std::vector<Config> nodes, followed;
-    for (const Point& point : before) nodes.push_back(point.q);
-    const std::vector<std::optional<Config>> moved = motion.images(nodes, tool, least);
+    std::vector<Config> followed;
+    const std::vector<std::optional<Config>> moved = motion.images(before.q, tool, least);
     for (const auto& q : moved)
       if (method.best < 0 && q) followed.push_back(*q);
-    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed);
+    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed, SelfMotion::Twins::kOne);
     std::vector<std::vector<Image>> images;
     std::vector<Config> strays;
     const auto place_images = [&] {
       images.assign(arcs.size(), {});
       strays.clear();
       Finder finder(arcs);
-      for (std::size_t slot = 0; slot < before.size(); ++slot) {
-        auto q = moved[slot];
+      for (std::size_t k = 0; k < moved.size(); ++k) {
+        auto q = moved[k];
         if (!q) continue;
+        int source = before.start && k + 1 == moved.size() ? before.start_slot() : static_cast<int>(k);
         const bool inside = motion.canonical(*q);
+        if (motion.is_twin(*q)) {  // it came over to the other side, and its twin to this one
+          q = motion.twin(*q);
+          source = before.twin_of(source);
+        }
         const auto place = finder.find(*q);
         if (!place) {
           if (inside) strays.push_back(*q);
@@ -325,13 +360,13 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
           q = motion.point(arcs[static_cast<std::size_t>(place->arc)], place->chord, place->u, tool);
           if (!q) continue;
         }
-        images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, static_cast<int>(slot)});
+        images[static_cast<std::size_t>(place->arc)].push_back({*place, *q, source});
       }
     };
     place_images();
     if (!strays.empty()) {  // they lie on arcs of which the closed form shows nothing
       strays.insert(strays.end(), followed.begin(), followed.end());
-      arcs = motion.arcs(tool, strays);
+      arcs = motion.arcs(tool, strays, SelfMotion::Twins::kOne);
       place_images();
     }
     Layer layer(motion, tool, problem.resolution.arc);
@@ -342,28 +377,33 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
                        [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
       layer.place(arcs[k], images[k]);
     }
-    result.arcs += static_cast<std::int64_t>(arcs.size());
-    if (i > 0) {
-      auto& last = result.points.back();
-      for (const auto& [source, slot] : layer.continued)
-        if (source < static_cast<int>(last.size())) last[static_cast<std::size_t>(source)].along[1] = slot;
-    }
+    std::vector<Config> nodes;
+    for (const Point& point : layer.points) nodes.push_back(point.q);
+    if (twins) layer.add_twins(before);
+    result.arcs += static_cast<std::int64_t>(arcs.size()) * (twins ? 2 : 1);
+    const int slots = static_cast<int>(layer.points.size());
     if (i == 0 && problem.start) {
       // The start is the only node of layer 0; the others are transported as if there were none.
       Point start;
       start.q = *problem.start;
       (void)motion.canonical(start.q);  // its winding; the start's limits are asked where the problem is validated
-      before = std::move(layer.points);
-      before.push_back(start);
+      nodes.push_back(start.q);
+      before = {std::move(nodes), slots, true};
       result.points.push_back({start});
       continue;
     }
-    if (i == 1 && problem.start) {
-      for (Point& point : layer.points) point.along[0] = point.along[0] == static_cast<int>(before.size()) - 1 ? 0 : -1;
-      for (const auto& [source, slot] : layer.continued)
-        if (source == static_cast<int>(before.size()) - 1) result.points[0][0].along[1] = slot;
+    if (i > 0) {
+      auto& last = result.points.back();
+      for (const auto& [source, slot] : layer.continued) {
+        if (!before.start)
+          last[static_cast<std::size_t>(source)].along[1] = slot;
+        else if (source == before.start_slot())
+          last[0].along[1] = slot;
+      }
     }
-    before = layer.points;
+    if (before.start)
+      for (Point& point : layer.points) point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
+    before = {std::move(nodes), slots, false};
     result.points.push_back(std::move(layer.points));
   }
   return result;

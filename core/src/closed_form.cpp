@@ -25,6 +25,7 @@ using Candidate = std::array<Angle, kSix>;
 struct Candidates {
   std::array<Candidate, 24> at;  // four roots, each with at most six starts for the rest
   int count = 0;
+  ClosedForm::Ways ways;
   void add(const Candidate& candidate) { at[static_cast<std::size_t>(count++)] = candidate; }
 };
 
@@ -140,7 +141,7 @@ Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double
   return result;
 }
 
-/// Both ways to turn the triple so that it makes the rotation R.
+/// The ways to turn the triple so that it makes the rotation R.
 void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candidate, double slack, double aligned,
                Candidates& result) {
   const Vector3d& a = wrist.axis[3];
@@ -164,6 +165,7 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   for (const double root : {half, -half}) {
     candidate[4] = Angle::of(P * K - Q * root, Q * K + P * root);
     if (apart > kAligned) add(turn_between(a, turned(b, candidate[4], c), target));
+    if (result.ways == ClosedForm::Ways::kOne) break;
   }
   // Axes 4 and 6 are one line, or may be on the exact chain: joint 4 stands anywhere.
   if (apart <= std::max(kAligned, aligned)) {
@@ -461,10 +463,11 @@ std::optional<ClosedForm> ClosedForm::of(const SixChain& chain) {
   return best;
 }
 
-ClosedForm::Solutions ClosedForm::solve(const Pose& tool) const {
+ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Ways ways) const {
   Pose D = product(tool, home_inverse_);
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
+  candidates.ways = ways;
   std::visit([&](const auto& method) { swivel::solve(method, D, slack_, aligned_, candidates); }, method_);
   Solutions result;
   Candidate last;
@@ -502,10 +505,11 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool) const {
   return result;
 }
 
-ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack) const {
+ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack, Ways ways) const {
   Pose D = product(tool, home_inverse_);
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
+  candidates.ways = ways;
   std::visit([&](const auto& method) { swivel::solve(method, D, slack, aligned_, candidates); }, method_);
   Solutions result;
   for (; result.count < std::min<int>(candidates.count, kMaxSolutions); ++result.count) {

@@ -20,6 +20,7 @@ constexpr double kSliver = 1e-3;       // rad by which a range must exceed a tur
 constexpr double kLeastWeight = 1e-2;  // of the largest
 constexpr int kStarts = 96;            // of Newton, where there is no closed form
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
+constexpr double kSymmetric = 1e-11;   // rad by which a limit may miss the other's twin
 constexpr double kMostDrift = 0.2;     // rad of self-motion by which an image may leave the nearest one
 
 /// That of the triple of all closed forms, where they are the chain's own.
@@ -40,6 +41,17 @@ Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignme
     return {};
   const auto at = std::find_if(alignments.begin(), alignments.end(), [&](const Alignment& a) { return a.joint == first + 1; });
   return at == alignments.end() ? Flip() : Flip(first, at->angle);
+}
+
+/// Whether the flip of what is within the limits is so, too.
+bool keeps_limits(const Chain& chain, const SelfMotionData& data) {
+  const Flip& flip = data.flip;
+  if (flip.none()) return false;
+  const auto first = static_cast<std::size_t>(flip.first());
+  if (chain.roll && first + 2 == kDof - 1) return false;  // it turns the tool
+  return data.circle[first] && data.circle[first + 2] &&
+         (data.circle[first + 1] ||
+          std::abs(wrap_angle(data.lower[first + 1] + data.upper[first + 1] - 2 * flip.aligned())) < kSymmetric);
 }
 
 }  // namespace
@@ -77,6 +89,7 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
     if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
   }
   data->flip = flip_of(chain, data->lock, data->alignments, data->forms);
+  data->twins = keeps_limits(chain, *data);
   data_ = std::move(data);
 }
 
@@ -84,24 +97,52 @@ SelfMotion::~SelfMotion() = default;
 
 std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
   std::vector<SelfMotionArc> result;
-  find_curves(*data_, tool, {}, [&](const std::vector<Point>& points, bool closed) {
-    SelfMotionArc& arc = result.emplace_back();
-    arc.closed = closed;
-    for (const Point& p : points) {
-      arc.q.push_back(p.q);
-      arc.tangent.push_back(p.tangent);
+  find_curves(*data_, tool, {}, [&](std::vector<Point>& points, bool closed) {
+    for (int side = 0; side < (data_->flip.none() ? 1 : 2); ++side) {
+      SelfMotionArc& arc = result.emplace_back();
+      arc.closed = closed;
+      for (Point& p : points) {
+        if (side == 1) data_->flip.apply(p);
+        arc.q.push_back(p.q);
+        arc.tangent.push_back(p.tangent);
+      }
     }
   });
   return result;
 }
 
-std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known) const {
+std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known, Twins twins) const {
+  const bool both = !data_->flip.none() && !(data_->twins && twins == Twins::kOne);
   std::vector<SelfMotionArc> result;
-  find_curves(*data_, tool, known,
-              [&](const std::vector<Point>& points, bool closed) { cut_at_limits(*data_, tool, points, closed, result); });
+  find_curves(*data_, tool, known, [&](std::vector<Point>& points, bool closed) {
+    cut_at_limits(*data_, tool, points, closed, result);
+    if (!both) return;
+    for (Point& p : points) data_->flip.apply(p);
+    cut_at_limits(*data_, tool, points, closed, result);
+  });
   std::stable_sort(result.begin(), result.end(),
                    [](const SelfMotionArc& a, const SelfMotionArc& b) { return less(a.q[0], b.q[0]); });
   return result;
+}
+
+bool SelfMotion::twins() const {
+  return data_->twins;
+}
+
+bool SelfMotion::is_twin(const Config& q) const {
+  return data_->twins && !data_->flip.kept(q);
+}
+
+Config SelfMotion::twin(Config q) const {
+  data_->flip.apply(q);
+  for (std::size_t j = 0; j < kDof; ++j) {
+    double& value = q[static_cast<Eigen::Index>(j)];
+    value = data_->image(value, j);
+    // A limit's twin is one, but for rounding.
+    const double limit = std::clamp(value, data_->lower[j], data_->upper[j]);
+    if (!data_->circle[j] && std::abs(value - limit) < kSymmetric) value = limit;
+  }
+  return q;
 }
 
 std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const {

@@ -80,6 +80,12 @@ class Curves {
     return static_cast<int>(vertices_.size()) - 1;
   }
   void add_end(int half) { open_.push_back({half, at(half).q}); }
+  /// Of the pairs that a flip makes one is sought.
+  [[nodiscard]] ClosedForm::Ways ways() const { return data_.flip.none() ? ClosedForm::Ways::kBoth : ClosedForm::Ways::kOne; }
+  [[nodiscard]] Config kept(Config q) const {
+    if (!data_.flip.kept(q)) data_.flip.apply(q);
+    return q;
+  }
   void add_seeds();
   void join_neighbours();
   /// How badly a smooth curve fits the move from a half-edge to another; none where it does not.
@@ -166,9 +172,8 @@ void Curves::add_seeds() {
     const bool exact = form.fit().exact;
     auto& list = exact ? solved : started;
     const std::size_t before = list.q.size();
-    for (const Config6& six : exact ? form.solve(tool_) : form.starts(tool_, 1e-2)) {
-      const Config q = with_joint(six, data_.lock, value);
-      if (!data_.flip.kept(q)) continue;
+    for (const Config6& six : exact ? form.solve(tool_, ways()) : form.starts(tool_, 1e-2, ways())) {
+      const Config q = kept(with_joint(six, data_.lock, value));
       list.q.push_back(q);
       list.lock.push_back(value);
     }
@@ -507,8 +512,7 @@ bool Curves::known(const Config& q, const Config& tangent, double near, double p
 }
 
 void Curves::add_hidden(std::vector<Config> points) {
-  for (Config& q : points)
-    if (!data_.flip.kept(q)) data_.flip.apply(q);
+  for (Config& q : points) q = kept(q);
   PoseNewton::Points found;
   data_.newton.tangents(points, tool_, found);
   for (std::size_t k = 0; k < points.size(); ++k) {
@@ -543,9 +547,8 @@ void Curves::find(std::span<const Config> known_points) {
     if (few_[k] == 0) continue;
     const auto& [value, form] = data_.forms[k];
     const bool parallel = form.fit().structure == Structure::kParallel;
-    for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple)) {
-      const Config start = with_joint(six, data_.lock, value);
-      if (!data_.flip.kept(start)) continue;
+    for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple, ways())) {
+      const Config start = kept(with_joint(six, data_.lock, value));
       const auto seed = [&](const Vertex& v) {
         return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;
       };
@@ -578,9 +581,6 @@ void Curves::visit(const VisitCurve& visit) const {
       }
       half = next ^ 1;  // in by one side, out by the other
     }
-    visit(points, closed);
-    if (data_.flip.none()) return;
-    for (Point& p : points) data_.flip.apply(p);
     visit(points, closed);
   };
   for (int v = 0; v < static_cast<int>(vertices_.size()); ++v) {

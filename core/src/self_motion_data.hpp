@@ -59,6 +59,8 @@ class Flip {
   Flip() = default;
   Flip(int first, double aligned) : first_(first), aligned_(aligned) {}
   [[nodiscard]] bool none() const { return first_ < 0; }
+  [[nodiscard]] int first() const { return first_; }
+  [[nodiscard]] double aligned() const { return aligned_; }
   /// Of a pair one is on this side; at the alignment, to rounding, both.
   [[nodiscard]] bool kept(const Config& q) const { return none() || std::sin(q[first_ + 1] - aligned_) > -1e-9; }
   void apply(Config& q) const {
@@ -88,6 +90,7 @@ struct SelfMotionData {
   Config scale, scale2;
   std::vector<Alignment> alignments;
   self_motion::Flip flip;                            // of curves, one of two is sought
+  bool twins = false;                                // the flip keeps the limits
   std::vector<std::pair<double, ClosedForm>> forms;  // by lock value; none without a lock
   std::vector<Config> starts;                        // of Newton, without a lock
 

@@ -133,7 +133,7 @@ std::vector<ArmTable> arms() {
 
 TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
   Random random(seed("ArcLattice.NodesReachTheirPosesAndLieCloseTogether"));
-  int ends = 0, transported = 0, filled = 0;
+  int ends = 0, transported = 0, filled = 0, twins = 0;
   for (const ArmTable& table : arms()) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
@@ -179,6 +179,16 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
             on_limit.push_back(slot);
           }
         }
+        // Of a pair of arcs both have the same nodes, which continue each other's like.
+        for (int slot = 0, half = lattice.slots(i) / 2; motion.twins() && slot < lattice.slots(i); ++slot) {
+          const int other = slot < half ? slot + half : slot - half;
+          EXPECT_LT(lattice.delta(motion.twin(lattice.point(i, slot).q), lattice.point(i, other).q).norm(), 1e-9);
+          const int before = lattice.point(i, slot).along[0];
+          if (before < 0) continue;
+          const int half_before = lattice.slots(i - 1) / 2;
+          EXPECT_EQ(lattice.point(i, other).along[0], before < half_before ? before + half_before : before - half_before);
+          ++twins;
+        }
         // Every end of an arc is a node, bit for bit.
         const auto arcs = motion.arcs(tool);
         for (const SelfMotionArc& arc : arcs) {
@@ -194,7 +204,9 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
       EXPECT_EQ(nodes, lattice.nodes());
     }
   }
-  std::printf("  %d nodes on limits, %d transported, %d filled\n", ends, transported, filled);
+  std::printf("  %d nodes on limits, %d transported, %d filled, %d continue the like of their twins\n", ends, transported, filled,
+              twins);
+  EXPECT_GE(twins, at_least(500));
   EXPECT_GE(ends, at_least(300));
   EXPECT_GT(transported, 3 * filled);
 }
@@ -341,7 +353,7 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
 
 TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
   Random random(seed("ArcLattice.AStartIsTheOnlyFirstNodeAndIsTransported"));
-  int tried = 0, reached = 0;
+  int tried = 0, continued = 0, reached = 0;
   for (const ArmTable& table : arms()) {
     const Chain chain = chain_of(table);
     const LockMethod method = lock_method(chain);
@@ -357,6 +369,10 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
       const ArcLattice lattice(chain, method, path, problem);
       ASSERT_EQ(lattice.slots(0), 1);
       ++tried;
+      if (const int next = lattice.along(0, 0, 1); next >= 0) {
+        ++continued;
+        for (int j = 0; j < kDof; ++j) EXPECT_LT(std::abs(std::remainder(lattice.point(1, next).q[j] - start[j], kTwoPi)), 1.5);
+      }
       const Found found = cheapest(lattice);
       if (found.cost == kNone) continue;
       ++reached;
@@ -365,8 +381,9 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
       EXPECT_TRUE(rows == nullptr || rows->front() == start);
     }
   }
-  std::printf("  %d of %d\n", reached, tried);
+  std::printf("  %d of %d, %d continued in the next layer\n", reached, tried, continued);
   EXPECT_GE(reached, at_least(tried / 3));
+  EXPECT_GE(continued, at_least(2 * tried / 3));
 }
 
 }  // namespace

@@ -119,6 +119,14 @@ inline V move(V from, V to, float turn) {
   return d - turn * ((turns + 12582912.0F) - 12582912.0F);  // to the nearest whole
 }
 
+/// The same to rounding, and at half a turn to either side: of bounds.
+template <bool kWraps, class V>
+inline V move_about(V from, V to, double turn) {
+  const V d = to - from;
+  if constexpr (!kWraps) return d;
+  return d - turn * ((d * (1 / 6.2831853071795862) + 6755399441055744.0) - 6755399441055744.0);
+}
+
 /// `best`, or what a partner with the value gives where that is less. Partners that better no lane's best are left before the root
 /// is drawn. `sure`: a measure of the move up to which every joint stays within its bound; negative where no measure tells.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
@@ -127,7 +135,14 @@ inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V va
   const T shift = T(6144) * task.unit;
   const V room = larger(V(best - value + rounding), V{});
   V step[7], x[7];
-  for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], to[j], task.turn[j]);
+  V longest{};
+  for (int j = 0; j < 7; ++j) {
+    step[j] = to[j] - from[j];
+    longest = larger(longest, magnitude(step[j]));
+  }
+  if constexpr (kWraps)  // below half a turn there is nothing to take away, and the division is dear
+    if (any_less(V{} + T(3), longest))
+      for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], to[j], task.turn[j]);
   for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
   V measure, limit;  // what the cost grows with, and of a cost as large as the room
   if constexpr (kMetric == RelaxMetric::kL2) {
@@ -210,7 +225,7 @@ struct Reach {
       double step[7];
       bool together = true;
       for (int j = 0; j < 7; ++j) {
-        step[j] = move<kWraps>(task.from[j][first], task.from[j][last], task.turn[j]);
+        step[j] = move_about<kWraps>(task.from[j][first], task.from[j][last], task.turn[j]);
         together = together && magnitude(step[j]) < kTogether;
       }
       if (!together) break;
@@ -224,13 +239,20 @@ struct Reach {
       radius[j] = task.bound[j] + (high[j] - low[j]) / 2 + kRounding;
     }
   }
-  /// Above 0 where a joint of the partner is out of every node's reach.
+  /// Above 0 where a joint of the partner is out of every node's reach. The last joints come first: they move most, and mostly
+  /// tell.
   template <class V>
   V excess(const RelaxTask<double>& task, int partner) const {
-    V most = magnitude(move<kWraps>(V{} + middle[0], load<V>(task.to[0] + partner), task.turn[0])) - radius[0];
-    for (int j = 1; j < 7; ++j)
-      most = larger(most, V(magnitude(move<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner), task.turn[j])) - radius[j]));
-    return most;
+    const auto of = [&](int j) {
+      return V(magnitude(move_about<kWraps>(V{} + middle[j], load<V>(task.to[j] + partner), task.turn[j])) - radius[j]);
+    };
+    const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
+    return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
+  }
+  /// Whether every lane is above 0.
+  template <class V>
+  static bool none_within(V excess) {
+    return !any_less(excess, V{} + 1e-300);
   }
 };
 
@@ -263,6 +285,7 @@ void relax_all_run(const RelaxTask<double>& task) {
       int count = 0, partner = first;
       for (; partner + kLanes <= end; partner += kLanes) {
         const Lanes excess = reach.template excess<Lanes>(task, partner);
+        if (reach.none_within(excess)) continue;
         double lane[kLanes];
         __builtin_memcpy(lane, &excess, sizeof excess);
         for (int k = 0; k < kLanes; ++k) {

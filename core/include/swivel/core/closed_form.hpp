@@ -101,14 +101,17 @@ class ClosedForm {
   /// None where no three axes in the right place meet or are parallel, or where the first two axes of the position coincide.
   [[nodiscard]] static std::optional<ClosedForm> of(const SixChain& chain);
 
+  /// Of the two ways to turn three axes that meet, which differ by half a turn of the first and the third.
+  enum class Ways { kBoth, kOne };
+
   /// Distinct configurations in (-pi, pi], limits not applied, in a fixed order: each reaches the pose within 1e-9 m and rad on the
   /// exact chain, by forward kinematics. At a singular pose a family has some representatives, not all. Allocates nothing; plain
   /// IEEE arithmetic but for atan2 (and sin, cos where Newton is needed).
-  [[nodiscard]] Solutions solve(const Pose& tool) const;
+  [[nodiscard]] Solutions solve(const Pose& tool, Ways ways = Ways::kBoth) const;
 
   /// Unchecked starts for an iteration that may move the locked joint too: solutions of the fitted chain, and the neighbourhood of
   /// complex ones whose discriminants are within `slack` (relative) of zero.
-  [[nodiscard]] Solutions starts(const Pose& tool, double slack) const;
+  [[nodiscard]] Solutions starts(const Pose& tool, double slack, Ways ways = Ways::kBoth) const;
 
   [[nodiscard]] const SixChain& chain() const { return chain_; }
   [[nodiscard]] const ClosedFormFit& fit() const { return fit_; }

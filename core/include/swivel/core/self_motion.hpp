@@ -44,9 +44,17 @@ class SelfMotion {
              const std::array<double, kDof>& weights = {1, 1, 1, 1, 1, 1, 1});
   ~SelfMotion();
 
+  enum class Twins { kBoth, kOne };
   /// Arcs in the order of their first points; deterministic. `known`: configurations at this pose that may lie on curves of which
-  /// the closed form shows nothing.
-  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool, std::span<const Config> known = {}) const;
+  /// the closed form shows nothing. `twins`: of arms that have them, whether arcs that are twins of others are left out.
+  [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool, std::span<const Config> known = {},
+                                                Twins twins = Twins::kBoth) const;
+  /// Whether the pairs of curves are cut by the limits alike, as those of a wrist are whose outer joints turn all round.
+  [[nodiscard]] bool twins() const;
+  /// Whether q is on the side whose arcs `Twins::kOne` leaves out.
+  [[nodiscard]] bool is_twin(const Config& q) const;
+  /// Where q is on the other curve of its pair; in the winding that arcs have. Of arms with twins.
+  [[nodiscard]] Config twin(Config q) const;
   /// The whole curves, limits ignored; joints in no given winding.
   [[nodiscard]] std::vector<SelfMotionArc> curves(const Pose& tool) const;
 
