@@ -24,6 +24,7 @@ void add_merge(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_time(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
+void add_fit(CLI::App& app, int& exit_code);
 void add_schema(CLI::App& app, int& exit_code);
 
 /// The episode of a campaign, and the placement, that plan, check and time can be asked for.

@@ -7,12 +7,13 @@
 #include <optional>
 
 #include "commands.hpp"
+#include "known_name.hpp"
+#include "packages_option.hpp"
 #include "pairs_report.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/arm_guess.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/nearest_name.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::cli {
@@ -41,29 +42,6 @@ std::map<std::string, double> parse_hold(const std::vector<std::string>& items) 
     hold[item.substr(0, equals)] = value;
   }
   return hold;
-}
-
-std::map<std::string, std::filesystem::path> parse_packages(const std::vector<std::string>& items) {
-  std::map<std::string, std::filesystem::path> packages;
-  for (const std::string& item : items) {
-    const std::size_t equals = item.find('=');
-    if (equals == std::string::npos || equals == 0 || !std::filesystem::is_directory(item.substr(equals + 1)))
-      throw InputError("--packages: '" + item + "': allowed is NAME=FOLDER with an existing folder");
-    packages[item.substr(0, equals)] = item.substr(equals + 1);
-  }
-  return packages;
-}
-
-/// Throws InputError in the name of the option where there is no such link or joint.
-template <class Item>
-void require_known(const char* option, const std::string& name, const std::vector<Item>& items, const char* kind,
-                   const std::string& source) {
-  std::vector<std::string> known;
-  for (const Item& item : items) known.push_back(item.name);
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  throw InputError(std::string(option) + ": unknown " + kind + " '" + name + "'" +
-                   (known.empty() ? "" : ", nearest is '" + nearest_name(name, known) + "'") + ": allowed are the " + kind +
-                   "s of " + source);
 }
 
 /// Joints between two links that move on their own; none where the tip is not below the base.
@@ -192,7 +170,7 @@ void add_info(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
   command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
-  command->add_option("--packages", arguments->packages, "NAME=FOLDER, where meshes of package://NAME/... lie");
+  command->add_option("--packages", arguments->packages, kPackagesHelp);
   command->add_option("--base", arguments->base, "base link (default: the nearest called base_link or the like, else the root)");
   command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints, else of six)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");

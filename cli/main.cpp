@@ -35,6 +35,7 @@ int run(int argc, char** argv) {
   add_check(app, exit_code);
   add_time(app, exit_code);
   add_info(app, exit_code);
+  add_fit(app, exit_code);
   add_schema(app, exit_code);
   try {
     app.parse(argc, argv);
