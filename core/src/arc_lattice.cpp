@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "start.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/timeline.hpp"
 
@@ -138,14 +140,16 @@ class Finder {
 struct Image {
   Place place;
   Config q;
-  int source = -1;  // slot of the layer before that it continues; -1: none
+  int source = -1;     // slot of the layer before that it continues; -1: none
+  bool asked = false;  // for its roll, however near the arc's end
 };
 
-/// Nodes of the layer before, of those with twins one of two, whose twins come behind them. The start of a path follows as the
-/// last.
+/// What is carried on from the layer before, of nodes with twins one of two, whose twins come behind them. The start of a path
+/// follows as the last.
 struct Before {
   std::vector<Config> q;
-  int nodes = 0;  // slots of the layer
+  std::vector<int> slots;  // of each; -1 where it is carried on alone, since its roll is outside the layer's window
+  int nodes = 0;           // slots of the layer
   bool start = false;
   [[nodiscard]] int start_slot() const { return nodes; }
   /// The slot of a node's twin; of the start, one that nothing else has.
@@ -155,28 +159,28 @@ struct Before {
   }
 };
 
-/// Adds the points of an arc at which the roll is 0, where it costs least. They take the place of images nearby.
-void add_unturned(const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc, int number, double spacing,
-                  std::vector<Image>& images) {
+/// Adds the points of an arc at which the roll has a value. They take the place of images nearby.
+void add_at_roll(double roll, const SelfMotion& motion, const Pose& tool, const SelfMotionArc& arc, int number, double spacing,
+                 std::vector<Image>& images) {
   for (int chord = 0; chord < arc.chords(); ++chord) {
     const auto k = static_cast<std::size_t>(chord), next = (k + 1) % arc.q.size();
-    const double from = wrap_angle(arc.q[k][kDof - 1]), to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
+    const double from = wrap_angle(arc.q[k][kDof - 1] - roll), to = from + difference(arc.q[next][kDof - 1], arc.q[k][kDof - 1]);
     if (!(from < 0 && to > 0) && !(from > 0 && to < 0)) continue;
     double low = 0, high = 1;
     for (int halving = 0; halving < 30; ++halving) {
       const double u = (low + high) / 2;
-      (wrap_angle(arc.at(chord, u)[kDof - 1]) * from > 0 ? low : high) = u;
+      (wrap_angle(arc.at(chord, u)[kDof - 1] - roll) * from > 0 ? low : high) = u;
     }
-    const auto q = motion.point(arc, chord, low, tool);
+    const auto q = motion.with_joint_at(arc.at(chord, low), tool, kDof - 1, roll);
     if (!q) continue;
-    Image unturned{{number, chord, low, length_at(arc, chord, low), 0}, *q, -1};
+    Image added{{number, chord, low, length_at(arc, chord, low), 0}, *q, -1, true};
     double nearest = kCrowded * spacing;
     std::erase_if(images, [&](const Image& image) {
-      const double gap = std::abs(image.place.length - unturned.place.length);
-      if (gap < nearest) nearest = gap, unturned.source = image.source;
+      const double gap = std::abs(image.place.length - added.place.length);
+      if (gap < nearest) nearest = gap, added.source = image.source;
       return gap < kCrowded * spacing;
     });
-    images.push_back(unturned);
+    images.push_back(added);
   }
 }
 
@@ -186,6 +190,8 @@ class Layer {
   Layer(const SelfMotion& motion, const Pose& tool, double spacing) : motion_(motion), tool_(tool), spacing_(spacing) {}
   /// `images` of one arc, in the order of their lengths.
   void place(const SelfMotionArc& arc, const std::vector<Image>& images);
+  /// Leaves out the points whose roll the layer does not allow. Returns the slot of each that there was, -1: none.
+  std::vector<int> keep_window(const PathLayer& layer);
   /// Adds the twins of all points.
   void add_twins(const Before& before);
   std::vector<Point> points;
@@ -226,7 +232,9 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
   std::vector<const Image*> kept;
   for (const Image& image : images) {
     const double at = image.place.length;
-    if (arc.closed) {
+    if (image.asked) {
+      // It has been given room.
+    } else if (arc.closed) {
       if (!kept.empty() && (at - kept.back()->place.length < least || kept.front()->place.length + whole - at < least)) continue;
     } else if (at - (kept.empty() ? 0 : kept.back()->place.length) < least || whole - at < least) {
       continue;
@@ -286,6 +294,24 @@ void Layer::place(const SelfMotionArc& arc, const std::vector<Image>& images) {
   }
 }
 
+std::vector<int> Layer::keep_window(const PathLayer& layer) {
+  std::vector<int> slot_of;
+  std::vector<Point> kept;
+  for (const Point& point : points) {
+    const bool keeps = layer.in_window(point.q[kDof - 1]);
+    slot_of.push_back(keeps ? static_cast<int>(kept.size()) : -1);
+    if (keeps) kept.push_back(point);
+  }
+  if (kept.size() == points.size()) return slot_of;
+  const auto moved = [&](int slot) { return slot < 0 ? -1 : slot_of[static_cast<std::size_t>(slot)]; };
+  for (Point& point : kept)
+    for (int& slot : point.beside) slot = moved(slot);
+  for (auto& [source, slot] : continued) slot = moved(slot);
+  std::erase_if(continued, [](const auto& link) { return link.second < 0; });
+  points = std::move(kept);
+  return slot_of;
+}
+
 void Layer::add_twins(const Before& before) {
   const auto half = points.size(), links = continued.size();
   const auto by = static_cast<int>(half);
@@ -320,6 +346,10 @@ Vector3d foot(const Chain& chain, std::size_t axis, std::size_t other) {
 ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
                                      const Budget& budget) {
   const TraceSpan span("arcs");
+  if (problem.start) {
+    validate_start(problem, chain, path);
+    if (chain.roll) static_cast<void>(roll_of_start(problem, chain, path, {chain.limit.back().lower, chain.limit.back().upper}));
+  }
   const SelfMotion motion(chain, method, problem.limits.joint_margin, weights_of(chain, problem.cost));
   // Nodes drift with the tool as the cost would have it.
   const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm : SelfMotion::Least::kLargest;
@@ -345,7 +375,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       for (std::size_t k = 0; k < moved.size(); ++k) {
         auto q = moved[k];
         if (!q) continue;
-        int source = before.start && k + 1 == moved.size() ? before.start_slot() : static_cast<int>(k);
+        int source = before.slots[k];
         const bool inside = motion.canonical(*q);
         if (motion.is_twin(*q)) {  // it came over to the other side, and its twin to this one
           q = motion.twin(*q);
@@ -371,14 +401,23 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     }
     Layer layer(motion, tool, problem.resolution.arc);
     for (std::size_t k = 0; k < arcs.size(); ++k) {
-      if (chain.roll && problem.cost.roll > 0)
-        add_unturned(motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc, images[k]);
+      // Where the roll costs least, and the ends of what it may be.
+      const Roll& window = path.layer(i).window;
+      const auto add = [&](double roll) {
+        add_at_roll(roll, motion, tool, arcs[k], static_cast<int>(k), problem.resolution.arc, images[k]);
+      };
+      if (chain.roll && problem.cost.roll > 0) add(0);
+      if (chain.roll && window.lower > chain.limit.back().lower) add(window.lower);
+      if (chain.roll && window.upper < chain.limit.back().upper && window.upper > window.lower) add(window.upper);
       std::stable_sort(images[k].begin(), images[k].end(),
                        [](const Image& a, const Image& b) { return a.place.length < b.place.length; });
       layer.place(arcs[k], images[k]);
     }
     std::vector<Config> nodes;
     for (const Point& point : layer.points) nodes.push_back(point.q);
+    std::vector<int> slot_of(nodes.size());
+    std::iota(slot_of.begin(), slot_of.end(), 0);
+    if (chain.roll) slot_of = layer.keep_window(path.layer(i));
     if (twins) layer.add_twins(before);
     result.arcs += static_cast<std::int64_t>(arcs.size()) * (twins ? 2 : 1);
     const int slots = static_cast<int>(layer.points.size());
@@ -386,9 +425,10 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
       // The start is the only node of layer 0; the others are transported as if there were none.
       Point start;
       start.q = *problem.start;
-      (void)motion.canonical(start.q);  // its winding; the start's limits are asked where the problem is validated
+      (void)motion.canonical(start.q);  // its winding
       nodes.push_back(start.q);
-      before = {std::move(nodes), slots, true};
+      slot_of.push_back(slots);
+      before = {std::move(nodes), std::move(slot_of), slots, true};
       result.points.push_back({start});
       continue;
     }
@@ -403,7 +443,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     }
     if (before.start)
       for (Point& point : layer.points) point.along[0] = point.along[0] == before.start_slot() ? 0 : -1;
-    before = {std::move(nodes), slots, false};
+    before = {std::move(nodes), std::move(slot_of), slots, false};
     result.points.push_back(std::move(layer.points));
   }
   return result;

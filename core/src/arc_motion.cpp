@@ -26,9 +26,15 @@ void ArcMotion::move_off_limits(double by) {
   for (std::size_t k = 1; k + 1 < rows_.size(); ++k)
     for (std::size_t j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_->limit[j];
-      if (limit.continuous || limit.upper - limit.lower < 2 * by) continue;
+      if (limit.continuous) continue;
+      double lower = limit.lower, upper = limit.upper;
+      if (chain_->roll && j + 1 == kDof) {
+        const Roll window = path_->window_at(travel_[k]);
+        lower = std::max(lower, window.lower), upper = std::min(upper, window.upper);
+      }
+      if (upper - lower < 2 * by) continue;
       const auto joint = static_cast<Eigen::Index>(j);
-      const double value = rows_[k].q[joint], inside = std::clamp(value, limit.lower + by, limit.upper - by);
+      const double value = rows_[k].q[joint], inside = std::clamp(value, lower + by, upper - by);
       if (inside == value) continue;
       const auto moved = newton_.with_joint_at(rows_[k].q, pose_of(k), static_cast<int>(j), inside);
       if (moved && (moved->q - rows_[k].q).lpNorm<Eigen::Infinity>() < kFarthest) rows_[k].q = moved->q;

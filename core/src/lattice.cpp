@@ -24,17 +24,6 @@ double power_of_two_from(double x) {
   return x > 0 ? std::ldexp(1.0, std::frexp(x, &exponent) > 0.5 ? exponent : exponent - 1) : 1.0;
 }
 
-/// The length of path that belongs to each layer, m.
-std::vector<double> layer_shares(const ToolPath& path) {
-  std::vector<double> shares(static_cast<std::size_t>(path.size()), 0.0);
-  for (int i = 0; i + 1 < path.size(); ++i) {
-    const double half = (path.layer(i + 1).s - path.layer(i).s) / 2;
-    shares[static_cast<std::size_t>(i)] += half;
-    shares[static_cast<std::size_t>(i) + 1] += half;
-  }
-  return shares;
-}
-
 bool within(const Config& delta, const Config& bound) {
   for (int k = 0; k < kDof; ++k)
     if (!(std::abs(delta[k]) <= bound[k])) return false;
@@ -85,7 +74,7 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
   }
   double most_costly = *std::max_element(cost_scale_.begin(), cost_scale_.end());
   if (problem.roll && cost_.roll > 0) {
-    roll_weights_ = layer_shares(path);
+    roll_weights_ = path.shares();
     for (double& weight : roll_weights_) most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
   }
   cost_unit_ = power_of_two_from(most_costly);

@@ -36,7 +36,9 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
 }
 
 std::optional<double> last_joint_at_rest(const Chain& chain, const ArmClass& arm, const Problem& problem) {
-  if (!arm.srs || problem.start || !problem.rolls.empty() || !turns_about_last_joint(chain)) return std::nullopt;
+  // Where the roll costs something joint 7 had better turn.
+  if (!arm.srs || problem.start || !problem.rolls.empty() || problem.cost.roll > 0 || !turns_about_last_joint(chain))
+    return std::nullopt;
   const JointLimit& limit = chain.limit.back();
   if (limit.continuous) return 0.0;
   return limit.wide() ? std::clamp(0.0, limit.lower, limit.upper) : (limit.lower + limit.upper) / 2;

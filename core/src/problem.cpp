@@ -40,7 +40,7 @@ std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
     if (!w.position.allFinite() || !std::isfinite(norm) || std::abs(norm - 1) > 1e-3)
       throw InputError(problem.source + ": path: waypoint " + std::to_string(k) +
                        ": not a pose: allowed are finite numbers and a quaternion of length 1 within 1e-3");
-    Waypoint moved;
+    Waypoint moved = w;
     moved.position = frame * w.position;
     moved.orientation = (Quaterniond(frame.linear()) * w.orientation.normalized()).normalized();
     result.push_back(moved);

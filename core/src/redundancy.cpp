@@ -142,6 +142,11 @@ class RollRedundancy final : public Redundancy {
     const Roll& free = *chain.free_roll;
     if (!free.circle()) range_ = {free.lower, free.upper};
   }
+  [[nodiscard]] bool is_roll() const override { return true; }
+  [[nodiscard]] Range range(int layer) const override {
+    const Roll& window = lattice_.path().layer(layer).window;
+    return {std::max(range_.low, window.lower), std::min(range_.high, window.upper)};
+  }
   [[nodiscard]] const Lattice& lattice() const override { return lattice_; }
   [[nodiscard]] bool has_grid() const override { return false; }
   [[nodiscard]] std::unique_ptr<LayerSolver> solver(std::vector<TrajectoryRow>& rows) const override {
@@ -165,7 +170,6 @@ class RollRedundancy final : public Redundancy {
     }
   }
   [[nodiscard]] double most_change() const override { return most_change_; }
-  [[nodiscard]] Range range() const override { return range_; }
   [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
   [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(*arm_, q); }
   [[nodiscard]] double step_error(int, const TrajectoryRow&, const TrajectoryRow&) const override {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "polish_turned.hpp"
+#include "start.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
@@ -18,7 +19,6 @@ namespace swivel {
 
 namespace {
 
-constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
 constexpr double kSingularSine = 1e-6;
 constexpr double kMostTurning = 5;  // dalpha, that the path may turn from a knot to the next
 
@@ -42,8 +42,6 @@ std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm&
                                                const Budget& budget, std::optional<double> last_joint) {
   if (problem.limits.step_error)
     throw InputError(problem.source + ": limits.step_error: allowed without path.roll, or for arms of six joints");
-  if (problem.cost.roll > 0)
-    throw InputError(problem.source + ": cost.roll: allowed for arms of six joints, or as a narrower path.roll");
   return std::unique_ptr<RollLattice>(
       new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
 }
@@ -86,18 +84,9 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
 
   const Roll& range = *chain.free_roll;
   circle_ = range.circle();
+  windows_of_roll_ = problem.waypoints.front().roll.has_value();
   double nominal = circle_ ? 0 : std::clamp(0.0, range.lower, range.upper);
-  if (problem.start) {
-    double roll = roll_between(path.layer(0).tool, chain.tool(*problem.start));
-    if (!circle_) roll += kTwoPi * std::round(((range.lower + range.upper) / 2 - roll) / kTwoPi);
-    if (!circle_ && !(roll >= range.lower - 1e-6 && roll <= range.upper + 1e-6)) {
-      char text[160];
-      std::snprintf(text, sizeof text, ": start.joints: the tool stands turned by %.6g rad: allowed is %.6g to %.6g (path.roll)",
-                    roll, range.lower, range.upper);
-      throw InputError(problem.source + text);
-    }
-    nominal = roll;
-  }
+  if (problem.start) nominal = start_roll_ = roll_of_start(problem, chain, path, range);
   if (last_joint_)
     value_of_ = rank_ = {0}, values_ = {0};
   else
@@ -107,14 +96,15 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   of_nodes.start.reset();
   for (const int value : value_of_) {
     budget.poll();
-    const double roll = values_[static_cast<std::size_t>(value)];
-    ToolPath turned = knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), roll));
+    std::vector<double> rolls = rolls_along(value);
+    ToolPath turned = knot_path_->with_rolls(rolls);
     std::vector<ArmPlane> planes = planes_at(arm, planes_, knots_, turned);
-    turned_.push_back(
-        std::make_unique<Turned>(roll, std::move(turned), chain, arm, of_nodes, budget, std::move(planes), last_joint_));
+    turned_.push_back(std::make_unique<Turned>(std::move(rolls), std::move(turned), chain, arm, of_nodes, budget, std::move(planes),
+                                               last_joint_));
   }
   if (problem.start) {
-    start_path_ = std::make_unique<const ToolPath>(turned_.front()->path);
+    start_path_ = std::make_unique<const ToolPath>(
+        knot_path_->with_rolls(std::vector<double>(static_cast<std::size_t>(layers()), start_roll_)));
     start_ = std::make_unique<const SrsLattice>(chain, arm, *start_path_, problem, budget,
                                                 planes_at(arm, planes_, knots_, *start_path_));
   }
@@ -125,48 +115,88 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
         problem.source + ": resolution: " + std::to_string(nodes()) +
         " nodes of roll and arm angle are more than this machine has memory for: allowed are larger droll, dphi or knot");
 
-  const int angles = at_roll(0).angles(), values = rolls();
-  const int most_roll = circle_ ? (values - 1) / 2 : values - 1;
-  const auto cells = [&](double slope, double way, double cell, int least, int most) {
-    return static_cast<int>(std::min<double>(most, std::max<double>(least, std::floor(slope * way / cell + 1e-9))));
-  };
-  bool turns = values == 1;
+  const int angles = at_roll(0).angles();
   for (int k = 0; k + 1 < layers(); ++k) {
-    const double way =
-        path.layer(knots_[static_cast<std::size_t>(k) + 1]).travel - path.layer(knots_[static_cast<std::size_t>(k)]).travel;
     Window& window = windows_.emplace_back();
-    window.phi = cells(limits_.arm_slope, way, resolution.dphi, std::min(1, angles / 2), angles / 2);
-    window.roll = cells(limits_.roll_slope, way, resolution.droll, 0, most_roll);
+    window.phi = static_cast<int>(std::min<double>(
+        angles / 2, std::max<double>(std::min(1, angles / 2), std::floor(limits_.arm_slope * way(k) / resolution.dphi + 1e-9))));
     widest_ = std::max(widest_, window.phi);
-    turns = turns || window.roll > 0;
   }
-  if (!turns && limits_.roll_slope * resolution.knot < resolution.droll) {
+  find_near(problem);
+}
+
+/// Of the knots at both ends of a step, m.
+double RollLattice::way(int step) const {
+  return path_->layer(step + 1).travel - path_->layer(step).travel;
+}
+
+void RollLattice::find_near(const Problem& problem) {
+  const double droll = problem.resolution.droll;
+  const int values = rolls(), most = circle_ ? (values - 1) / 2 : values - 1;
+  bool turns = values == 1;
+  std::vector<int> of_cells(static_cast<std::size_t>(most) + 1, -1);  // which lists, where all layers have the same rolls
+  for (int step = 0; step + 1 < layers(); ++step) {
+    const double reach = limits_.roll_slope * way(step);
+    const int cells = static_cast<int>(std::min<double>(most, std::floor(reach / droll + 1e-9)));
+    turns = turns || cells > 0;
+    // A start may stand turned as no other node does.
+    const bool alike = !windows_of_roll_;
+    if (alike && of_cells[static_cast<std::size_t>(cells)] >= 0) {
+      windows_[static_cast<std::size_t>(step)].near = of_cells[static_cast<std::size_t>(cells)];
+      continue;
+    }
+    windows_[static_cast<std::size_t>(step)].near = static_cast<int>(near_.size());
+    if (alike) of_cells[static_cast<std::size_t>(cells)] = static_cast<int>(near_.size());
+    Near& lists = near_.emplace_back();
+    lists.after.resize(static_cast<std::size_t>(values));
+    lists.before.resize(static_cast<std::size_t>(values));
+    const auto join = [&](int a, int b) {
+      lists.after[static_cast<std::size_t>(a)].push_back(b);
+      lists.before[static_cast<std::size_t>(b)].push_back(a);
+    };
+    for (int rank = 0; rank < values; ++rank)
+      if (alike) {
+        for (int by = -cells; by <= cells; ++by) {
+          const int value = value_of_[static_cast<std::size_t>(rank)] + by;
+          if (circle_ || (value >= 0 && value < values)) join(rank, rank_[static_cast<std::size_t>((value + values) % values)]);
+        }
+      } else {
+        const double from = step == 0 && start_ ? start_roll_ : roll_of_rank(step, rank);
+        for (int other = 0; other < values; ++other)
+          if (std::abs(roll_of_rank(step + 1, other) - from) <= reach + 1e-9) join(rank, other);
+      }
+    for (auto* all : {&lists.after, &lists.before})
+      for (auto& list : *all) std::sort(list.begin(), list.end());
+  }
+  if (!turns && !windows_of_roll_ && limits_.roll_slope * problem.resolution.knot < droll) {
     char text[200];
     std::snprintf(text, sizeof text,
                   ": limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
-                  resolution.droll / resolution.knot);
+                  droll / problem.resolution.knot);
     throw InputError(problem.source + text);
   }
-  near_.resize(static_cast<std::size_t>(most_roll) + 1);
-  for (const Window& window : windows_) {
-    auto& lists = near_[static_cast<std::size_t>(window.roll)];
-    if (!lists.empty()) continue;
-    lists.resize(static_cast<std::size_t>(values));
-    for (int rank = 0; rank < values; ++rank) {
-      auto& list = lists[static_cast<std::size_t>(rank)];
-      for (int by = -window.roll; by <= window.roll; ++by) {
-        const int value = value_of_[static_cast<std::size_t>(rank)] + by;
-        if (!circle_ && (value < 0 || value >= values)) continue;
-        list.push_back(rank_[static_cast<std::size_t>((value + values) % values)]);
-      }
-      std::sort(list.begin(), list.end());
-    }
+}
+
+std::vector<double> RollLattice::rolls_along(int value) const {
+  const double part = values_[static_cast<std::size_t>(value)];
+  std::vector<double> rolls;
+  for (int layer = 0; layer < layers(); ++layer) {
+    const Roll& window = path_->layer(layer).window;
+    rolls.push_back(windows_of_roll_ ? window.lower + part * (window.upper - window.lower) : part);
   }
+  return rolls;
 }
 
 void RollLattice::choose_rolls(double nominal, double droll) {
   const Roll& range = *chain_->free_roll;
-  if (circle_) {
+  std::vector<double> away;  // from the nominal roll, in the mean, by value
+  if (windows_of_roll_) {
+    double widest = 0;
+    for (int layer = 0; layer < layers(); ++layer)
+      widest = std::max(widest, path_->layer(layer).window.upper - path_->layer(layer).window.lower);
+    const int n = static_cast<int>(std::ceil(widest / droll - 1e-9));
+    for (int k = 0; k <= n; ++k) values_.push_back(n > 0 ? static_cast<double>(k) / n : 0);
+  } else if (circle_) {
     const int n = std::max(1, static_cast<int>(std::ceil(kTwoPi / droll - 1e-9)));
     for (int k = 0; k < n; ++k) values_.push_back(k == 0 ? nominal : wrap_angle(nominal + kTwoPi * k / n));
   } else {
@@ -179,11 +209,12 @@ void RollLattice::choose_rolls(double nominal, double droll) {
   }
   value_of_.resize(values_.size());
   std::iota(value_of_.begin(), value_of_.end(), 0);
-  const auto away = [&](int value) {
-    const double roll = values_[static_cast<std::size_t>(value)] - nominal;
-    return std::abs(circle_ ? wrap_angle(roll) : roll);
-  };
-  std::stable_sort(value_of_.begin(), value_of_.end(), [&](int a, int b) { return away(a) < away(b) - 1e-9; });
+  for (const int value : value_of_) {
+    double& sum = away.emplace_back(0);
+    for (const double roll : rolls_along(value)) sum += std::abs(circle_ ? wrap_angle(roll - nominal) : roll - nominal) / layers();
+  }
+  std::stable_sort(value_of_.begin(), value_of_.end(),
+                   [&](int a, int b) { return away[static_cast<std::size_t>(a)] < away[static_cast<std::size_t>(b)] - 1e-9; });
   rank_.resize(values_.size());
   for (std::size_t rank = 0; rank < value_of_.size(); ++rank)
     rank_[static_cast<std::size_t>(value_of_[rank])] = static_cast<int>(rank);
@@ -255,7 +286,7 @@ PoseShift RollLattice::rows_apart(int layer, int group, const Config& q) const {
 
 bool RollLattice::in_window(int layer, int a, int b) const {
   if (branch(layer, a) != branch(layer + 1, b)) return false;
-  const std::vector<int>& rolls = near(layer, rank_of(layer, a));
+  const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
   if (!std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))) return false;
   const int angles = at_roll(0).angles(), window = phi_window(layer), to = at_roll(0).angle_of(b % width_);
   if (layer == 0 && start_) {
@@ -280,7 +311,7 @@ void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const 
     first = (at_roll(0).angle_of(a % width_) - window + angles) % angles;
   }
   const int sheet = branch(layer, a) * windings, end = first + count;
-  for (const int rank : near(layer, rank_of(layer, a)))
+  for (const int rank : near(layer, rank_of(layer, a), true))
     for (int winding = 0; winding < windings; ++winding) {
       const int zero = slot_of(rank, (sheet + winding) * angles);
       if (end > angles) out.push_back({zero, zero + end - angles});
@@ -331,11 +362,16 @@ template <class Visit>
 Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
   Between between;
   const int first = knots_[static_cast<std::size_t>(layer)], last = knots_[static_cast<std::size_t>(layer) + 1];
-  const double roll = this->roll(rank_of(layer, a)), phi = this->phi(layer, a);
-  const double roll_change = this->roll(rank_of(layer + 1, b)) - roll;
+  const double roll = this->roll(layer, a), phi = this->phi(layer, a);
+  const double roll_change = this->roll(layer + 1, b) - roll;
   const double dphi = wrap_angle(this->phi(layer + 1, b) - phi), droll = circle_ ? wrap_angle(roll_change) : roll_change;
   const int branch = this->branch(layer, a);
   const double begin = whole_->layer(first).travel, way = whole_->layer(last).travel - begin;
+  // Where a window narrows between two knots the roll follows its end.
+  const auto chosen = [&](int i, double t) {
+    const Roll& window = whole_->layer(i).window;
+    return std::clamp(roll + t * droll, window.lower, std::max(window.lower, window.upper));
+  };
   Config from = qa;
   double from_roll = roll_at(first, qa, roll);
   for (int i = first; i < last; ++i) {
@@ -344,15 +380,15 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
     if (i + 1 == last)
       to = from + delta(from, qb);
     else
-      to = solve(i + 1, roll + t * droll, phi + t * dphi, branch, from, between);
+      to = solve(i + 1, chosen(i + 1, t), phi + t * dphi, branch, from, between);
     if (!to) return between;
     between.q = *to;
     const Config move = *to - from;
-    const double to_roll = roll_at(i + 1, *to, roll + t * droll);
+    const double to_roll = roll_at(i + 1, *to, i + 1 == last ? roll + droll : chosen(i + 1, t));
     const double most_turn = limits_.roll_slope * (whole_->layer(i + 1).travel - whole_->layer(i).travel);
     const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
     if (!((move.cwiseAbs().array() <= bound.array()).all()) ||
-        (last_joint_ && !(std::abs(wrap_angle(to_roll - from_roll)) <= most_turn))) {
+        ((last_joint_ || windows_of_roll_) && !(std::abs(wrap_angle(to_roll - from_roll)) <= most_turn + 1e-9))) {
       between.fault = Between::Fault::kStep;
     } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
       between.fault = Between::Fault::kPathError;
@@ -386,8 +422,8 @@ std::vector<TrajectoryRow> RollLattice::rows(const std::vector<int>& slots) cons
                              [&](const TrajectoryRow& row) { rows.push_back(row); }));
       q = rows.back().q + delta(rows.back().q, q);
     }
-    rows.push_back({path_->layer(k).s, phi(k, slot), branch(k, slot), q,
-                    roll_at(knots_[static_cast<std::size_t>(k)], q, roll(rank_of(k, slot)))});
+    rows.push_back(
+        {path_->layer(k).s, phi(k, slot), branch(k, slot), q, roll_at(knots_[static_cast<std::size_t>(k)], q, roll(k, slot))});
   }
   return rows;
 }

@@ -221,6 +221,14 @@ std::optional<Config> SelfMotion::point(const SelfMotionArc& arc, int chord, dou
   return q;
 }
 
+std::optional<Config> SelfMotion::with_joint_at(const Config& q, const Pose& tool, int joint, double value) const {
+  const auto p = data_->newton.with_joint_at(q, tool, joint, value);
+  if (!p) return std::nullopt;
+  Config found = p->q;
+  if (!canonical(found)) return std::nullopt;
+  return found;
+}
+
 bool SelfMotion::canonical(Config& q) const {
   bool inside = true;
   for (std::size_t j = 0; j < kDof; ++j) {

@@ -64,7 +64,7 @@ class Objective {
       if (over > 0) sum += kChange * over * over;
     }
     for (int i = 1; i + 1 < n_; ++i) sum += objective_->bending * bends_[at(i)].h * bend(q, i).squaredNorm();
-    for (std::size_t i = 0; i < objective_->roll.size(); ++i) sum += objective_->roll[i] * off(wrap_angle(q[i][kDof - 1]));
+    for (std::size_t i = 0; i < objective_->roll.size(); ++i) sum += objective_->roll[i] * off(wrap_angle(roll(x[i], q[i])));
     return sum;
   }
 
@@ -102,8 +102,9 @@ class Objective {
       H[1][a] -= 2 * kChange;
     }
     for (std::size_t i = 0; i < objective_->roll.size(); ++i) {
-      const double roll = wrap_angle(l.q[i][kDof - 1]), way = roll / off(roll);
-      const double first = l.first[i][kDof - 1], second = l.second[i][kDof - 1];
+      const double roll = wrap_angle(this->roll(x[i], l.q[i])), way = roll / off(roll);
+      const double first = objective_->roll_is_coordinate ? 1 : l.first[i][kDof - 1],
+                   second = objective_->roll_is_coordinate ? 0 : l.second[i][kDof - 1];
       g[i] += objective_->roll[i] * way * first;
       H[0][i] += objective_->roll[i] * ((1 - way * way) / off(roll) * first * first + way * second);
     }
@@ -126,6 +127,7 @@ class Objective {
 
  private:
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+  [[nodiscard]] double roll(double x, const Config& q) const { return objective_->roll_is_coordinate ? x : q[kDof - 1]; }
   [[nodiscard]] double length(const Config& r) const {
     const int power = objective_->power;
     if (power == 2) return std::sqrt(r.squaredNorm() + kLeastMove * kLeastMove);

@@ -9,6 +9,7 @@
 
 #include "kernels/kernels.hpp"
 #include "polish_turned.hpp"
+#include "start.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
@@ -18,7 +19,6 @@ namespace swivel {
 
 namespace {
 
-constexpr double kLimitTolerance = 1e-9;  // rad, limits are inclusive within this
 constexpr double kSingularSine = 1e-6;
 constexpr double kSliver = 1e-3;   // rad, what a range may have beyond whole turns without another image
 constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much precision
@@ -178,29 +178,8 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
 }
 
 void SrsLattice::place_start(const Problem& problem) {
+  validate_start(problem, *chain_, *path_);
   const Config& q = *problem.start;
-  const std::string& source = problem.source;
-  const Pose reached = chain_->tool(q);
-  const Pose& first = path_->layer(0).tool;
-  const double distance = (reached.translation() - first.translation()).norm();
-  const double angle = Eigen::AngleAxisd(reached.linear().transpose() * first.linear()).angle();
-  for (int k = 0; k < kDof; ++k) {
-    const JointLimit& limit = chain_->limit[static_cast<std::size_t>(k)];
-    const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
-    if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
-      throw InputError(source + ": start.joints: joint '" + chain_->joint_names[static_cast<std::size_t>(k)] + "' at " +
-                       std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) + " to " +
-                       std::to_string(upper));
-  }
-  const double tolerance = problem.start_tolerance;
-  if (!(distance <= tolerance && angle <= tolerance)) {
-    char text[200], pose[40] = "first pose";
-    if (problem.start_at) std::snprintf(pose, sizeof pose, "pose at start_at, %.9g m", *problem.start_at);
-    std::snprintf(text, sizeof text,
-                  ": start.joints: the tool is %.3g m and %.3g rad from the path's %s: allowed are %g m and rad (start_tolerance)",
-                  distance, angle, pose, tolerance);
-    throw InputError(source + text);
-  }
   Start start;
   start.row = q;
   start.phi = planes_[0].angle_of(arm_->elbow_axis(q));

@@ -11,8 +11,7 @@ namespace swivel {
 
 namespace {
 
-constexpr double kLimitTolerance = 1e-9;  // rad, as nodes have it
-constexpr double kHair = 1e-6;            // rad of arm angle that moved nodes keep from the ends of arcs
+constexpr double kHair = 1e-6;  // rad of arm angle that moved nodes keep from the ends of arcs
 
 }  // namespace
 

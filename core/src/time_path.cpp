@@ -8,10 +8,18 @@
 #include <limits>
 
 #include "swivel/core/angle.hpp"
+#include "swivel/core/make_lattice.hpp"
 
 namespace swivel {
 
 namespace {
+
+bool roll_allowed(const Chain& chain, const ToolPath& path, double travel, const TrajectoryRow& row) {
+  if (!chain.tool_may_turn()) return true;
+  const double roll = roll_of(chain, row), slack = std::max(0.9 * path.rounding(), 5e-7);  // rad; the check allows a little more
+  const auto within = [&](const Roll& range) { return roll >= range.lower - slack && roll <= range.upper + slack; };
+  return within(path.window_at(travel)) && (!chain.free_roll || chain.free_roll->circle() || within(*chain.free_roll));
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTarget = 0.99;  // of the rates, by the analytic estimate; what is left covers interpolation
@@ -465,6 +473,8 @@ class Samples {
         row.row = motion_->row(at.x, *q);
         if (!near_ && here > 0 && here < piece.duration() && !differ(piece, beside, here, row))
           return NoMotion{row.row.s, "the arm has no solution between layers"};
+        if (!roll_allowed(motion_->chain(), motion_->path(), at.x, row.row))
+          return NoMotion{row.row.s, "the tool would turn further than its waypoints allow between layers"};
         out.rows.push_back(row);
         travel_.push_back(at.x);
         asked_.push_back({at.speed / d.asked, p, d.node});

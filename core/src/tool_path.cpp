@@ -25,6 +25,12 @@ Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
   return d.vec() * (2 * std::atan2(sine, d.w()) / sine);
 }
 
+/// Ends linear in between.
+Roll between(const Roll& a, const Roll& b, double t) {
+  const auto linear = [t](double x, double y) { return x == y ? x : x + t * (y - x); };  // also of infinite ends
+  return {linear(a.lower, b.lower), linear(a.upper, b.upper)};
+}
+
 Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
   const double angle = rotation.norm();
   if (angle == 0) return a;
@@ -46,6 +52,8 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
   if (waypoints.empty()) throw InputError(source + ": path: no waypoints: allowed are at least two");
   layers_.push_back({0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
   Waypoint from = waypoints[0];
+  const auto window_of = [](const Waypoint& waypoint) { return waypoint.roll.value_or(PathLayer().window); };
+  layers_.back().window = window_of(from);
   double s = 0;
   for (std::size_t k = 1; k < waypoints.size(); ++k) {
     const Waypoint& to = waypoints[k];
@@ -54,6 +62,13 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     const double angle = rotation.norm();
     if (length <= kSame && angle <= kSame) {
       ++merged_;
+      if (to.roll) {  // both hold
+        Roll& window = layers_.back().window;
+        window = {std::max(window.lower, to.roll->lower), std::min(window.upper, to.roll->upper)};
+        if (!(window.lower <= window.upper))
+          throw InputError(source + ": path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
+                           " are one pose, but their rolls have nothing in common: allowed are roll_min and roll_max that overlap");
+      }
       continue;
     }
     if (angle > kPi - kSame)
@@ -82,9 +97,11 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
                            Vector3d::Zero()});
       layers_.back().travel = begun + t * travel;
     }
+    layers_.back().window = window_of(to);
     s += length;
     from = to;
   }
+  if (waypoints[0].roll) spread_windows();
   if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
   if (smooth) {
     // Where waypoints are dense, corners have no room to be rounded: several segments are made one.
@@ -139,6 +156,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     rounded_ = merged.size() < n;
     segments_.swap(merged);
   }
+  rounding_ = smooth ? smooth->angle : 0;
   find_corners(smooth.value_or(PathSmoothing{0, 0}));
 }
 
@@ -181,6 +199,32 @@ int ToolPath::step_at(double travel) const {
   const auto after = std::upper_bound(layers_.begin() + 1, layers_.end() - 1, travel,
                                       [](double value, const PathLayer& layer) { return value < layer.travel; });
   return static_cast<int>(after - layers_.begin()) - 1;
+}
+
+/// From waypoints to the layers in between.
+void ToolPath::spread_windows() {
+  for (std::size_t a = 0, b = 1; b < layers_.size(); ++b) {
+    if (layers_[b].waypoint < 0) continue;
+    for (std::size_t i = a + 1; i < b; ++i)
+      layers_[i].window = between(layers_[a].window, layers_[b].window,
+                                  (layers_[i].travel - layers_[a].travel) / (layers_[b].travel - layers_[a].travel));
+    a = b;
+  }
+}
+
+std::vector<double> ToolPath::shares() const {
+  std::vector<double> shares(layers_.size(), 0.0);
+  for (std::size_t i = 0; i + 1 < layers_.size(); ++i) {
+    const double half = (layers_[i + 1].s - layers_[i].s) / 2;
+    shares[i] += half;
+    shares[i + 1] += half;
+  }
+  return shares;
+}
+
+Roll ToolPath::window_at(double travel) const {
+  const PathLayer &from = layer(step_at(travel)), &to = layer(step_at(travel) + 1);
+  return between(from.window, to.window, std::clamp((travel - from.travel) / (to.travel - from.travel), 0.0, 1.0));
 }
 
 Pose ToolPath::at_travel(double travel) const {
@@ -254,6 +298,7 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
     }
     start.tool = aside ? tool : at(first, t);
     const PathLayer& next = layer(first + 1);
+    start.window = between(start.window, next.window, t);
     start.travel += t * (next.travel - start.travel);
     begins_aside_ = aside;
     start.step_length = (next.tool.translation() - start.tool.translation()).norm();

@@ -157,6 +157,20 @@ void validate_scene(const Field& root, const Problem& problem) {
   }
 }
 
+void validate_window(const Field& field, const Problem& problem, const Waypoint& waypoint) {
+  if (waypoint.roll.has_value() != problem.waypoints.front().roll.has_value())
+    fail(field, "is not given at all waypoints", "a range at each waypoint, or at none");
+  if (!waypoint.roll) return;
+  number(field("lower"), waypoint.roll->lower, Range::kFinite);
+  number(field("upper"), waypoint.roll->upper, Range::kFinite);
+  if (!(waypoint.roll->lower <= waypoint.roll->upper)) fail(field("lower"), "is above `upper`", "lower <= upper");
+  if (!problem.roll || problem.roll->circle())
+    fail(field, "is given, but the robot's roll is " + std::string(problem.roll ? "a circle" : "not free"),
+         "a robot whose roll has a range of less than a turn");
+  if (!(waypoint.roll->lower >= problem.roll->lower && waypoint.roll->upper <= problem.roll->upper))
+    fail(field, "is not within the robot's roll", "a part of its range");
+}
+
 void validate_path(const Field& root, const Problem& problem) {
   if (!problem.path_frame.empty() && problem.path_frame != problem.base_link && !named(problem.scene, problem.path_frame))
     fail(root("path_frame"), "unknown frame '" + problem.path_frame + "'", "the base link or the name of a scene object");
@@ -166,6 +180,7 @@ void validate_path(const Field& root, const Problem& problem) {
     numbers(field("position"), waypoint.position, Range::kFinite);
     if (!(std::abs(waypoint.orientation.norm() - 1) <= 1e-3))
       fail(field("orientation"), "is no rotation", "a finite quaternion of length 1 within 1e-3");
+    validate_window(field("roll"), problem, waypoint);
   }
 }
 

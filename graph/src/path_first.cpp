@@ -88,7 +88,7 @@ class Search {
     FailureId failure;
   };
 
-  /// Asks what the path's nodes cost, where that is not known and counts as 0, and sets it; true where a node costs something. A
+  /// Asks what the path's nodes cost, where that is not known, and sets it; true where a node costs more than was known. A
   /// node's neighbours often cost as much, and each round in which a path turns out to cost more asks about twice as many of them
   /// as the one before: so rounds are few where every node costs something, and questions are few where hardly any does.
   bool costs_more(const SlotPath& path) {
@@ -120,8 +120,9 @@ class Search {
       costs.assign(some.size(), 0.0);
       validity_.costs(some, costs);
       for (std::size_t k = 0; k < some.size(); ++k) {
+        more = more || (costs[k] > verdicts_.cost(some[k].layer, some[k].slot) &&
+                        path[static_cast<std::size_t>(some[k].layer)] == some[k].slot);
         verdicts_.set_cost(some[k].layer, some[k].slot, costs[k]);
-        more = more || (costs[k] > 0 && path[static_cast<std::size_t>(some[k].layer)] == some[k].slot);
       }
     }
     if (more) cost_reach_ = std::max(1, std::min(2 * cost_reach_, kMostReach));

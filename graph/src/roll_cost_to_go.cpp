@@ -120,7 +120,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
       double* const best = out.data() + lattice_->slot_of(rank, sheet * angles_);
       runs_of(own, sheet);
       const int first = sheet / windings * windings;  // of the branch
-      for (const int near : lattice_->near(step, rank))
+      for (const int near : lattice_->near(step, rank, other > layer))
         for (int partner = first; partner < first + windings; ++partner) {
           const auto row = static_cast<std::size_t>(near * sheets_ + partner);
           const auto& [low, high] = around_.finite[row];
@@ -163,7 +163,7 @@ void RollCostToGo::each_near(int step, int layer, int slot, int other, const Wor
   const int window = lattice_->phi_window(step), windings = lattice_->at_roll(0).windings();
   const int inner = lattice_->inner(layer, slot), angle = inner % angles_, first = inner / angles_ / windings * windings;
   const int count = std::min(2 * window + 1, angles_);
-  for (const int near : lattice_->near(step, lattice_->rank_of(layer, slot))) {
+  for (const int near : lattice_->near(step, lattice_->rank_of(layer, slot), other > layer)) {
     const LayerNodes& theirs = nodes(other, near);
     for (int sheet = first; sheet < first + windings; ++sheet) {
       if (!theirs.alive(sheet)) continue;

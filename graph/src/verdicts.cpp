@@ -3,7 +3,7 @@
 
 namespace swivel {
 
-Verdicts::Verdicts(const Lattice& lattice) {
+Verdicts::Verdicts(const Lattice& lattice) : lattice_(&lattice) {
   first_.reserve(static_cast<std::size_t>(lattice.layers()));
   std::size_t nodes = 0;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
@@ -11,12 +11,23 @@ Verdicts::Verdicts(const Lattice& lattice) {
     nodes += static_cast<std::size_t>(lattice.slots(layer));
   }
   node_ = ZeroedArray<Verdict>(nodes);
+  begin_costs();
+}
+
+void Verdicts::begin_costs() {
+  costs_.clear();
+  if (!lattice_->has_node_costs()) return;
+  for (int layer = 0; layer < lattice_->layers(); ++layer) {
+    std::vector<double>& costs = costs_.emplace_back(static_cast<std::size_t>(lattice_->slots(layer)));
+    for (int slot = 0; slot < lattice_->slots(layer); ++slot)
+      costs[static_cast<std::size_t>(slot)] = lattice_->node_cost(layer, slot);
+  }
 }
 
 void Verdicts::clear() {
   for (const std::size_t node : known_) node_[node] = Verdict::kUnknown;
   known_.clear();
-  costs_.clear();
+  begin_costs();
   cost_known_.clear();
   edge_.clear();
   removed_edges_.clear();
@@ -60,7 +71,7 @@ void Verdicts::remove_edge(int layer, int a, int b, double cost) {
 void Verdicts::set_cost(int layer, int slot, double cost) {
   if (cost_known_.empty()) cost_known_.resize(node_.size());
   cost_known_[index(layer, slot)] = 1;
-  if (!(cost > 0)) return;
+  if (cost == this->cost(layer, slot)) return;
   const auto at = static_cast<std::size_t>(layer);
   costs_.resize(first_.size());
   if (costs_[at].empty()) costs_[at].resize((at + 1 < first_.size() ? first_[at + 1] : node_.size()) - first_[at]);

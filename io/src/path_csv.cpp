@@ -10,7 +10,10 @@
 namespace swivel::io {
 
 std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
-  const CsvTable table(csv, {"x", "y", "z", "qw", "qx", "qy", "qz"});
+  const std::vector<std::string> poses = {"x", "y", "z", "qw", "qx", "qy", "qz"};
+  std::vector<std::string> with_rolls = poses;
+  with_rolls.insert(with_rolls.end(), {"roll_min", "roll_max"});
+  const CsvTable table(csv, {poses, with_rolls});
   std::vector<Waypoint> waypoints;
   waypoints.reserve(table.rows());
   for (std::size_t k = 0; k < table.rows(); ++k) {
@@ -24,6 +27,10 @@ std::vector<Waypoint> load_path(const std::filesystem::path& csv) {
     if (!(std::abs(norm - 1) <= 1e-3))
       bad_input(table.where(k) + ": qw,qx,qy,qz", "quaternion has length " + format_double(norm),
                 "a quaternion of length 1 within 1e-3");
+    if (table.header() == 1) {
+      waypoint.roll = Roll{v[7], v[8]};
+      if (!(v[7] <= v[8])) bad_input(table.where(k) + ": roll_min,roll_max", "is empty", "roll_min <= roll_max");
+    }
     waypoints.push_back(waypoint);
   }
   return waypoints;

@@ -89,11 +89,15 @@ Schema robot() {
 
 Schema path() {
   const PathSmoothing smooth;
+  const Keys window{
+      {"roll", numbers(2, kFinite), "rad", optional(),
+       "with `roll` of the path: `[lower, upper]`, what it may be there, at all waypoints or at none; in between the ends "
+       "are linear"}};
   return section(
       "path",
       {
           {"frame", text(), "", in_words("`base_link`"), "`base_link` or the name of a scene object, which the path then follows"},
-          {"waypoints", list(section("", pose_keys(required()), {kOneOrientation})), "", optional(),
+          {"waypoints", list(section("waypoint", join(pose_keys(required()), window), {kOneOrientation})), "", optional(),
            "at least two [poses](#poses) that the tool frame visits"},
           {"file", text(), "", optional(), "instead of `waypoints`: name of a [CSV file](#tool-path-csv) with them"},
           {"smooth",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bad_input.hpp"
 #include "files.hpp"
@@ -57,6 +58,11 @@ Waypoint waypoint(const YamlValue& value) {
   const double norm = result.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3))
     section.find("quat")->fail("quaternion has length " + format_double(norm), "a quaternion of length 1 within 1e-3");
+  if (const auto roll = section.find("roll")) {
+    const std::vector<double> ends = roll->numbers();
+    result.roll = Roll{ends[0], ends[1]};
+    if (!(ends[0] <= ends[1])) roll->fail("is empty", "[lower, upper] with lower <= upper");
+  }
   return result;
 }
 
@@ -242,11 +248,37 @@ class ProblemReader {
     const auto [key, poses] = *section.chosen("waypoints");
     if (key == "file") {
       problem_.waypoints = with_key(poses, [&, &file = poses] { return load_path(resolve(file)); });
-      return;
+    } else {
+      for (const YamlValue& item : poses.items()) {
+        problem_.waypoints.push_back(waypoint(item));
+        if (problem_.waypoints.back().roll.has_value() != problem_.waypoints.front().roll.has_value())
+          item.fail("roll is given at some waypoints alone", "a roll at each waypoint, or at none");
+      }
+      if (problem_.waypoints.size() < 2)
+        poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
     }
-    for (const YamlValue& item : poses.items()) problem_.waypoints.push_back(waypoint(item));
-    if (problem_.waypoints.size() < 2)
-      poses.fail("has " + std::to_string(problem_.waypoints.size()) + " waypoint(s)", "at least two waypoints");
+    if (problem_.waypoints.front().roll) narrow_roll(poses);
+  }
+
+  /// What waypoints allow lies within the range of path.roll, and the range is what they allow in all.
+  void narrow_roll(const YamlValue& poses) {
+    if (!problem_.roll) poses.fail("says how far the tool may stand turned, but the roll is not free", "path.roll beside it");
+    constexpr double kHalf = kPi - 1e-6;  // so that what allows a whole turn is no circle
+    Roll all{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (std::size_t k = 0; k < problem_.waypoints.size(); ++k) {
+      Roll& window = *problem_.waypoints[k].roll;
+      if (window.circle()) window = {-kHalf, kHalf};
+      if (!problem_.roll->circle()) {
+        window = {std::max(window.lower, problem_.roll->lower), std::min(window.upper, problem_.roll->upper)};
+        if (!(window.lower <= window.upper))
+          poses.fail("waypoint " + std::to_string(k) + " (from 0) allows no roll that path.roll does", "rolls in common");
+      }
+      all = {std::min(all.lower, window.lower), std::max(all.upper, window.upper)};
+    }
+    if (all.circle() || !(all.lower < all.upper))
+      poses.fail("allows rolls from " + format_double(all.lower) + " to " + format_double(all.upper) + " in all",
+                 "more than one, less than a turn");
+    problem_.roll = all;
   }
 
   void read_roll(const YamlValue& value) {

@@ -181,6 +181,7 @@ class Adviser {
         break;
       case Change::kFreeRoll:
         changed.roll = Roll{};
+        for (Waypoint& waypoint : changed.waypoints) waypoint.roll.reset();
         break;
       case Change::kFiner:
         changed.resolution.ds /= 2;

@@ -16,6 +16,7 @@
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/make_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/tool_path.hpp"
@@ -132,7 +133,7 @@ class Check {
       examine_row(k);
       if (k > 0 && examined(k - 1)) examine_move(k);
     }
-    if (chain_.roll && problem_.cost.roll > 0) result_.cost += cost_of_roll();
+    if (chain_.tool_may_turn() && problem_.cost.roll > 0) result_.cost += cost_of_roll();
     examine_travel();
     if (timed_) examine_rates(*timed_);
     if (!options_.margins && result_.failure_count == 0) examine_clearance();
@@ -183,7 +184,7 @@ class Check {
       return false;
     }
     if (const auto& range = chain_.free_roll;
-        range && !range->circle() && !(row.roll >= range->lower - kPose && row.roll <= range->upper + kPose)) {
+        range && !range->circle() && !(row.roll >= range->lower - roll_slack() && row.roll <= range->upper + roll_slack())) {
       fail("row %zu: roll %.9g is outside its range", k, row.roll);
       return false;
     }
@@ -410,9 +411,20 @@ class Check {
       fail("row %zu: clearance between %s is below %.3f mm", found->row, pair.c_str(), 1e3 * contacts_.keeps(found->pair).node);
   }
 
-  /// Arm angle and branch of a row are those of its joints.
+  /// By how much rolls may leave what they should keep, rad.
+  [[nodiscard]] double roll_slack() const { return timed_ ? std::max(kPose, path_.rounding()) : kPose; }
+
+  /// The tool stands turned as far as the waypoints allow; arm angle and branch of a row are those of its joints.
   void examine_labels(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
+    if (chain_.tool_may_turn()) {
+      const int i = std::min(static_cast<int>(std::floor(place(k))), path_.size() - 2);
+      const PathLayer &from = path_.layer(i), &to = path_.layer(i + 1);
+      const Roll window = path_.window_at(from.travel + (place(k) - i) * (to.travel - from.travel));
+      const double roll = roll_of(chain_, row);
+      if (!(roll >= window.lower - roll_slack() && roll <= window.upper + roll_slack()))
+        fail("row %zu: roll %.9g is outside what its waypoints allow", k, roll);
+    }
     if (chain_.roll && !(std::abs(wrap_angle(row.phi - row.q[kDof - 1])) <= kArmAngle))
       fail("row %zu: phi is %.6g, the roll %.6g", k, row.phi, row.q[kDof - 1]);
     if (!arm_) return;
@@ -627,7 +639,7 @@ class Check {
     for (std::size_t k = 1; k < rows_.size(); ++k)
       for (const std::size_t row : {k - 1, k})
         if (rows_[row].q.allFinite())
-          sum += problem_.cost.roll * (rows_[k].s - rows_[k - 1].s) / 2 * std::abs(wrap_angle(rows_[row].q[kDof - 1]));
+          sum += problem_.cost.roll * (rows_[k].s - rows_[k - 1].s) / 2 * std::abs(wrap_angle(roll_of(chain_, rows_[row])));
     return sum;
   }
 

@@ -131,20 +131,36 @@ Problem with_motion_defaults(Problem problem) {
 
 namespace {
 
-/// What rows say, moved off the ends of the range by as little as keeps the spline through it inside.
+/// What rows say, moved off the ends of the range and of the waypoints' windows where the spline through it would leave them: as
+/// far as it does, again and again. Where a window is no wider than its own bends that does not end, and they stay outside a
+/// little.
 std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
+  constexpr int kMost = 40;
+  constexpr double kFurther = 1.2;  // so that it ends
   std::vector<double> rolls = rolls_of(rows);
   if (range.circle() || rolls.size() != static_cast<std::size_t>(path.size())) return rolls;
-  for (double off = 0; off < 0.1 * (range.upper - range.lower); off = std::max(1e-3, 2 * off)) {
-    for (double& roll : rolls) roll = std::clamp(roll, range.lower + off, range.upper - off);
+  const auto into = [&range](const Roll& window, double roll) {
+    const double lower = std::max(range.lower, window.lower), upper = std::min(range.upper, window.upper);
+    return std::clamp(roll, lower, std::max(lower, upper));
+  };
+  for (int round = 0; round < kMost; ++round) {
     const ToolPath turned = path.with_rolls(rolls);
     bool inside = true;
-    for (int i = 0; i + 1 < path.size() && inside; ++i)
+    for (int i = 0; i + 1 < path.size(); ++i) {
+      const PathLayer &from = path.layer(i), &to = path.layer(i + 1);
+      double outside = 0;
       for (const double t : {0.2, 0.4, 0.6, 0.8}) {
-        const double roll = turned.roll_at(path.layer(i).travel + t * (path.layer(i + 1).travel - path.layer(i).travel));
-        inside = inside && roll >= range.lower && roll <= range.upper;
+        const double travel = from.travel + t * (to.travel - from.travel), roll = turned.roll_at(travel);
+        if (const double by = into(path.window_at(travel), roll) - roll; std::abs(by) > std::abs(outside)) outside = by;
       }
-    if (inside) return rolls;
+      if (outside == 0) continue;
+      inside = false;
+      for (const int layer : {i, i + 1}) {
+        double& roll = rolls[static_cast<std::size_t>(layer)];
+        if (layer > 0) roll = into(path.layer(layer).window, roll + kFurther * outside);  // the first may be a start's
+      }
+    }
+    if (inside) break;
   }
   return rolls;
 }

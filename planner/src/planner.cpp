@@ -13,6 +13,7 @@
 #include "measure_rows.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"
+#include "swivel/core/angle.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
@@ -107,6 +108,11 @@ double cost_of_rows(const Lattice& lattice, const SlotPath& path, const std::vec
     cost -= lattice.edge_cost(lattice.delta(*lattice.node(layer - 1, path[i - 1]), *lattice.node(layer, path[i])));
   }
   for (std::size_t i = 1; i < rows.size(); ++i) cost += lattice.edge_cost(lattice.delta(rows[i - 1].q, rows[i].q));
+  if (!lattice.has_node_costs()) return cost;
+  for (std::size_t i = 0; i < path.size(); ++i) cost -= lattice.node_cost(static_cast<int>(i), path[i]);
+  const std::vector<double> shares = lattice.path_of_rows().shares();
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    cost += lattice.rounded_cost(lattice.cost().roll * shares[i] * std::abs(wrap_angle(roll_of(lattice.chain(), rows[i]))));
   return cost;
 }
 

@@ -94,16 +94,16 @@ class Judge {
 
   /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded. `jumps`: the path
   /// leads through a singularity to or from there, so that it had better be near.
-  [[nodiscard]] bool node(const Config& q, const Config& given, bool jumps = false) {
-    if (!valid(q, given, jumps) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
+  [[nodiscard]] bool node(int layer, const Config& q, const Config& given, bool jumps = false) {
+    if (!valid(layer, q, given, jumps) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
     // What the motions from and to it will have to keep: a node that is bisected ends where it should, a motion that fails only
     // where it had better.
     if (problem_->limits.edges == EdgeMode::kContinuous && at_.next_below(q, Keep::kMidpoint)) return false;
     return check_.states({&q, 1})[0];
   }
   /// Without any clearance besides.
-  [[nodiscard]] bool bare_node(const Config& q) {
-    return valid(q, q, false) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
+  [[nodiscard]] bool bare_node(int layer, const Config& q) {
+    return valid(layer, q, q, false) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
   }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {
@@ -131,9 +131,10 @@ class Judge {
 
  private:
   /// But for collisions.
-  [[nodiscard]] bool valid(const Config& q, const Config& given, bool jumps) {
+  [[nodiscard]] bool valid(int layer, const Config& q, const Config& given, bool jumps) {
     budget_.poll();
     ++nodes_asked;
+    if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1])) return false;
     constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
     if (!jumps && redundancy_->singular_sine(q) <
@@ -169,8 +170,8 @@ class Judge {
 double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
   double sum = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) sum += lattice.edge_cost(rows[i].q - rows[i - 1].q);
-  if (lattice.has_node_costs())
-    for (std::size_t i = 0; i < rows.size(); ++i) sum += lattice.roll_cost(static_cast<int>(i), rows[i].q[kDof - 1]);
+  if (lattice.roll_costs())
+    for (std::size_t i = 0; i < rows.size(); ++i) sum += lattice.roll_cost(static_cast<int>(i), roll_of(lattice.chain(), rows[i]));
   return sum;
 }
 
@@ -197,7 +198,7 @@ class Refinery {
         solver_(redundancy.solver(given_)),
         edges_(edges),
         fixed_start_(fixed_start),
-        range_(redundancy.range()),
+        redundancy_(&redundancy),
         jumps_(given.size()),
         budget_(budget) {
     for (const int jump : redundancy.jumps(given))
@@ -212,7 +213,8 @@ class Refinery {
     std::vector<CoordinateBox> boxes(n);
     for (std::size_t i = 0; i < n; ++i) {
       x[i] = given_[i].phi;
-      boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range_.low)), std::min(x[i] + kFarthest, std::max(x[i], range_.high))};
+      const Redundancy::Range range = redundancy_->range(static_cast<int>(i));
+      boxes[i] = {std::max(x[i] - kFarthest, std::min(x[i], range.low)), std::min(x[i] + kFarthest, std::max(x[i], range.high))};
     }
     if (fixed_start_) boxes[0] = {x[0], x[0]};
     std::vector<double> node_known(n, std::nan(""));
@@ -226,7 +228,7 @@ class Refinery {
       bool fails = false;
       for (std::size_t i = 0; i < n; ++i) {
         if (x[i] == given_[i].phi || x[i] == node_known[i]) continue;
-        if (!judge_->node(rows[i].q, given_[i].q, jumps_[i])) {
+        if (!judge_->node(static_cast<int>(i), rows[i].q, given_[i].q, jumps_[i])) {
           x[i] = shrink(i, x[i], boxes[i]);
           fails = true;
         }
@@ -244,7 +246,9 @@ class Refinery {
         give_way(i, x, boxes);
         fails = true;
       }
-      if (!fails) return rows;
+      if (fails) continue;
+      redundancy_->label(rows);
+      return rows;
     }
     return std::nullopt;
   }
@@ -269,7 +273,7 @@ class Refinery {
     for (int k = 0; k < kQueries; ++k) {
       const double middle = (good + bad) / 2;
       const auto q = solver_->joints(static_cast<int>(i), middle);
-      (q && judge_->node(*q, given_[i].q, jumps_[i]) ? good : bad) = middle;
+      (q && judge_->node(static_cast<int>(i), *q, given_[i].q, jumps_[i]) ? good : bad) = middle;
     }
     (x > given_[i].phi ? box.high : box.low) = good;
     return good;
@@ -304,7 +308,7 @@ class Refinery {
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
   bool fixed_start_;
-  Redundancy::Range range_;
+  const Redundancy* redundancy_;
   std::vector<bool> jumps_;  // by layer: to it or from it
   Budget budget_;
 };
@@ -320,7 +324,7 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
       for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
         if (left-- <= 0) return false;
         const auto q = solver.joints(layer, row.phi + by);
-        if (!q || !judge.node(*q, *q)) continue;
+        if (!q || !judge.node(layer, *q, *q)) continue;
         row.phi += by;
         row.q = *q;
         return true;
@@ -329,8 +333,9 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
   };
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool fixed = i == 0 && fixed_start;
-    if (!fixed && (judge.node(rows[i].q, rows[i].q) || moved_clear(static_cast<int>(i), rows[i]))) continue;
-    if (!judge.bare_node(rows[i].q)) return false;
+    const int layer = static_cast<int>(i);
+    if (!fixed && (judge.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i]))) continue;
+    if (!judge.bare_node(layer, rows[i].q)) return false;
   }
   return true;
 }
@@ -413,7 +418,8 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
   // The other metrics are largest moves. A power of 32 takes twice as long for 0.2 % less.
   constexpr int kNearLargest = 16;
   if (lattice.cost().metric != CostMetric::kL2) objective.power = kNearLargest;
-  if (lattice.has_node_costs())
+  objective.roll_is_coordinate = redundancy.is_roll();
+  if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))  // otherwise the rolls stay as they are
     for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
@@ -445,7 +451,6 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     if (const auto second = second_path(robot, problem, redundancy, judge, objective, kWorthIt * result.cost, budget))
       improve(*second, true);
   }
-  if (result.refined) redundancy.label(result.rows);
   result.bend = largest_bend(path, result.rows);
   result.nodes_asked = judge.nodes_asked;
   result.edges_asked = judge.edges_asked;

@@ -97,8 +97,8 @@ void serialize(A& archive, RobotModel& x) {
 }
 template <class A>
 void serialize(A& archive, Waypoint& x) {
-  auto& [position, orientation] = x;
-  archive(position, orientation);
+  auto& [position, orientation, roll] = x;
+  archive(position, orientation, roll);
 }
 template <class A>
 void serialize(A& archive, SceneObject& x) {

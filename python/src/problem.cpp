@@ -326,7 +326,7 @@ void bind_robot(py::module_& m) {
           "tool", [](const Robot& robot) { return robot.tool; }, [](Robot& robot, const Pose& tool) { robot.tool = tool; },
           "(4, 4): tool frame in the tip link.")
       .def_readonly("hold", &Robot::hold, "Positions of joints that the arm leaves out, rad or m (a copy).")
-      .def_readonly("roll", &Robot::roll, "None, but of arms of six joints.")
+      .def_readonly("roll", &Robot::roll, "None where the tool stands as the waypoints have it.")
       .def_property_readonly(
           "links",
           [](const Robot& robot) {
@@ -479,28 +479,32 @@ void bind_task(py::module_& m) {
   py::class_<Task> type(m, "Task", "What the tool is to do, and within which limits.");
   make_copyable(type);
   type.def(pickling<Task>());
-  type.def(py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits, const Resolution& resolution,
-                       py::handle start, std::optional<double> start_at, double start_tolerance, const Cost& cost,
-                       const std::optional<PathSmoothing>& smooth, const Refinement& refinement) {
-             Task task;
-             task.waypoints = std::move(waypoints);
-             task.path_frame = std::move(frame);
-             task.limits = limits, task.resolution = resolution, task.cost = cost;
-             task.start = to_start(start), task.start_at = start_at, task.start_tolerance = start_tolerance;
-             task.smooth = smooth, task.refinement = refinement;
-             return task;
-           }),
-           py::arg("waypoints"), py::kw_only(), py::arg("frame") = "", py::arg_v("limits", Limits(), "Limits()"),
-           py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(), py::arg("start_at") = py::none(),
-           py::arg("start_tolerance") = Task().start_tolerance, py::arg_v("cost", Cost(), "Cost()"), py::arg("smooth") = py::none(),
-           py::arg_v("refinement", Refinement(), "Refinement()"),
-           "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of either. frame: the "
-           "base\n"
-           "link (also empty) or the name of a scene object. start: (7,) joints to begin with, rad. start_at: m along the path "
-           "where\n"
-           "the start stands.")
+  type.def(
+          py::init([](std::vector<Waypoint> waypoints, std::string frame, const Limits& limits, const Resolution& resolution,
+                      py::handle start, std::optional<double> start_at, double start_tolerance, const Cost& cost,
+                      const std::optional<PathSmoothing>& smooth, const Refinement& refinement) {
+            Task task;
+            task.waypoints = std::move(waypoints);
+            task.path_frame = std::move(frame);
+            task.limits = limits, task.resolution = resolution, task.cost = cost;
+            task.start = to_start(start), task.start_at = start_at, task.start_tolerance = start_tolerance;
+            task.smooth = smooth, task.refinement = refinement;
+            return task;
+          }),
+          py::arg("waypoints"), py::kw_only(), py::arg("frame") = "", py::arg_v("limits", Limits(), "Limits()"),
+          py::arg_v("resolution", Resolution(), "Resolution()"), py::arg("start") = py::none(), py::arg("start_at") = py::none(),
+          py::arg("start_tolerance") = Task().start_tolerance, py::arg_v("cost", Cost(), "Cost()"), py::arg("smooth") = py::none(),
+          py::arg_v("refinement", Refinement(), "Refinement()"),
+          "waypoints: poses of the tool in `frame`: (n, 7) rows x y z qw qx qy qz, (n, 4, 4), or a list of either; or (n, 9) rows, "
+          "with the least and the most roll there, rad. frame: the "
+          "base\n"
+          "link (also empty) or the name of a scene object. start: (7,) joints to begin with, rad. start_at: m along the path "
+          "where\n"
+          "the start stands.")
       .def_readwrite("frame", &Task::path_frame, "Base link (also empty) or the name of a scene object.")
-      .def_readwrite("waypoints", &Task::waypoints, "(n, 7): x y z (m) qw qx qy qz, in `frame`. A copy; assign to change it.")
+      .def_readwrite(
+          "waypoints", &Task::waypoints,
+          "(n, 7): x y z (m) qw qx qy qz, in `frame`; with roll_min and roll_max (rad) (n, 9). A copy; assign to change it.")
       .def_readwrite("smooth", &Task::smooth, "None: the polyline as it is.")
       .def_readwrite("resolution", &Task::resolution)
       .def_readwrite("limits", &Task::limits)
@@ -520,11 +524,13 @@ void bind_task(py::module_& m) {
 }  // namespace
 
 Waypoint to_waypoint(py::handle source, bool position_alone) {
-  const char* const allowed =
-      position_alone ? "a pose: (4, 4), [x y z qw qx qy qz] or [x y z]" : "poses: (4, 4) or [x y z qw qx qy qz]";
+  const char* const allowed = position_alone ? "a pose: (4, 4), [x y z qw qx qy qz] or [x y z]"
+                                             : "poses: (4, 4), [x y z qw qx qy qz] or [x y z qw qx qy qz roll_min roll_max]";
   const Array values = to_array(source, allowed);
   const double* const v = values.data();
   if (values.ndim() == 1 && values.shape(0) == 7) return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
+  if (values.ndim() == 1 && values.shape(0) == 9 && !position_alone)
+    return {{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}, Roll{v[7], v[8]}};
   if (values.ndim() == 1 && values.shape(0) == 3 && position_alone) return {{v[0], v[1], v[2]}};
   if (values.ndim() != 2 || values.shape(0) != 4 || values.shape(1) != 4)
     throw py::value_error("pose of shape " + shape_text(values) + ": allowed are " + allowed);
@@ -563,15 +569,22 @@ std::vector<Waypoint> to_waypoints(py::handle source) {
     } catch (const py::value_error& error) {
       throw py::value_error("waypoints[" + std::to_string(waypoints.size()) + "]: " + error.what());
     }
+    if (waypoints.back().roll.has_value() != waypoints.front().roll.has_value())
+      throw py::value_error(
+          "waypoints[" + std::to_string(waypoints.size() - 1) +
+          "]: roll_min and roll_max are not given at all waypoints: allowed are rows that all have them, or none");
   }
   return waypoints;
 }
 
 py::array_t<double> from_waypoints(const std::vector<Waypoint>& waypoints) {
-  py::array_t<double> array({static_cast<py::ssize_t>(waypoints.size()), py::ssize_t{7}});
+  const bool rolls = !waypoints.empty() && waypoints.front().roll;
+  py::array_t<double> array({static_cast<py::ssize_t>(waypoints.size()), py::ssize_t{rolls ? 9 : 7}});
   double* out = array.mutable_data();
-  for (const auto& [position, q] : waypoints)
+  for (const auto& [position, q, roll] : waypoints) {
     for (const double value : {position.x(), position.y(), position.z(), q.w(), q.x(), q.y(), q.z()}) *out++ = value;
+    if (rolls) *out++ = roll->lower, *out++ = roll->upper;
+  }
   return array;
 }
 

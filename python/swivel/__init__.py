@@ -82,9 +82,9 @@ def compute_cartesian_path(robot, scene, waypoints, start, *, max_step=0.005, li
     if start is not None:
         here = _np.array([robot.tool_pose(start)])
         task.waypoints = here
-        first = task.waypoints[0]
         ahead = Task(waypoints).waypoints  # noqa: F405
-        if len(ahead) and _np.abs(ahead[0][:3] - first[:3]).max() < 1e-6 and 1 - abs(ahead[0][3:] @ first[3:]) < 5e-13:
+        first = _np.concatenate([task.waypoints[0], ahead[0][7:] if len(ahead) else []])  # with the window of the roll, if any
+        if len(ahead) and _np.abs(ahead[0][:3] - first[:3]).max() < 1e-6 and 1 - abs(ahead[0][3:7] @ first[3:7]) < 5e-13:
             ahead = ahead[1:]  # the start itself
         task.waypoints = _np.vstack([first[None], ahead])
     result = Planner(robot, task, scene).plan(**options)  # noqa: F405

@@ -71,6 +71,56 @@ TEST(ProblemFile, RollOfTheTool) {
   EXPECT_EQ(some.cost.weights[6], 0.3);
 }
 
+TEST(ProblemFile, WindowsOfTheRoll) {
+  const ProblemFolder folder;
+  const auto path = [](const char* roll, const char* first, const char* second) {
+    return std::string("{") + roll + "waypoints: [{xyz: [0.6, -0.1, 0.9]" + first + "}, {xyz: [0.6, 0.1, 0.9]" + second + "}]}";
+  };
+  const auto load = [&](const char* roll, const char* first, const char* second) {
+    return folder.load({{"path", path(roll, first, second)}});
+  };
+  // They are cut to path.roll, which is cut to what they leave of it.
+  const Problem cut = load("roll: [-0.5, 1], ", ", roll: [-2, 0.1]", ", roll: [0.2, 0.2]");
+  EXPECT_EQ(cut.waypoints[0].roll, Roll(-0.5, 0.1));
+  EXPECT_EQ(cut.waypoints[1].roll, Roll(0.2, 0.2));
+  EXPECT_EQ(*cut.roll, Roll(-0.5, 0.2));
+  EXPECT_EQ(*load("roll: free, ", ", roll: [-2, 0.1]", ", roll: [0.2, 3]").roll, Roll(-2, 3));
+  // What allows a whole turn at one waypoint allows no circle.
+  const Problem whole = load("roll: free, ", ", roll: [-4, 4]", ", roll: [0.2, 0.2]");
+  EXPECT_FALSE(whole.roll->circle());
+  EXPECT_NEAR(whole.roll->upper, kPi, 1e-5);
+  EXPECT_FALSE(load("roll: free, ", "", "").waypoints[0].roll);
+
+  const auto refused = [&](const char* roll, const char* first, const char* second, const std::vector<std::string>& words) {
+    expect_message(input_error([&] { return load(roll, first, second); }), words);
+  };
+  refused("", ", roll: [-2, 0.1]", ", roll: [0, 1]", {"path.waypoints", "the roll is not free", "path.roll"});
+  refused("roll: free, ", ", roll: [-2, 0.1]", "", {"path.waypoints[1]", "some waypoints alone"});
+  refused("roll: free, ", ", roll: [0.2, 0.1]", ", roll: [0, 1]", {"path.waypoints[0].roll", "lower <= upper"});
+  refused("roll: free, ", ", roll: [0.2]", ", roll: [0, 1]", {"path.waypoints[0].roll", "2 numbers"});
+  refused("roll: [0, 1], ", ", roll: [0.2, 0.5]", ", roll: [1.2, 1.5]", {"path.waypoints", "waypoint 1 (from 0)", "path.roll"});
+  refused("roll: free, ", ", roll: [-2, -1]", ", roll: [4, 5]", {"path.waypoints", "-2 to 5", "less than a turn"});
+  refused("roll: free, ", ", roll: [1, 1]", ", roll: [1, 1]", {"path.waypoints", "more than one"});
+
+  // The same in a file.
+  folder.folder().write("problems/turns.csv",
+                        "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,0.9,1,0,0,0,0.2,0.2\n");
+  const Problem file = folder.load({{"path", "{roll: [-0.5, 1], file: turns.csv}"}});
+  EXPECT_EQ(file.waypoints, cut.waypoints);
+  EXPECT_EQ(*file.roll, *cut.roll);
+  expect_message(input_error([&] { return folder.load({{"path", "{file: turns.csv}"}}); }), {"path.file", "the roll is not free"});
+  folder.folder().write("problems/turns.csv", "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0,0,0,1,0,0,0,0,1\n1,0,0,1,0,0,0,1,0\n");
+  expect_message(input_error([&] {
+                   return folder.load({{"path", "{roll: free, file: turns.csv}"}});
+                 }),
+                 {"turns.csv:3: data row 2", "roll_min,roll_max: is empty", "roll_min <= roll_max"});
+  folder.folder().write("problems/turns.csv", "x,y,z,qw,qx,qy,qz,roll_min\n0,0,0,1,0,0,0,0\n1,0,0,1,0,0,0,1\n");
+  expect_message(input_error([&] {
+                   return folder.load({{"path", "{roll: free, file: turns.csv}"}});
+                 }),
+                 {"turns.csv:1", "roll_max"});
+}
+
 TEST(ProblemFile, RollCost) {
   const ProblemFolder folder;
   const std::string waypoints = "waypoints: [{xyz: [0.6, -0.1, 0.9]}, {xyz: [0.6, 0.1, 0.9]}]";

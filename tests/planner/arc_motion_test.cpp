@@ -8,6 +8,7 @@
 #include <map>
 
 #include "motion_problem.hpp"
+#include "roll_windows.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
@@ -33,6 +34,7 @@ std::vector<Arm> arms() {
           {of_data("fetch_like"), {}},
           {offset_robot(), {}},
           {of_data("kr6_like"), Roll{}},
+          {of_data("kr6_like"), Roll{-1.5, 1.5}},
           {of_data("ur5e_like"), Roll{-0.8, 0.8}}};
 }
 
@@ -52,7 +54,8 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
   const std::uint64_t base = seed("ArcMotions");
   const std::vector<Arm> all = arms();
   const int count = trials(12);
-  int solved_in_all = 0, executable_in_all = 0, refined_in_all = 0, cheaper = 0, starts = 0, samples = 0, mean_of = 0;
+  int within_windows = 0, solved_in_all = 0, executable_in_all = 0, refined_in_all = 0, cheaper = 0, starts = 0, samples = 0,
+      mean_of = 0;
   double mean = 0;
   std::vector<double> slower;
   for (std::size_t which = 0; which < all.size(); ++which) {
@@ -63,6 +66,8 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
       Problem problem = with_motion_defaults(motion_problem(all[which].robot, random, all[which].roll));
       if (problem.roll) problem.limits.roll_slope = random.uniform(3, 20);
       if (problem.roll && random.coin()) problem.cost.roll = random.uniform(0.5, 20);
+      const bool windows = problem.roll && !problem.roll->circle() && random.coin();
+      if (windows) draw_windows(problem, random, problem.start ? (*problem.start)[kDof - 1] : 0.0);
       const std::string what = problem.source + " trial " + std::to_string(trial);
       Planner planner(problem);
       PlanOptions options;
@@ -86,6 +91,7 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
         ++starts;
       }
       refined += path.refined;
+      within_windows += path.refined && windows;
       cheaper += path.cost < path.cost_before - 1e-6;
       mean += path.cost_before > 0 ? path.cost / path.cost_before : 1;
       ++mean_of;
@@ -128,6 +134,8 @@ TEST(ArcMotions, ArePassedByTheCheckOrRefused) {
   EXPECT_GE(cheaper, at_least(solved_in_all / 2));
   EXPECT_GE(executable_in_all, at_least(solved_in_all * 9 / 10));
   EXPECT_GE(starts, at_least(3));
+  std::printf("%d refined within windows of roll\n", within_windows);
+  EXPECT_GE(within_windows, at_least(1));
 }
 
 }  // namespace

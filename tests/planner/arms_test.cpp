@@ -9,6 +9,7 @@
 #include "brute_force.hpp"
 #include "motion_problem.hpp"
 #include "random_problem.hpp"
+#include "roll_windows.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
@@ -228,8 +229,8 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
   const std::uint64_t base = seed("Arms.RollCost");
   const std::vector<std::pair<const char*, Roll>> robots{
       {"kr6_like", Roll{}}, {"ur5e_like", Roll{-0.8, 0.8}}, {"kr6_like", Roll{2.6, 4}}};
-  int solved = 0, infeasible = 0, straighter = 0, dearer = 0, hooked = 0;
-  const int count = trials(45);
+  int solved = 0, infeasible = 0, straighter = 0, dearer = 0, hooked = 0, windows = 0;
+  const int count = trials(54);
   struct Wave final : StateCost {
     [[nodiscard]] std::string name() const override { return "wave"; }
     void costs(std::span<const Config> states, std::span<double> costs) override {
@@ -250,6 +251,7 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     problem.limits.edges = random.coin() ? EdgeMode::kContinuous : EdgeMode::kNodes;
     problem.limits.edge_tolerance = 0.005;
     problem.cost.weights[6] = random.coin(0.3) ? 0.5 : 0;
+    if (!problem.roll->circle() && random.coin()) draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     const PreparedRobot robot(problem);
     constexpr double kLeast = 1e-6;  // with some cost the nodes are the same
@@ -287,6 +289,11 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
       continue;
     }
     ++solved;
+    if (problem.waypoints[0].roll) {
+      ++windows;
+      for (int i = 0; i < path.size(); ++i)
+        ASSERT_LE(outside_windows(problem, path, i, first->trajectory[static_cast<std::size_t>(i)].q[6]), 1e-8) << what;
+    }
     ASSERT_EQ(free.status, PlanStatus::kSolved) << what;
     const CheckResult check = check_trajectory(robot, problem, first->trajectory);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
@@ -308,12 +315,46 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     dearer += moves > free.cost + 1e-6;
   }
   std::printf(
-      "%d problems: %d solved, %d of them with a cost of the caller's own, %d infeasible; %d straighter, %d of dearer moves\n",
-      count, solved, hooked, infeasible, straighter, dearer);
+      "%d problems: %d solved, %d of them with a cost of the caller's own, %d with windows of roll, %d infeasible; %d straighter, "
+      "%d "
+      "of dearer moves\n",
+      count, solved, hooked, windows, infeasible, straighter, dearer);
+  EXPECT_GE(windows, at_least(count / 18));
   EXPECT_GE(solved, at_least(count / 3));
   EXPECT_GE(hooked, at_least(count / 12));
   EXPECT_GE(straighter, at_least(count / 6));
   EXPECT_GE(dearer, at_least(count / 12));
+}
+
+TEST(Arms, AStartThatDoesNotFitIsBadInput) {
+  for (const char* const name : {"panda_weld_seam", "ur5e_deburr_edge"}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    const PlanResult whole = plan(problem);
+    ASSERT_EQ(whole.status, PlanStatus::kSolved) << name;
+    const auto message = [&](const Config& start) -> std::string {
+      Problem started = problem;
+      started.start = start;
+      try {
+        static_cast<void>(plan(started));
+      } catch (const InputError& error) {
+        return error.what();
+      }
+      return "";
+    };
+    const Config q = whole.trajectory[0].q;
+    EXPECT_EQ(message(q), "") << name;
+    Config off = q;
+    off[1] += 0.01;
+    EXPECT_NE(message(off).find("start.joints: the tool is"), std::string::npos) << name << ": " << message(off);
+    off = q;
+    off[1] += 2 * kTwoPi;
+    EXPECT_NE(message(off).find("is outside its limits: allowed is"), std::string::npos) << name << ": " << message(off);
+    if (!problem.roll) continue;
+    for (Waypoint& waypoint : problem.waypoints) waypoint.roll = problem.roll;
+    EXPECT_EQ(message(q), "");
+    problem.waypoints[0].roll = q[6] > 0 ? Roll{problem.roll->lower, q[6] - 0.01} : Roll{q[6] + 0.01, problem.roll->upper};
+    EXPECT_NE(message(q).find("the roll_min and roll_max of its waypoints"), std::string::npos) << message(q);
+  }
 }
 
 TEST(Arms, WhatNeedsAnArmAngleSaysSo) {

@@ -8,6 +8,7 @@
 #include "brute_force.hpp"
 #include "inexact_robots.hpp"
 #include "random_problem.hpp"
+#include "roll_windows.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
@@ -60,6 +61,8 @@ Problem roll_problem(const TestRobot& robot, Random& random) {
   if (problem.limits.tool_angle_error) problem.limits.tool_angle_error = random.uniform(0.1, 0.4);
   if (problem.waypoints.size() > 3) problem.waypoints.resize(3);
   if (problem.start && !(problem.roll->upper - problem.roll->lower >= kTwoPi) && problem.roll->lower > 0) problem.start.reset();
+  if (!problem.roll->circle() && random.coin()) draw_windows(problem, random, problem.start ? std::optional(0.0) : std::nullopt);
+  if (random.coin(0.3)) problem.cost.roll = std::array{0.3, 3.0, 30.0}[static_cast<std::size_t>(random.below(3))];
   return problem;
 }
 
@@ -82,6 +85,7 @@ void expect_rows_on_path(const PreparedRobot& robot, const Problem& problem, con
       ASSERT_GE(row.roll, problem.roll->lower - 1e-6) << what;
       ASSERT_LE(row.roll, problem.roll->upper + 1e-6) << what;
     }
+    if (problem.waypoints[0].roll) ASSERT_LE(outside_windows(problem, path, i, row.roll), 1e-6) << what << " row " << i;
   }
 }
 
@@ -90,8 +94,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   Random any(base);
   const auto arms = robots(any);
   int solved = 0, infeasible = 0, started = 0, continuous = 0, obstacles = 0, circles = 0, inexact = 0, turned = 0, between = 0;
-  int at_rest = 0, moved_after_all = 0;
-  const int count = trials(60);
+  int at_rest = 0, moved_after_all = 0, windows = 0, costly = 0;
+  const int count = trials(80);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Problem problem = roll_problem(arms[static_cast<std::size_t>(trial) % arms.size()], random);
@@ -118,13 +122,14 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
                                         : -kPi + phi_cell * lattice->at_roll(0).angle_of(lattice->inner(at, slot));
       };
       if (std::abs(wrap_angle(grid(layer + 1, b) - grid(layer, a))) > std::min(most, kPi) + 1e-9) return false;
+      if (problem.waypoints[0].roll)  // parts of what each layer allows
+        return std::abs(lattice->roll(layer, a) - lattice->roll(layer + 1, b)) <= problem.limits.roll_slope * way + 1e-9;
       // Rolls: by how many values they are apart, in order.
       std::vector<double> values;
-      for (int rank = 0; rank < lattice->rolls(); ++rank) values.push_back(lattice->roll(rank));
+      for (int rank = 0; rank < lattice->rolls(); ++rank) values.push_back(lattice->roll_of_rank(layer, rank));
       std::sort(values.begin(), values.end());
       const auto place = [&](int at, int slot) {
-        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(lattice->rank_of(at, slot))) -
-                                values.begin());
+        return static_cast<int>(std::find(values.begin(), values.end(), lattice->roll(at, slot)) - values.begin());
       };
       int apart = std::abs(place(layer, a) - place(layer + 1, b));
       const int n = static_cast<int>(values.size());
@@ -176,6 +181,8 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     expect_rows_on_path(robot, problem, rows, what);
     between += path.size() > lattice->layers();
     turned += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
+    windows += problem.waypoints[0].roll.has_value();
+    costly += problem.cost.roll > 0;
     const CheckResult check = check_trajectory(robot, problem, rows);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
     ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
@@ -183,8 +190,12 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   std::printf(
       "%d problems: %d solved (%d turn the tool, %d with layers between), %d infeasible, %d with a start, %d continuous, %d with "
       "obstacles, "
-      "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved after all in %d\n",
-      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact, at_rest, moved_after_all);
+      "%d with all rolls, %d on arms that are not exactly S-R-S; joint 7 at rest in %d, moved after all in %d; solved with windows "
+      "of roll %d, with a cost of it %d\n",
+      count, solved, turned, between, infeasible, started, continuous, obstacles, circles, inexact, at_rest, moved_after_all,
+      windows, costly);
+  EXPECT_GE(windows, at_least(count / 20));
+  EXPECT_GE(costly, at_least(count / 12));
   EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GE(infeasible, at_least(count / 20));
   EXPECT_GE(started, at_least(count / 10));
@@ -193,7 +204,7 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(between, at_least(count / 5));
   EXPECT_GE(circles, at_least(count / 5));
   EXPECT_GE(inexact, at_least(count / 20));
-  EXPECT_GE(at_rest, at_least(count / 20));
+  EXPECT_GE(at_rest, at_least(count / 40));
 }
 
 /// Where the tool turns about joint 7's axis, a path along which that joint rests costs no more than the least of all rolls.
@@ -369,8 +380,8 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
   problem.resolution.dphi = 0.2;
   Random random(seed("RollLattice.PathsAreRefinedAndTimed"));
   const PreparedRobot robot(problem);
-  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0;
-  const int count = trials(8);
+  int moved = 0, refined = 0, turning = 0, timed = 0, partial = 0, windows = 0, costly = 0, timed_windows = 0;
+  const int count = trials(24);
   for (int trial = 0; trial < count; ++trial) {
     Problem episode = problem;
     for (SceneObject& object : episode.scene)
@@ -379,6 +390,8 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
                       Eigen::Translation3d(random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)) *
                       Eigen::AngleAxisd(random.uniform(-0.3, 0.3), Vector3d::UnitZ());
     if (random.coin()) episode.roll = Roll{-0.5, 0.5};
+    if (!episode.roll->circle() && random.coin()) draw_windows(episode, random, random.uniform(-0.3, 0.3));
+    if (random.coin(0.4)) episode.cost.roll = random.uniform(0.5, 10);
     Planner planner(with_motion_defaults(episode));
     const MotionPlan plan = plan_motion(planner, {.check = true}, true, TimingOptions{.speed = 0.05});
     if (plan.result.status != PlanStatus::kSolved) continue;
@@ -391,15 +404,29 @@ TEST(RollLattice, PathsAreRefinedAndTimed) {
     for (std::size_t i = 0; i < rows.size(); ++i) moved += std::abs(wrap_angle(rows[i].roll - before[i].roll)) > 1e-6;
     const CheckResult check = check_trajectory(with_motion_defaults(episode), rows);
     ASSERT_TRUE(check.passed) << what << ": " << check.failures[0];
+    ASSERT_NEAR(check.cost, plan.result.cost, 1e-6) << what;
     refined += plan.refinement->refined;
+    windows += plan.refinement->refined && episode.waypoints[0].roll;
+    costly += plan.refinement->refined && episode.cost.roll > 0;
     turning += std::any_of(rows.begin(), rows.end(), [&](const TrajectoryRow& row) { return row.roll != rows[0].roll; });
-    if (!plan.motion->motion) continue;
+    if (!plan.motion->motion) {
+      std::printf("%s%s: no motion: %s\n", what.c_str(), episode.waypoints[0].roll ? " with windows" : "",
+                  plan.motion->failure->reason.c_str());
+      continue;
+    }
     ++timed;
+    timed_windows += episode.waypoints[0].roll.has_value();
     const CheckResult motion = check_motion(planner.prepare(), with_motion_defaults(episode), plan.motion->motion->rows, {});
     ASSERT_TRUE(motion.passed) << what << ": " << motion.failures[0];
   }
-  std::printf("%d problems: %d refined, %d turn the tool, %d timed, %d within half a radian\n", count, refined, turning, timed,
-              partial);
+  std::printf(
+      "%d problems: %d refined (%d with windows of roll, %d with a cost of it), %d turn the tool, %d timed (%d with windows), %d "
+      "within "
+      "half a radian\n",
+      count, refined, windows, costly, turning, timed, timed_windows, partial);
+  EXPECT_GE(windows, at_least(2));
+  EXPECT_GE(timed_windows, at_least(1));
+  EXPECT_GE(costly, at_least(3));
   EXPECT_GE(refined, at_least(count / 2));
   EXPECT_GE(timed, at_least(count / 2));
   EXPECT_GE(turning, at_least(2));
@@ -484,6 +511,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
     Problem problem = roll_problem(all_robots().front(), random);
     problem.scene.clear();
     problem.roll = Roll{-0.8, 0.8};
+    for (Waypoint& waypoint : problem.waypoints) waypoint.roll.reset();
     problem.start.reset();
     const PreparedRobot robot(problem);
     const PlanResult result = plan(robot, problem);
@@ -499,7 +527,7 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
           << words << ": " << (check.failures.empty() ? "" : check.failures[0]);
     };
     fails(
-        problem, [](auto& rows) { rows[1].roll += 0.01; }, "from the path");
+        problem, [](auto& rows) { rows[1].roll += rows[1].roll > 0 ? -0.01 : 0.01; }, "from the path");
     fails(
         problem, [](auto& rows) { rows[1].roll = 0.9; }, "roll 0.9 is outside its range");
     fails(
@@ -512,6 +540,15 @@ TEST(RollLattice, CheckRefusesOtherRolls) {
     if (narrow.roll->lower < narrow.roll->upper)
       fails(
           narrow, [](auto&) {}, "is outside its range");
+    Problem windows = problem;
+    for (Waypoint& waypoint : windows.waypoints) waypoint.roll = Roll{-0.8, 0.8};
+    EXPECT_TRUE(check_trajectory(windows, result.trajectory).passed);
+    const double there = result.trajectory[0].roll;
+    windows.waypoints[0].roll = there > 0 ? Roll{-0.8, there - 0.01} : Roll{there + 0.01, 0.8};
+    fails(
+        windows, [](auto&) {}, "row 0: roll");
+    fails(
+        windows, [](auto&) {}, "is outside what its waypoints allow");
   }
   EXPECT_EQ(tried, 5);
 }
@@ -527,6 +564,7 @@ TEST(RollLattice, RefusesWhatItCannotDo) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   };
+  for (Waypoint& waypoint : problem.waypoints) waypoint.roll.reset();
   Problem wrong = problem;
   wrong.limits.step_error = 0.1;
   expect(wrong, "limits.step_error: allowed without path.roll");

@@ -528,6 +528,24 @@ class Robots(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "no arm of six joints in a row was found"):
             swivel.Robot(ROBOTS / "iiwa14.urdf", roll=swivel.Roll())
 
+    def test_windows_of_roll(self):
+        problem = swivel.load_problem(PROBLEMS / "ur5e_deburr_edge.yaml")
+        n = len(problem.waypoints)
+        windows = np.column_stack([np.linspace(-0.4, 0.1, n), np.linspace(0.0, 0.1, n)])
+        problem.waypoints = np.hstack([problem.waypoints, windows])
+        self.assertEqual(problem.waypoints.shape, (n, 9))
+        np.testing.assert_array_equal(problem.waypoints[:, 7:], windows)
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(problem)).waypoints, problem.waypoints)
+        plan = swivel.Planner(problem).plan()
+        self.assertTrue(plan.solved)
+        self.assertAlmostEqual(plan.joints[-1, 6], 0.1, delta=1e-8)
+        self.assertTrue(-0.4 - 1e-9 <= plan.joints[0, 6] <= 1e-9)
+        with self.assertRaisesRegex(ValueError, r"waypoints\[1\]: roll_min and roll_max are not given at all waypoints"):
+            problem.waypoints = [problem.waypoints[0], problem.waypoints[1][:7]]
+        free = swivel.Robot(ROBOTS / "ur5e_like.urdf", base=problem.base, tip=problem.tip, roll=swivel.Roll())
+        with self.assertRaisesRegex(ValueError, "circle: allowed is a robot whose roll has a range of less than a turn"):
+            swivel.Planner(free, swivel.Task(problem.waypoints))
+
     def test_what_it_carries(self):
         planner = swivel.Planner(arm(), square())
         free = planner.plan(evidence=True)

@@ -13,6 +13,8 @@
 
 namespace swivel {
 
+inline constexpr double kLimitTolerance = 1e-9;  // rad: joint limits are inclusive within this
+
 /// Why a node does not exist, before collision is asked.
 enum class NodeStatus : std::uint8_t { kValid, kNoIk, kSingular, kLimit };
 
@@ -185,6 +187,7 @@ class Lattice {
   [[nodiscard]] double roll_cost(int layer, double roll) const;
   /// That cost per rad; 0 where the roll costs nothing.
   [[nodiscard]] double roll_weight(int layer) const;
+  [[nodiscard]] bool roll_costs() const { return !roll_weights_.empty(); }
 
  protected:
   Lattice(const Lattice&) = default;  // copied whole, as what it is

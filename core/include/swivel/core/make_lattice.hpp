@@ -36,6 +36,11 @@ namespace swivel {
 /// the lattice (Lattice::has_layers_between).
 [[nodiscard]] std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots);
 
+/// By how much the tool stands turned at a row, rad.
+[[nodiscard]] inline double roll_of(const Chain& chain, const TrajectoryRow& row) {
+  return chain.roll ? row.q[kDof - 1] : row.roll;
+}
+
 /// Where path_joints() is empty: the same nodes with the values of those joints told apart, in which paths of such joints stay
 /// within their limits.
 [[nodiscard]] std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots);

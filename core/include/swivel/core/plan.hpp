@@ -49,7 +49,7 @@ struct LatticeInfo {
   std::int64_t nodes = 0;
   struct Grid {
     int phi = 0, branches = 8, windings = 1, window = 0;
-    std::optional<int> rolls;  ///< of a tool that may stand turned
+    std::optional<int> rolls = {};  ///< of a tool that may stand turned
   };
   std::optional<Grid> grid;          ///< of S-R-S arms: arm angles, and cells between neighbours in successive layers
   std::optional<std::int64_t> arcs;  ///< of other arms: arcs of self-motion in all layers

@@ -13,10 +13,20 @@
 
 namespace swivel {
 
+/// How far the tool may stand turned about its own z axis from where the waypoints have it, rad: rotations about the axis of a
+/// torch or a milling cutter change nothing for the work. A range of a turn or more is a circle.
+struct Roll {
+  double lower = -kPi, upper = kPi;
+  [[nodiscard]] bool circle() const { return upper - lower >= kTwoPi - 1e-9; }
+  bool operator==(const Roll&) const = default;
+};
+
 /// One pose of the tool path: tool frame in the path's frame.
 struct Waypoint {
   Vector3d position = Vector3d::Zero();
   Quaterniond orientation = Quaterniond::Identity();  ///< need not be exactly unit: | |q| - 1 | <= 1e-3
+  /// Of paths with Robot::roll, within which it must lie: at all waypoints or at none. Between two waypoints its ends are linear.
+  std::optional<Roll> roll = {};
   bool operator==(const Waypoint&) const = default;
 };
 
@@ -102,14 +112,6 @@ struct Variation {
   std::string object;
   Vector3d xyz = Vector3d::Zero();
   Vector3d rpy = Vector3d::Zero();
-};
-
-/// How far the tool may stand turned about its own z axis from where the waypoints have it, rad: rotations about the axis of a
-/// torch or a milling cutter change nothing for the work. A range of a turn or more is a circle.
-struct Roll {
-  double lower = -kPi, upper = kPi;
-  [[nodiscard]] bool circle() const { return upper - lower >= kTwoPi - 1e-9; }
-  bool operator==(const Roll&) const = default;
 };
 
 /// The arm that plans: a chain of a model, and what it carries.

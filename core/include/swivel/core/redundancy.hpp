@@ -31,11 +31,16 @@ class Redundancy {
   virtual void label(std::vector<TrajectoryRow>& rows) const = 0;
   /// Of the coordinate from a layer to the next, rad: what the lattice's window allows.
   [[nodiscard]] virtual double most_change() const = 0;
-  /// What the coordinate may be, rad.
+  /// Whether the coordinate is the roll of the tool.
+  [[nodiscard]] virtual bool is_roll() const { return false; }
+  /// What the coordinate may be at a layer, rad.
   struct Range {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
   };
-  [[nodiscard]] virtual Range range() const { return {}; }
+  [[nodiscard]] virtual Range range(int layer) const {
+    static_cast<void>(layer);
+    return {};
+  }
   /// Layers from which the joints jump to the next: through a singularity, to another solution.
   [[nodiscard]] virtual std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const = 0;
   /// Sine of the angle nearest to singular.

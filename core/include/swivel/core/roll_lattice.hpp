@@ -34,8 +34,14 @@ class RollLattice final : public Lattice {
 
   // --- rolls
   [[nodiscard]] int rolls() const { return static_cast<int>(turned_.size()); }
-  /// By rank, rad: the nodes for a tool that stands turned so. Knots are its layers.
-  [[nodiscard]] double roll(int rank) const { return turned_[static_cast<std::size_t>(rank)]->roll; }
+  /// rad. Where waypoints have windows (Waypoint::roll), each rank is a part of every layer's; otherwise the same at all layers.
+  [[nodiscard]] double roll(int layer, int slot) const {
+    return layer == 0 && start_ ? start_roll_ : roll_of_rank(layer, slot / width_);
+  }
+  [[nodiscard]] double roll_of_rank(int layer, int rank) const {
+    return turned_[static_cast<std::size_t>(rank)]->rolls[static_cast<std::size_t>(layer)];
+  }
+  /// By rank: the nodes for a tool that stands turned so. Knots are its layers.
   [[nodiscard]] const SrsLattice& at_roll(int rank) const { return turned_[static_cast<std::size_t>(rank)]->lattice; }
   [[nodiscard]] int rank_of(int layer, int slot) const { return layer == 0 && start_ ? 0 : slot / width_; }
   /// Of the lattice at_roll().
@@ -43,13 +49,14 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int slot_of(int rank, int inner) const { return rank * width_ + inner; }
   /// Slots of one roll.
   [[nodiscard]] int width() const { return width_; }
-  /// Ranks of the rolls that an edge of a step may join to this one, itself among them, in order.
-  [[nodiscard]] const std::vector<int>& near(int step, int rank) const {
-    return near_[static_cast<std::size_t>(roll_window(step))][static_cast<std::size_t>(rank)];
+  /// Ranks of the rolls that an edge of a step may join to this one, in order: of the layer after the step to one of the layer
+  /// before it, or the other way round.
+  [[nodiscard]] const std::vector<int>& near(int step, int rank, bool forward) const {
+    const Near& lists = near_[static_cast<std::size_t>(windows_[static_cast<std::size_t>(step)].near)];
+    return (forward ? lists.after : lists.before)[static_cast<std::size_t>(rank)];
   }
-  /// Cells by which arm angle and roll may change on a step; the most of all steps.
+  /// Cells by which the arm angle may change on a step; the most of all steps.
   [[nodiscard]] int phi_window(int step) const { return windows_[static_cast<std::size_t>(step)].phi; }
-  [[nodiscard]] int roll_window(int step) const { return windows_[static_cast<std::size_t>(step)].roll; }
   [[nodiscard]] int widest_phi_window() const { return widest_; }
   [[nodiscard]] bool has_start() const { return start_ != nullptr; }
   /// Layer 0 of a problem with a start is one slot, whose nodes are those of this lattice's start_slot().
@@ -77,6 +84,8 @@ class RollLattice final : public Lattice {
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override { return at(layer, slot).phi(layer, inner(layer, slot)); }
   [[nodiscard]] int branch(int layer, int slot) const override { return at(layer, slot).branch(layer, inner(layer, slot)); }
+  [[nodiscard]] bool has_node_costs() const override { return roll_costs(); }
+  [[nodiscard]] double node_cost(int layer, int slot) const override { return roll_cost(layer, roll(layer, slot)); }
   [[nodiscard]] int beside(int layer, int slot, int by) const override;
   [[nodiscard]] int across(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
@@ -101,6 +110,10 @@ class RollLattice final : public Lattice {
   [[nodiscard]] bool step_error_allowed(int, int, int) const override { return true; }
   [[nodiscard]] const SrsLattice& at(int layer, int slot) const { return layer == 0 && start_ ? *start_ : at_roll(slot / width_); }
   void choose_rolls(double nominal, double droll);
+  /// Of a value, at each layer.
+  [[nodiscard]] std::vector<double> rolls_along(int value) const;
+  [[nodiscard]] double way(int step) const;
+  void find_near(const Problem& problem);
   /// `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
   Between walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
@@ -110,15 +123,18 @@ class RollLattice final : public Lattice {
   [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const;
 
   struct Turned {
-    Turned(double by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem, const Budget& budget,
-           std::vector<ArmPlane> planes, const std::optional<double>& last_joint)
-        : roll(by), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
-    double roll;
+    Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem,
+           const Budget& budget, std::vector<ArmPlane> planes, const std::optional<double>& last_joint)
+        : rolls(std::move(by)), path(std::move(knots)), lattice(chain, arm, path, problem, budget, std::move(planes), last_joint) {}
+    std::vector<double> rolls;  // by layer
     ToolPath path;
     SrsLattice lattice;
   };
   struct Window {
-    int phi = 1, roll = 0;
+    int phi = 1, near = 0;  // cells; of near_
+  };
+  struct Near {
+    std::vector<std::vector<int>> after, before;  // by rank
   };
 
   const SrsArm* arm_;
@@ -126,17 +142,19 @@ class RollLattice final : public Lattice {
   const ToolPath* whole_;
   std::vector<int> knots_;
   std::unique_ptr<const ToolPath> knot_path_;
-  std::vector<ArmPlane> planes_;                 // of the whole path, for a tool that is not turned
-  std::vector<Config> whole_step_bounds_;        // of its steps; one entry where all are the same
-  bool circle_ = false;                          // rolls go once around
-  std::vector<double> values_;                   // rolls in their order
+  std::vector<ArmPlane> planes_;           // of the whole path, for a tool that is not turned
+  std::vector<Config> whole_step_bounds_;  // of its steps; one entry where all are the same
+  bool circle_ = false;                    // rolls go once around
+  bool windows_of_roll_ = false;           // waypoints have some
+  std::vector<double> values_;             // rolls in their order; with windows, parts of them from 0 to 1
+  double start_roll_ = 0;
   std::vector<int> rank_, value_of_;             // of each value; of each rank
   std::vector<std::unique_ptr<Turned>> turned_;  // by rank
   std::unique_ptr<const ToolPath> start_path_;
   std::unique_ptr<const SrsLattice> start_;
   int width_ = 0, widest_ = 1;
-  std::vector<Window> windows_;                      // by step
-  std::vector<std::vector<std::vector<int>>> near_;  // [window][rank]
+  std::vector<Window> windows_;  // by step
+  std::vector<Near> near_;
 };
 
 }  // namespace swivel

@@ -67,6 +67,8 @@ class SelfMotion {
                                                           Least least = Least::kNorm) const;
   /// The point of the pose's arc at chord k and u, exactly on the curve and within the limits. None where Newton fails.
   [[nodiscard]] std::optional<Config> point(const SelfMotionArc& arc, int chord, double u, const Pose& tool) const;
+  /// The point of the pose near q at which a joint has a value, bit for bit. None where Newton fails, or outside the limits.
+  [[nodiscard]] std::optional<Config> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
   /// q with every joint in the winding that arcs have; whether it is inside the limits.
   [[nodiscard]] bool canonical(Config& q) const;
   /// Joints that are circles here: continuous, or a range of more than a turn.

@@ -8,9 +8,9 @@
 
 namespace swivel {
 
-/// What is to be least: sum |W dq_i|_p + sum roll_i |q_i7| + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2,
-/// |r|_p = (sum |r_j|^p)^(1/p), q_i7 the last joint in (-pi, pi], q'' the second divided difference of the joints over the travel,
-/// h the mean of the steps on both sides, x the coordinates.
+/// What is to be least: sum |W dq_i|_p + sum roll_i |rho_i| + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2,
+/// |r|_p = (sum |r_j|^p)^(1/p), rho_i the last joint or the coordinate in (-pi, pi], q'' the second divided difference of the
+/// joints over the travel, h the mean of the steps on both sides, x the coordinates.
 struct SmoothObjective {
   std::array<double, kDof> weights{};
   int power = 2;           ///< p, even; a large one comes near the largest |r_j|
@@ -19,6 +19,7 @@ struct SmoothObjective {
   /// Layers from which the joints jump to the next: bends across that step do not count.
   std::vector<int> jumps = {};
   std::vector<double> roll = {};  ///< per rad, by layer; empty: none
+  bool roll_is_coordinate = false;
 };
 /// Infinite where a layer has no joints.
 [[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x);

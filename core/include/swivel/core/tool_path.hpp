@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,12 @@ struct PathLayer {
   double step_angle = 0;                      ///< rad to the next layer
   Vector3d step_rotation = Vector3d::Zero();  ///< axis * angle of that step, in the tool frame of this layer
   double travel = 0;  ///< m, like s, but going on where the path turns: a segment counts max(length, angle ds / dalpha)
+  /// Within which the roll must lie here (Waypoint::roll), rad; between layers its ends are linear in travel.
+  Roll window{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+
+  [[nodiscard]] bool in_window(double roll, double tolerance = 1e-9) const {
+    return roll >= window.lower - tolerance && roll <= window.upper + tolerance;
+  }
 };
 
 /// Waypoints cut into layers: position linear, orientation slerp on the short arc; every waypoint is a layer, so corners are never
@@ -69,6 +76,13 @@ class ToolPath {
   [[nodiscard]] ToolPath with_rolls(const std::vector<double>& rolls) const;
   /// Of such a path: the one that it is made of; else null.
   [[nodiscard]] const ToolPath* unturned() const { return unturned_.get(); }
+  /// By how much the tool may be turned from the polyline where corners are rounded, rad: so may rolls leave windows, which have
+  /// corners at waypoints as well.
+  [[nodiscard]] double rounding() const { return rounding_; }
+  /// The length of path that belongs to each layer, m: half of the steps on both sides.
+  [[nodiscard]] std::vector<double> shares() const;
+  /// PathLayer::window at a travel.
+  [[nodiscard]] Roll window_at(double travel) const;
   /// By how much the tool stands turned, rad.
   [[nodiscard]] double roll_at(double travel) const { return unturned_ ? roll_->at(travel) : 0; }
   /// In the order of the path.
@@ -88,6 +102,7 @@ class ToolPath {
     double reach = 0;                                                   // of the corner at its start
   };
   void find_corners(const PathSmoothing& smooth);
+  void spread_windows();
   [[nodiscard]] Pose on_curve(std::size_t segment, double travel) const;
   [[nodiscard]] std::size_t segment_of(int step) const;
 
@@ -100,6 +115,7 @@ class ToolPath {
   std::vector<Segment> segments_;
   std::vector<Corner> corners_;
   bool rounded_ = false;
+  double rounding_ = 0;
   int merged_ = 0;
 };
 

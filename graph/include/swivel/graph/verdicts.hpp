@@ -36,7 +36,7 @@ class Verdicts {
   /// Nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 
-  /// What a node costs besides the edges to and from it: 0 until it is known.
+  /// What a node costs besides the edges to and from it: by the lattice alone (Lattice::node_cost) until it is known.
   [[nodiscard]] double cost(int layer, int slot) const {
     const double* costs = this->costs(layer);
     return costs ? costs[slot] : 0;
@@ -47,7 +47,7 @@ class Verdicts {
                                                                              : costs_[static_cast<std::size_t>(layer)].data();
   }
   [[nodiscard]] bool knows_cost(int layer, int slot) const { return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0; }
-  /// Once a node.
+  /// Once a node; no less than it cost by the lattice alone.
   void set_cost(int layer, int slot, double cost);
 
   struct HalfEdge {
@@ -86,6 +86,9 @@ class Verdicts {
     return first_[static_cast<std::size_t>(layer)] + static_cast<std::size_t>(slot);
   }
 
+  void begin_costs();
+
+  const Lattice* lattice_;
   std::vector<std::size_t> first_;  // of each layer
   ZeroedArray<Verdict> node_;
   std::vector<std::size_t> known_;          // indices of nodes, as they came to be known
