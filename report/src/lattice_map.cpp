@@ -26,7 +26,7 @@ std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
 
 std::vector<int> LatticeMap::inhabited_sheets() const {
   std::vector<int> inhabited;
-  for (int sheet = 0; sheet < sheets(); ++sheet) {
+  for (int sheet = 0; sheet < panels(); ++sheet) {
     bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == sheet; });
     for (int layer = 0; layer < layers && !any; ++layer)
       for (int j = 0; j < angles && !any; ++j) any = at(layer, sheet, j).state >= NodeState::kNotLookedAt;
@@ -41,12 +41,38 @@ std::string LatticeMap::blocker_name(const Node& node) const {
 }
 
 std::string LatticeMap::sheet_name(int sheet) const {
+  if (shows_rolls(sheet)) return "roll of the tool, where the path is";
   const int branch = sheet / windings;
   if (!grid) return "solutions " + std::to_string(branch);
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
   std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
   if (windings > 1) name += ", winding " + std::to_string(sheet % windings);
   return name;
+}
+
+std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int cells) {
+  const auto& rolls = dynamic_cast<const RollLattice&>(lattice);
+  const double cell = kTwoPi / cells;
+  const int inner = rolls.inner(layer, like);
+  std::vector<int> slots;
+  for (int k = 0; k < lattice.slots(layer); k += rolls.width()) slots.push_back(lattice.slots(layer) == 1 ? 0 : k + inner);
+  // Cells between two rolls belong to the nearer one.
+  double apart = cell;
+  for (const int slot : slots) {
+    double next = kTwoPi;
+    for (const int other : slots)
+      if (other != slot) next = std::min(next, std::abs(wrap_angle(rolls.roll(layer, other) - rolls.roll(layer, slot))));
+    if (next < kTwoPi) apart = std::max(apart, next);
+  }
+  std::vector<int> result(static_cast<std::size_t>(cells), -1);
+  for (int k = 0; k < cells; ++k) {
+    double least = apart / 2 + 1e-9;
+    for (const int slot : slots) {
+      const double away = std::abs(wrap_angle(rolls.roll(layer, slot) - (k * cell - kPi)));
+      if (away < least) least = away, result[static_cast<std::size_t>(k)] = slot;
+    }
+  }
+  return result;
 }
 
 int map_cell(const Lattice& lattice, int layer, int slot) {
@@ -73,11 +99,12 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     map.angles = rolls->at_roll(0).angles();
     map.windings = rolls->at_roll(0).windings();
     map.grid = true;
+    map.turns = rolls->rolls() > 1 && !view.path.empty();
   }
   map.joint_names = lattice.chain().joint_names;
   for (const int slot : view.path) map.path.push_back(map_cell(lattice, static_cast<int>(map.path.size()), slot));
   map.complete = full || view.verdicts == nullptr;
-  const std::size_t cells = static_cast<std::size_t>(map.sheets()) * static_cast<std::size_t>(map.angles);
+  const std::size_t cells = static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
   map.nodes.resize(static_cast<std::size_t>(map.layers) * cells);
   std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // cell, by what
   std::vector<Lattice::Node> listed;
@@ -124,6 +151,21 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
       const std::size_t cell = static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(map_cell(lattice, layer, slot));
       if (!map.grid && importance(node) <= importance(map.nodes[cell])) continue;
       map.nodes[cell] = node;
+      if (pair) blocked.emplace_back(cell, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
+    }
+    if (!map.turns || layer >= static_cast<int>(view.path.size())) continue;
+    const int on_path = view.path[static_cast<std::size_t>(layer)], panel = map.sheets() * map.angles;
+    const double roll = wrap_angle(dynamic_cast<const RollLattice&>(lattice).roll(layer, on_path));
+    map.path_of_rolls.push_back(panel + static_cast<int>(std::lround((roll + kPi) / kTwoPi * map.angles)) % map.angles);
+    const std::vector<int> slots = slots_of_rolls(lattice, layer, on_path, map.angles);
+    for (int k = 0; k < map.angles; ++k) {
+      const int slot = slots[static_cast<std::size_t>(k)];
+      if (slot < 0) continue;
+      const auto at = std::lower_bound(listed.begin(), listed.end(), slot,
+                                       [](const Lattice::Node& node, int other) { return node.slot < other; });
+      pair.reset();
+      const std::size_t cell = static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(panel + k);
+      map.nodes[cell] = at != listed.end() && at->slot == slot ? look_at(layer, slot, at->q) : of_fault(layer, slot);
       if (pair) blocked.emplace_back(cell, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
     }
   }

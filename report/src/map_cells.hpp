@@ -30,9 +30,10 @@ class MapCells {
     return most;
   }
   [[nodiscard]] bool on_path(int sheet, int column, int row) const {
-    const int end = std::min(static_cast<int>(map_.path.size()), (column + 1) * layers_each);
+    const std::vector<int>& path = map_.path_in(sheet);
+    const int end = std::min(static_cast<int>(path.size()), (column + 1) * layers_each);
     for (int i = column * layers_each; i < end; ++i) {
-      const int slot = map_.path[i];
+      const int slot = path[i];
       if (slot / map_.angles == sheet && slot % map_.angles / angles_each == row) return true;
     }
     return false;
@@ -72,7 +73,8 @@ class MapLegend {
   [[nodiscard]] std::string meaning(const LatticeMap::Node& node) const {
     switch (node.state) {
       case NodeState::kNoIk:
-        return "no node: out of reach, or beside the given start";
+        return map_.turns ? "no node: out of reach, beside the given start, or turned further than allowed"
+                          : "no node: out of reach, or beside the given start";
       case NodeState::kSingular:
         return "singular";
       case NodeState::kJointLimit:

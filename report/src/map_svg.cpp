@@ -67,17 +67,18 @@ std::string to_svg(const LatticeMap& map) {
       }
       line.clear();
     };
-    for (std::size_t i = 0; i < map.path.size(); ++i) {
-      const int slot = map.path[i], angle = slot % map.angles;
+    const std::vector<int>& path = map.path_in(sheet);
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const int slot = path[i], angle = slot % map.angles;
       const bool here = slot / map.angles == sheet;
-      const bool changes = i > 0 && map.path[i - 1] / map.angles != slot / map.angles;
-      if (here && i > 0 && !changes && std::abs(map.path[i - 1] % map.angles - angle) > map.angles / 2) flush();  // through pi
+      const bool changes = i > 0 && path[i - 1] / map.angles != slot / map.angles;
+      if (here && i > 0 && !changes && std::abs(path[i - 1] % map.angles - angle) > map.angles / 2) flush();  // through pi
       if (!here) {
         flush();
         continue;
       }
       line.emplace_back(x_of(static_cast<double>(i)), y_of(angle + 0.5));
-      if (changes || (i + 1 < map.path.size() && map.path[i + 1] / map.angles != sheet))
+      if (changes || (i + 1 < path.size() && path[i + 1] / map.angles != sheet))
         drawing.circle(line.back().first, line.back().second, 4, "#000000");
     }
     flush();
@@ -85,7 +86,7 @@ std::string to_svg(const LatticeMap& map) {
     drawing.text(kLeft, top - 7, "start", map.sheet_name(sheet));
     for (const auto& [angle, name] : {std::pair{0.0, "-π"}, {0.25, "-π/2"}, {0.5, "0"}, {0.75, "π/2"}, {1.0, "π"}})
       drawing.text(kLeft - 6, y_of(angle * map.angles) + 4, "end", name);
-    drawing.text(14, top + kPanelHeight / 2, "middle", "φ");
+    drawing.text(14, top + kPanelHeight / 2, "middle", map.shows_rolls(sheet) ? "ρ" : "φ");
     for (int k = 0; k <= 5; ++k) {
       const double layer = (map.layers - 1) * k / 5.0;
       drawing.text(x_of(layer), top + kPanelHeight + 15, "middle", number(map.s[static_cast<std::size_t>(layer + 0.5)]));

@@ -75,12 +75,13 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   };
   if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
   for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);
+  const std::string rows = map.turns ? "Rows are arm angles, in the last panel rolls, rad. " : "Rows are arm angles, rad. ";
   if (cells.layers_each * cells.angles_each > 1)
-    text += "Rows are arm angles, rad. A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
+    text += rows + "A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
             std::to_string(cells.angles_each) +
             " arm angles and shows a blocked node before a free one, and that before the others.\n";
   else
-    text += "Rows are arm angles, rad.\n";
+    text += rows + "\n";
   return text;
 }
 

@@ -41,6 +41,7 @@ std::vector<Row> lattice_rows(const Lattice& lattice, const LatticeMap& map, con
     const int slot = slots[static_cast<std::size_t>(layer)];
     const int cell = map.path[static_cast<std::size_t>(layer)];
     Row row{*lattice.row(layer, slot), lattice.phi(layer, slot), static_cast<double>(cell % map.angles), cell / map.angles};
+    if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) row.roll = rolls->roll(layer, slot);
     if (!rows.empty())
       row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints, as the trajectory does
     rows.push_back(row);
@@ -127,8 +128,10 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
 /// The path beside which a refined one is drawn.
 Json beside_json(const std::vector<Row>& rows) {
   Json json = Json::array();
-  for (std::size_t layer = 0; layer < rows.size(); ++layer)
+  for (std::size_t layer = 0; layer < rows.size(); ++layer) {
     json.push_back({{"layer", layer}, {"sheet", rows[layer].sheet}, {"angle", rows[layer].angle}});
+    if (rows[layer].roll) json.back()["roll"] = *rows[layer].roll;
+  }
   return json;
 }
 
@@ -315,7 +318,8 @@ class Clearances {
 };
 
 /// Joints of one node for each shown cell, in 16 bits: for drawing.
-Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const Budget& budget) {
+Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::vector<int>& path,
+              const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> sheets = map.inhabited_sheets();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, sheets.size()) * 252));
@@ -330,24 +334,38 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
       for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(sheet, column, row));
   Clearances clearances(world, asked);
   std::vector<Lattice::Node> listed;
-  std::vector<int> panel_of(map.sheets(), -1);
+  std::vector<int> panel_of(map.panels(), -1);
   Json panels = Json::array();
   for (const int sheet : sheets) {
     panel_of[sheet] = static_cast<int>(panels.size());
-    panels.push_back({{"sheet", sheet}, {"name", map.sheet_name(sheet)}});
+    panels.push_back({{"sheet", sheet}, {"name", map.sheet_name(sheet)}, {"rolls", map.shows_rolls(sheet)}});
   }
+  int rank = 0;  // of the roll that the path has, as in make_map()
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
     std::vector<Config> shown(sheets.size() * cells.rows, Config::Constant(2 * reach));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.layer_nodes(layer, listed);
-      for (const Lattice::Node& node : listed) {
-        const int cell = map_cell(lattice, layer, node.slot), sheet = cell / map.angles, angle = cell % map.angles;
+      const auto show = [&](const Lattice::Node& node, int sheet, int angle) {
         const int row = angle / cells.angles_each, k = panel_of[sheet] * cells.rows + row;
-        if (panel_of[sheet] < 0 || shown[k][0] < 2 * reach || map.at(layer, sheet, angle) != cells.node(sheet, column, row))
-          continue;
+        if (panel_of[sheet] < 0 || shown[k][0] < 2 * reach || map.at(layer, sheet, angle) != cells.node(sheet, column, row)) return;
         shown[k] = lattice.row(layer, node.slot, node.q).value_or(node.q);
+      };
+      const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
+      const bool on_path = layer < static_cast<int>(path.size());
+      if (rolls && on_path) rank = rolls->rank_of(layer, path[static_cast<std::size_t>(layer)]);
+      for (const Lattice::Node& node : listed) {
+        if (rolls && rolls->rank_of(layer, node.slot) != rank) continue;
+        const int cell = map_cell(lattice, layer, node.slot);
+        show(node, cell / map.angles, cell % map.angles);
+      }
+      if (!map.turns || !on_path) continue;
+      const std::vector<int> slots = slots_of_rolls(lattice, layer, path[static_cast<std::size_t>(layer)], map.angles);
+      for (int k = 0; k < map.angles; ++k) {
+        const auto at = std::lower_bound(listed.begin(), listed.end(), slots[static_cast<std::size_t>(k)],
+                                         [](const Lattice::Node& node, int slot) { return node.slot < slot; });
+        if (at != listed.end() && at->slot == slots[static_cast<std::size_t>(k)]) show(*at, map.sheets(), k);
       }
     }
     std::size_t k = 0;
@@ -445,7 +463,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
                                              lattice.chain(), rows, path)
                                : Json(nullptr)},
       {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, diagnosis) : Json(nullptr)},
-      {"map", map_json(map, lattice, world, budget)}};
+      {"map", map_json(map, lattice, world, view.path, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
               {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
 }

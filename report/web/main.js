@@ -68,7 +68,8 @@ function hover(cell, event) {
     if (!picked) go(cursor);
     return;
   }
-  const lines = [`s ${number(cell.s)} m, φ ${(cell.phi * kDegrees).toFixed(1)}°`, cell.branch, cell.what];
+  const at = cell.roll === undefined ? `φ ${(cell.phi * kDegrees).toFixed(1)}°` : `roll ${(cell.roll * kDegrees).toFixed(1)}°`;
+  const lines = [`s ${number(cell.s)} m, ${at}`, cell.branch, cell.what];
   if (cell.q) {
     lines.push(...chain.joints.map((joint, k) => `${joint.name}  ${(cell.q[k] * kDegrees).toFixed(1)}°`), `manipulability ${number(manipulability(chain, cell.q), 3)} m³`);
     if (cell.clearance_mm !== undefined) lines.push(`clearance ${number(cell.clearance_mm, 3)} mm`);
@@ -84,9 +85,9 @@ function pick(cell) {
   if (cell.q) keep(cell);
 }
 /** Shows a pose away from the path until the cursor moves. */
-function keep({ s, phi, q, pair, what, line = null }) {
+function keep({ s, phi, roll, q, pair, what, line = null }) {
   show(q, pair, line, pair !== null);
-  readout(s, phi, q, what);
+  readout(s, phi, q, what, roll);
   picked = true;
 }
 /** Turns the arm about its tool where it stands: to the next cell of the same solution that has joints, up or down in the map. */
@@ -110,8 +111,9 @@ function show(q, pair, line = null, hit = false) {
   view?.pose(...shown);
   Object.assign(window.swivel, { joints: q, line });
 }
-function readout(s, phi, q, note) {
-  const { roll } = rows[rowAt(s)] ?? {};
+/** What is not given of arm angle and roll is the path's there. */
+function readout(s, at, q, note, turned) {
+  const row = rows[rowAt(s)] ?? {}, phi = at ?? row.phi, roll = turned ?? row.roll;
   $('readout').textContent = `s ${s.toFixed(4)} m   φ ${(phi * kDegrees).toFixed(1)}°${roll === undefined ? '' : `   roll ${(roll * kDegrees).toFixed(1)}°`}\n${chain.joints.map((j, k) => `${j.name}  ${(q[k] * kDegrees).toFixed(2)}°`).join('\n')}\n${note}`;
 }
 const lineOf = ({ nearest, clearance_mm }) => (nearest ? { points: nearest, text: `${number(clearance_mm, 3)} mm` } : null);
@@ -210,15 +212,16 @@ function paint() {
 }
 
 const unseen = cells.count((state) => state === UNSEEN), known = cells.count((state) => state === FREE || state === BLOCKED);
-$('map-note').textContent = `s to the right, φ upwards. ${cells.layers_each * cells.angles_each > 1
+$('map-note').textContent = `s to the right, φ or ρ upwards. ${cells.layers_each * cells.angles_each > 1
   ? `A cell stands for up to ${cells.layers_each} × ${cells.angles_each} of the ${number(data.result.lattice.nodes)} nodes and shows a blocked one before a free one, and that before the others. ` : 'A cell is a node. '}`
   + (unseen + known ? `Of the cells that exist in closed form, ${number((100 * unseen) / (unseen + known), 3)} % were never looked at.` : '')
-  + (data.result.lattice.rolls ? ' Each layer is drawn for the roll that the path was found with.' : '')
+  + (data.result.lattice.rolls ? ' Branches are drawn at the rolls with which the path was found, rolls at its arm angles.' : '')
   + (data.beside.length ? ' The thin dashed line is the path that was found on the lattice, before it was refined.' : '')
   + (!solved && rows.length ? ' The dashed line is where every path has ended.' : '');
 const stem = data.problem.replace(/\.[^.]*$/, '');
 savers(document.querySelector('#plots-section h2'), `${stem}_plots`, () => plots.figure());
 if (timed) savers(document.querySelector('#motion-section h2'), `${stem}_motion`, () => timed.figure());
+if (cells.panels.some(({ rolls }) => rolls)) document.querySelector('#map-section h2').firstChild.textContent = '(s, φ) and (s, ρ) maps';
 savers(document.querySelector('#map-section h2'), `${stem}_map`, () => panels.figure());
 
 const turnTheme = themes(paint);

@@ -28,8 +28,9 @@ export class Cells {
   at(panel, column, row) {
     const k = this.index(panel, column, row), state = this.state(k), pose = this.pose[k];
     const layer = Math.min(this.layers - 1, column * this.layers_each), clearance = pose < 0 ? kUnknown : this.clearances[pose];
+    const angle = -Math.PI + (2 * Math.PI * row * this.angles_each) / this.angles, { rolls, name } = this.panels[panel];
     return {
-      layer, s: this.s[layer], phi: -Math.PI + (2 * Math.PI * row * this.angles_each) / this.angles, branch: this.panels[panel].name,
+      layer, s: this.s[layer], ...(rolls ? { roll: angle } : { phi: angle }), branch: name,
       what: this.meaning(k) + (state === BLOCKED ? (this.states[k] & kCertified ? ' (proved by a certificate)' : ' (found by FCL)') : ''),
       q: pose < 0 ? null : Array.from(this.poses.subarray(7 * pose, 7 * pose + 7), (v) => v * this.joint_unit),
       pair: state === BLOCKED ? this.blockers[this.causes[k]] : null,
@@ -41,7 +42,8 @@ export class Cells {
     if (state === LIMIT) return `limit of ${this.jointNames[this.causes[k]]}`;
     if (state === BLOCKED) return `blocked by ${this.blockers[this.causes[k]].join(' - ')}`;
     if (state === FREE) return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
-    return { [NO_IK]: 'no node: out of reach, or beside the given start', [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
+    const none = this.panels.some(({ rolls }) => rolls) ? 'no node: out of reach, beside the given start, or turned further than allowed' : 'no node: out of reach, or beside the given start';
+    return { [NO_IK]: none, [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
   }
   colour(k, { nothing, unseen }) {
     const state = this.state(k);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The (s, phi) map drawn: a panel for each branch, the cells, the path above.
+// The (s, phi) map drawn: a panel for each branch, where the tool may turn one more for its roll, the cells, the path above.
 import * as Plot from '@observablehq/plot';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
@@ -25,6 +25,7 @@ export class Panels {
     });
     // The panels that hold the path come first.
     const used = new Set(rows.map((row) => row.sheet));
+    for (const panel of this.panels) if (panel.rolls && used.size) used.add(panel.sheet);
     this.panels.sort((a, b) => used.has(b.sheet) - used.has(a.sheet) || a.index - b.index);
     this.panels.forEach((panel) => panel.box.classList.toggle('other', used.size > 0 && !used.has(panel.sheet)));
     host.append(...this.panels.map(({ box }) => box));
@@ -35,21 +36,26 @@ export class Panels {
     const layer = x.invert(event.clientX - r.left) + 0.5, angle = y.invert(event.clientY - r.top) + 0.5;
     return cells.at(index, bounded(Math.floor(layer / cells.layers_each), cells.columns), bounded(Math.floor(angle / cells.angles_each), cells.rows));
   }
+  angleOf(phi) { return ((phi + Math.PI) / (2 * Math.PI)) * this.cells.angles; }
+  /** Where a row of a path is in a panel, in cells from below; NaN: in another panel. */
+  height(panel, row) {
+    if (panel.rolls) return this.angleOf(row.roll - 2 * Math.PI * Math.round(row.roll / (2 * Math.PI)));
+    return row.sheet === panel.sheet ? row.angle : NaN;
+  }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
-    const { cells, rows, beside, cut } = this, angle = (phi) => ((phi + Math.PI) / (2 * Math.PI)) * cells.angles;
+    const { cells, rows, beside, cut } = this, letter = panel.rolls ? 'ρ' : 'φ';
     const lineOf = (path) => path.flatMap((row, k) => {
-      const last = path[k - 1], jump = last && last.sheet === row.sheet && Math.abs(last.angle - row.angle) > cells.angles / 2;
-      const point = { x: row.layer, y: row.sheet === panel.sheet ? row.angle : NaN };
+      const point = { x: row.layer, y: this.height(panel, row) }, jump = k && Math.abs(this.height(panel, path[k - 1]) - point.y) > cells.angles / 2;
       return jump ? [{ x: row.layer, y: NaN }, point] : [point];
     });
     const path = lineOf(rows), before = lineOf(beside);
-    const changes = rows.filter((row, k) => row.sheet === panel.sheet && [rows[k - 1], rows[k + 1]].some((other) => other && other.sheet !== row.sheet));
+    const changes = rows.filter((row, k) => !panel.rolls && row.sheet === panel.sheet && [rows[k - 1], rows[k + 1]].some((other) => other && other.sheet !== row.sheet));
     const large = !panel.box.classList.contains('other'), frame = { marginLeft: 38, marginRight: 12, marginTop: vector ? 26 : large ? 20 : 6, marginBottom: vector || large ? 34 : 20 };
     return Plot.plot({
       width, height, ...frame, style: { color: colours.soft, background: 'none', fontSize: '10px' },
       x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector || large ? 's, m' : null, labelArrow: 'none' },
-      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `φ, deg: ${panel.name}` : large ? 'φ, deg' : null, labelArrow: 'none', labelAnchor: 'top', ticks: kAngles.map(([phi]) => angle(phi) - (phi === Math.PI ? 0.5 : 0)),
+      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null, labelArrow: 'none', labelAnchor: 'top', ticks: kAngles.map(([phi]) => this.angleOf(phi) - (phi === Math.PI ? 0.5 : 0)),
         tickFormat: (_, k) => kAngles[k][1] },
       marks: [
         vector ? Plot.rect(this.runs(panel.index, colours), { x1: 'x1', x2: 'x2', y1: 'y1', y2: 'y2', fill: 'fill', shapeRendering: 'crispEdges' })
@@ -62,7 +68,7 @@ export class Panels {
         Plot.line(path, { x: 'x', y: 'y', stroke: '#fff', strokeWidth: 4.5 }),
         Plot.line(path, { x: 'x', y: 'y', stroke: '#000', strokeWidth: 1.8 }),
         Plot.dot(changes, { x: 'layer', y: 'angle', r: 5, fill: '#cc79a7', stroke: '#fff' }),
-        rows.length === 1 && rows[0].sheet === panel.sheet ? Plot.dot(rows, { x: 'layer', y: 'angle', r: 4, fill: '#000', stroke: '#fff' }) : null,
+        rows.length === 1 && !Number.isNaN(this.height(panel, rows[0])) ? Plot.dot(rows, { x: 'layer', y: (row) => this.height(panel, row), r: 4, fill: '#000', stroke: '#fff' }) : null,
       ],
     });
   }
@@ -139,19 +145,20 @@ export class Panels {
   draw(cursor) {
     this.cursor = cursor;
     const here = this.rows[Math.round(cursor)];
-    for (const { line, dot, sheet, x, y } of this.panels) {
+    for (const panel of this.panels) {
+      const { line, dot, x, y } = panel;
       line.hidden = !here;
-      dot.hidden = here?.sheet !== sheet;
+      dot.hidden = !here || Number.isNaN(this.height(panel, here));
       if (!here) continue;
       const left = x.apply(here.layer).toFixed(1);
       line.style.transform = `translateX(${left}px)`;
-      dot.style.transform = `translate(${left}px, ${y.apply(here.angle).toFixed(1)}px)`;
+      if (!dot.hidden) dot.style.transform = `translate(${left}px, ${y.apply(this.height(panel, here)).toFixed(1)}px)`;
     }
   }
   /** The dot alone, to another cell of its panel. */
   turn({ layer, phi, branch }) {
-    const { dot, x, y } = this.panels.find(({ name }) => name === branch), angle = ((phi + Math.PI) / (2 * Math.PI)) * this.cells.angles;
-    dot.style.transform = `translate(${x.apply(layer).toFixed(1)}px, ${y.apply(angle).toFixed(1)}px)`;
+    const { dot, x, y } = this.panels.find(({ name }) => name === branch);
+    dot.style.transform = `translate(${x.apply(layer).toFixed(1)}px, ${y.apply(this.angleOf(phi)).toFixed(1)}px)`;
   }
   /** The map as one drawing for papers. */
   figure() {

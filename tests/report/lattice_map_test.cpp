@@ -11,6 +11,7 @@
 
 #include "robots.hpp"
 #include "swivel/collision/world.hpp"
+#include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 
@@ -37,6 +38,69 @@ Drawn draw(const std::string& name, PlannerKind planner, bool full) {
   drawn.result = arm.plan(options);
   drawn.map = make_map(arm.view(), full);
   return drawn;
+}
+
+/// The panel of rolls: what plain questions say of the nodes at the path's branch and arm angle, nothing outside the windows.
+TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
+  for (const bool windows : {false, true}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / "torch_door.yaml");
+    problem.resolution.droll = 0.25;
+    problem.resolution.dphi = 0.2;
+    if (!windows) problem.scene.push_back({"ball", Sphere{0.03}, Pose(Eigen::Translation3d(0.6, 0.3, 1.0)), {}});
+    const auto n = static_cast<double>(problem.waypoints.size() - 1);
+    if (windows) problem.roll = Roll{-1, 0.8};
+    for (std::size_t k = 0; windows && k < problem.waypoints.size(); ++k)
+      problem.waypoints[k].roll = Roll{-1 + 0.6 * static_cast<double>(k) / n, 0.2 + 0.6 * static_cast<double>(k) / n};
+    Planner arm(problem);
+    const PlanResult result = arm.plan({});
+    ASSERT_EQ(result.status, PlanStatus::kSolved);
+    const PlanView view = arm.view();
+    const auto& lattice = dynamic_cast<const RollLattice&>(view.lattice);
+    const LatticeMap map = make_map(view, true);
+    ASSERT_TRUE(map.turns);
+    ASSERT_EQ(map.path_of_rolls.size(), view.path.size());
+    World::Query query(view.world);
+    std::map<NodeState, int> count;
+    const double cell = kTwoPi / map.angles;
+    for (int layer = 0; layer < map.layers; ++layer) {
+      const int on_path = view.path[static_cast<std::size_t>(layer)], inner = lattice.inner(layer, on_path);
+      const int path_cell = map.path_of_rolls[static_cast<std::size_t>(layer)] - map.sheets() * map.angles;
+      EXPECT_EQ(map.at(layer, map.sheets(), path_cell).state, NodeState::kFree) << layer;
+      const Roll window = lattice.path().layer(layer).window;
+      for (int k = 0; k < map.angles; ++k) {
+        const double roll = k * cell - kPi;
+        const LatticeMap::Node& seen = map.at(layer, map.sheets(), k);
+        ++count[seen.state];
+        int nearest = 0;
+        double least = kPi;
+        for (int rank = 0; rank < lattice.rolls(); ++rank) {
+          const double away = std::abs(std::remainder(lattice.roll_of_rank(layer, rank) - roll, kTwoPi));
+          if (away < least) least = away, nearest = rank;
+        }
+        if (windows && (roll < window.lower - 0.13 || roll > window.upper + 0.13)) {
+          ASSERT_EQ(seen.state, NodeState::kNoIk) << layer << ' ' << k;
+          continue;
+        }
+        if (least > 0.12) continue;  // between two rolls either may be told
+        const int slot = lattice.slot_of(nearest, inner);
+        const auto q = lattice.node(layer, slot);
+        ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
+        if (q) {
+          ASSERT_EQ(seen.state, query.first_below(*q, problem.limits.clearance) ? NodeState::kBlocked : NodeState::kFree);
+        } else {
+          ASSERT_EQ(seen.state == NodeState::kJointLimit, lattice.fault(layer, slot).status == NodeStatus::kLimit);
+        }
+      }
+    }
+    std::printf("%s: %d free, %d blocked, %d beyond a limit, %d none\n", windows ? "windows" : "all rolls", count[NodeState::kFree],
+                count[NodeState::kBlocked], count[NodeState::kJointLimit], count[NodeState::kNoIk]);
+    EXPECT_GT(count[NodeState::kFree], 50);
+    EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
+    EXPECT_EQ(count[NodeState::kNoIk] > 50, windows);
+    const std::string name = map.sheet_name(map.sheets());
+    EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
+    EXPECT_NE(to_svg(map).find(name), std::string::npos);
+  }
 }
 
 class Maps : public ::testing::TestWithParam<const char*> {};

@@ -33,25 +33,36 @@ struct LatticeMap {
   bool grid = true;  ///< a cell a node
   int layers = 0, angles = 0, windings = 1;
   std::vector<double> s;                                      ///< m, of each layer
-  std::vector<Node> nodes;                                    ///< [layer][sheet][angle], sheet = branch * windings + winding
+  std::vector<Node> nodes;                                    ///< [layer][panel][angle], panel = branch * windings + winding
   std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
   std::vector<int> path;  ///< one cell in each layer, sheet * angles + angle: the answer, or a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
+  /// Of a tool that may stand turned: the branches are drawn at the path's rolls, and the last panel shows the rolls from -pi to pi
+  /// at the branch and arm angle that the path has in each layer, where there is a path.
+  bool turns = false;
+  std::vector<int> path_of_rolls;  ///< one cell in each layer
 
   [[nodiscard]] int sheets() const { return kBranches * windings; }
+  [[nodiscard]] int panels() const { return sheets() + (turns ? 1 : 0); }
+  [[nodiscard]] bool shows_rolls(int panel) const { return panel == sheets(); }
+  [[nodiscard]] const std::vector<int>& path_in(int panel) const { return shows_rolls(panel) ? path_of_rolls : path; }
   [[nodiscard]] const Node& at(int layer, int sheet, int angle) const {
-    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(sheets()) + static_cast<std::size_t>(sheet)) *
+    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(panels()) + static_cast<std::size_t>(sheet)) *
                      static_cast<std::size_t>(angles) +
                  static_cast<std::size_t>(angle)];
   }
-  /// Labels that have a node, or the path.
+  /// Panels that have a node, or the path.
   [[nodiscard]] std::vector<int> inhabited_sheets() const;
   /// What blocks a blocked node, in words.
   [[nodiscard]] std::string blocker_name(const Node& node) const;
   /// "shoulder +, wrist -, elbow +", with the winding where there are several.
   [[nodiscard]] std::string sheet_name(int sheet) const;
 };
+
+/// Which of the slots of a layer at the path's branch and arm angle have rolls that the cells from -pi on stand for, -1: none.
+/// `like`: a slot of the layer; of a lattice of rolls.
+[[nodiscard]] std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int cells);
 
 /// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and generalised arm angle.
 [[nodiscard]] int map_cell(const Lattice& lattice, int layer, int slot);
