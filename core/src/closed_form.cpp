@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,6 +21,7 @@ constexpr double kGoal = 1e-11;            // m, rad: where Newton rests
 constexpr double kSame = 1e-7;             // rad: two solutions nearer than this are one
 constexpr double kAligned = 1e-7;          // sine below which two axes are aligned
 constexpr double kNearlyAligned = 1e-4;    // and below which they may be, so near a double root
+constexpr double kFarthest = 0.5;          // rad: how far beside a fold its other solution is looked for
 
 using Candidate = std::array<Angle, kSix>;
 struct Candidates {
@@ -290,6 +292,48 @@ bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
   }
 }
 
+/// Into (-pi, pi].
+void wrap(Config6& q) {
+  for (double& angle : q) angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;
+}
+
+void add_distinct(const Config6& q, ClosedForm::Solutions& result) {
+  const bool known = std::any_of(result.begin(), result.end(), [&](const Config6& other) {
+    return std::equal(q.begin(), q.end(), other.begin(), [](double x, double y) {
+      const double apart = std::abs(x - y);
+      return apart < kSame || apart > kTwoPi - kSame;
+    });
+  });
+  if (!known && result.count < ClosedForm::kMaxSolutions) result.q[static_cast<std::size_t>(result.count++)] = q;
+}
+
+/// Of a chain that is fitted nearly: the solutions beside q that Newton did not reach from the starts of the fitted chain. Near a
+/// fold the two solutions that meet there may have drawn both starts to one; where two axes are nearly aligned, the exact chain has
+/// isolated solutions where the fitted one has a family. Both lie along the right singular vector v of the least singular value s.
+/// The further the chain is from the fitted one, the larger |det J| still is where that happens: measured, up to a third of `fold`,
+/// the deviation in m or rad.
+void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, double fold, ClosedForm::Solutions& result) {
+  const Matrix6 J = chain.jacobian(q);
+  if (std::abs(J.determinant()) > fold) return;
+  const Eigen::JacobiSVD<Matrix6> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Config6 u = svd.matrixU().col(kSix - 1), v = svd.matrixV().col(kSix - 1);
+  const auto add_from = [&](double t) {
+    Config6 x = q + t * v;
+    if (!newton(chain, tool, x)) return;
+    wrap(x);
+    add_distinct(x, result);
+  };
+  // Along v the pose misses by s t + bend t^2 / 2 (along u), which vanishes once more.
+  constexpr double kDelta = 1e-4;  // rad
+  const double bend = u.dot((chain.jacobian(q + kDelta * v) - chain.jacobian(q - kDelta * v)) * v) / (2 * kDelta);
+  const double other = -2 * svd.singularValues()[kSix - 1] / bend;
+  if (std::abs(other) < kFarthest) add_from(other);
+  for (const double t : {0.1, 0.4, 1.2}) {
+    add_from(t);
+    add_from(-t);
+  }
+}
+
 /// The point nearest to three lines, and how far the farthest is; NaN where they are parallel.
 std::pair<Vector3d, double> centre_of(const SixChain& chain, std::size_t first) {
   Matrix3d A = Matrix3d::Zero();
@@ -492,15 +536,13 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Ways ways) const {
     const double miss = miss_of(product(G[kSix], chain_.home), tool);
     if (!(miss <= kGoal)) {
       if (!newton(chain_, tool, q)) continue;
-      for (double& angle : q) angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;
+      wrap(q);
     }
-    const bool known = std::any_of(result.begin(), result.end(), [&](const Config6& other) {
-      return std::equal(q.begin(), q.end(), other.begin(), [](double x, double y) {
-        const double apart = std::abs(x - y);
-        return apart < kSame || apart > kTwoPi - kSame;
-      });
-    });
-    if (!known && result.count < kMaxSolutions) result.q[static_cast<std::size_t>(result.count++)] = q;
+    add_distinct(q, result);
+  }
+  if (!fit_.exact) {
+    const double fold = std::max(fit_.deviation.offset, fit_.deviation.angle);
+    for (int k = 0; k < result.count; ++k) add_beside_fold(chain_, tool, result.q[static_cast<std::size_t>(k)], fold, result);
   }
   return result;
 }
