@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -16,9 +17,20 @@
 
 namespace swivel {
 
+namespace {
+
+using Clock = std::chrono::steady_clock;
+/// Work that is worth waking a thread, and beginning TBB and its threads. On two cores waking costs some 10 us and beginning 0.5
+/// ms.
+constexpr Clock::duration kWorthWaking = std::chrono::microseconds(40);
+constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(1);
+
+}  // namespace
+
 struct Executor::Impl {
   int threads = 1;
   Backend backend = Backend::kTbb;
+  Clock::duration alone{0};  // what the caller has worked in brief calls before threads were begun
   /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where more are asked for. Not set for
   /// fewer: the least of all controls holds for the whole process.
   std::unique_ptr<tbb::global_control> allowed;
@@ -28,10 +40,6 @@ struct Executor::Impl {
 Executor::Executor(int threads, Backend backend) : impl_(std::make_unique<Impl>()) {
   impl_->threads = threads >= 1 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   impl_->backend = backend;
-  if (backend != Backend::kTbb || impl_->threads == 1) return;
-  impl_->allowed =
-      std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(impl_->threads));
-  impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
 }
 Executor::~Executor() = default;
 Executor::Executor(Executor&&) noexcept = default;
@@ -42,24 +50,43 @@ int Executor::threads() const {
 }
 
 void Executor::for_each(int count, const std::function<void(int, int)>& body) {
-  if (impl_->threads == 1 || count <= 1) {
-    for (int index = 0; index < count; ++index) body(index, 0);
-    return;
+  if (impl_->threads > 1 && count > 1) return share(0, count, body);
+  for (int index = 0; index < count; ++index) body(index, 0);
+}
+
+void Executor::for_each_brief(int count, const std::function<void(int, int)>& body) {
+  if (impl_->threads == 1 || count <= 1 || impl_->backend != Backend::kTbb) return for_each(count, body);
+  const Clock::time_point begin = Clock::now();
+  for (int index = 0; index < count; ++index) {
+    const Clock::duration lasted = Clock::now() - begin;
+    const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
+    if (left > std::max(kWorthWaking, impl_->arena ? kWorthWaking : kWorthBeginning - impl_->alone))
+      return share(index, count, body);
+    body(index, 0);
   }
+  if (!impl_->arena) impl_->alone += Clock::now() - begin;
+}
+
+void Executor::share(int first, int count, const std::function<void(int, int)>& body) {
   if (impl_->backend == Backend::kTbb) {
+    if (!impl_->arena) {
+      impl_->allowed = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                             static_cast<std::size_t>(impl_->threads));
+      impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
+    }
     impl_->arena->execute([&] {
-      tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
+      tbb::parallel_for(tbb::blocked_range<int>(first, count, 1), [&](const tbb::blocked_range<int>& range) {
         const int worker = tbb::this_task_arena::current_thread_index();
         for (int index = range.begin(); index != range.end(); ++index) body(index, worker);
       });
     });
     return;
   }
-  std::atomic<int> next{0};
+  std::atomic<int> next{first};
   std::exception_ptr failure;
   std::mutex failure_mutex;
   std::vector<std::thread> workers;
-  for (int worker = 0; worker < std::min(impl_->threads, count); ++worker)
+  for (int worker = 0; worker < std::min(impl_->threads, count - first); ++worker)
     workers.emplace_back([&, worker] {
       try {
         for (int index; (index = next.fetch_add(1)) < count;) body(index, worker);

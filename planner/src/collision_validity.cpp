@@ -58,7 +58,7 @@ void CollisionValidity::ask_open(const Ask& ask) {
   if (partitions_.empty())
     return executor_->for_each(count,
                                [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
-  executor_->for_each(runs, [&](int partition, int worker) {
+  executor_->for_each_brief(runs, [&](int partition, int worker) {
     for (int index = count * partition / runs; index < count * (partition + 1) / runs; ++index)
       at(index, worker, partitions_[static_cast<std::size_t>(partition)]);
   });

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -17,24 +18,32 @@ using namespace test;
 
 class Backends : public testing::TestWithParam<Executor::Backend> {};
 
-TEST_P(Backends, ForEachVisitsEveryIndexOnceAndPassesExceptionsOn) {
-  for (const int threads : {1, 2, 3, 8}) {
-    Executor executor(threads, GetParam());
-    EXPECT_EQ(executor.threads(), threads);
-    for (const int count : {0, 1, 7, 1000}) {
-      std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
-      executor.for_each(count, [&](int index, int worker) {
-        EXPECT_LT(worker, threads);
-        ++visits[static_cast<std::size_t>(index)];
-      });
-      for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+TEST_P(Backends, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
+  using Method = void (Executor::*)(int, const std::function<void(int, int)>&);
+  for (const Method for_each : {Method(&Executor::for_each), Method(&Executor::for_each_brief)})
+    for (const int threads : {1, 2, 3, 8}) {
+      Executor executor(threads, GetParam());
+      EXPECT_EQ(executor.threads(), threads);
+      // A million steps of work an index are worth sharing, none are not.
+      for (const int count : {0, 1, 7, 1000})
+        for (const int work : {0, 1000000}) {
+          if (count == 1000 && work > 0) continue;
+          std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
+          (executor.*for_each)(count, [&](int index, int worker) {
+            EXPECT_GE(worker, 0);
+            EXPECT_LT(worker, threads);
+            for (volatile int step = 0; step < work; step = step + 1) continue;
+            ++visits[static_cast<std::size_t>(index)];
+          });
+          for (const auto& visit : visits) EXPECT_EQ(visit, 1);
+        }
+      for (const int failing : {0, 17, 49})
+        EXPECT_THROW((executor.*for_each)(50,
+                                          [&](int index, int) {
+                                            if (index == failing) throw std::runtime_error("x");
+                                          }),
+                     std::runtime_error);
     }
-    EXPECT_THROW(executor.for_each(50,
-                                   [](int index, int) {
-                                     if (index == 17) throw std::runtime_error("x");
-                                   }),
-                 std::runtime_error);
-  }
 }
 
 void expect_same(const PlanResult& result, const PlanResult& first) {

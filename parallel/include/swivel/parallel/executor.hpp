@@ -21,8 +21,13 @@ class Executor {
   /// Calls body(index, worker) for index = 0 ... count - 1, worker in 0 ... threads() - 1, each worker on one thread at a time.
   /// Exceptions of body reach the caller.
   void for_each(int count, const std::function<void(int index, int worker)>& body);
+  /// The same for calls that may be over before another thread is awake: the caller makes the first ones itself, as worker 0, and
+  /// shares out what is left once that would keep it for long. Until then no thread is begun.
+  void for_each_brief(int count, const std::function<void(int index, int worker)>& body);
 
  private:
+  void share(int first, int count, const std::function<void(int index, int worker)>& body);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
