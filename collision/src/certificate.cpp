@@ -100,7 +100,7 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
   const Range range(d, margin, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
-  const Proof surface = range.of(other.shape->triangles->distance(there, range.low, range.far, triangle));
+  const Proof surface = range.of(other.shape->triangles().distance(there, range.low, range.far, triangle));
   return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
@@ -132,12 +132,12 @@ bool any_point(const Holds& holds, const Triangle& t) {
 /// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`; deeper in it than -low
 /// where that is below zero. False for bodies of other kinds.
 bool finds_deeper(double low, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
-  if (solid.shape->kind != FclShape::Kind::kSolid || !body.shape->triangles) return false;
+  if (solid.shape->kind != FclShape::Kind::kSolid || !body.shape->has_triangles()) return false;
   const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
   const auto seek = [&](const auto& shape) {
     const auto gap = [&](const Vector3d& p) { return signed_distance(shape, to_solid * p); };
     const auto nearer = [&](const Vector3d& p) { return is_nearer(shape, to_solid * p, low); };
-    return body.shape->triangles->seek(
+    return body.shape->triangles().seek(
         low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, first);
   };
   if (const auto* box = std::get_if<Box>(&solid.shape->shape)) return seek(*box);
@@ -154,18 +154,18 @@ bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& b
 
 double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  return a.shape->triangles->distance(*b.shape->triangles, b_in_a, enough, limit, witness);
+  return a.shape->triangles().distance(b.shape->triangles(), b_in_a, enough, limit, witness);
 }
 
 double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& witness) {
-  if (!a.shape->triangles || !b.shape->triangles) return std::numeric_limits<double>::infinity();
-  return a.shape->triangles->distance_at(*b.shape->triangles, a.pose->inverse(Eigen::Isometry) * *b.pose, witness);
+  if (!a.shape->has_triangles() || !b.shape->has_triangles()) return std::numeric_limits<double>::infinity();
+  return a.shape->triangles().distance_at(b.shape->triangles(), a.pose->inverse(Eigen::Isometry) * *b.pose, witness);
 }
 
 namespace {
 
 Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
-  if (!a.shape->triangles || !b.shape->triangles) return {};
+  if (!a.shape->has_triangles() || !b.shape->has_triangles()) return {};
   const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
   if (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)) return kCollides;
   const Proof surface = range.of(surface_distance(a, b, range.low, range.far, witness));
@@ -184,7 +184,7 @@ Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double m
 }
 
 bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {
-  return a.shape->triangles && b.shape->triangles && a.shape->beyond_triangles == 0 && b.shape->beyond_triangles == 0;
+  return a.shape->has_triangles() && b.shape->has_triangles() && a.shape->beyond_triangles == 0 && b.shape->beyond_triangles == 0;
 }
 
 double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
@@ -212,7 +212,7 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
     const double radius = radius_of(a.shape->shape);
     const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
     const auto nearer = [&](const Vector3d& p) { return gap(p) < low; };
-    return b.shape->triangles->seek(
+    return b.shape->triangles().seek(
         low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, witness.b);
   }
   int unused = 0;  // nothing but the distance of the core decides where b has no triangles of its own

@@ -15,12 +15,14 @@ namespace swivel::detail {
 namespace {
 
 template <class Tree>
-void build(Tree& tree, const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& with_area) {
+std::unique_ptr<Tree> fcl_tree(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& with_area) {
   std::vector<fcl::Triangle> triangles;
   for (const auto& t : with_area) triangles.emplace_back(t[0], t[1], t[2]);
-  tree.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
-  tree.addSubModel(mesh.vertices, triangles);
-  tree.endModel();
+  auto tree = std::make_unique<Tree>();
+  tree->beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
+  tree->addSubModel(mesh.vertices, triangles);
+  tree->endModel();
+  return tree;
 }
 
 std::shared_ptr<const TriangleTree> tree_of_all(const TriangleMesh& mesh) {
@@ -38,21 +40,32 @@ struct PrimitiveVisitor {
 
 }  // namespace
 
-MeshModel::MeshModel(MeshPtr mesh)
-    : mesh_(std::move(mesh)), with_area_(triangles_with_area(*mesh_)), triangles_(tree_of(*mesh_, with_area_)) {
-  if (!triangles_) throw InputError(mesh_->source + ": mesh: no triangle with an area: allowed is at least one");
-  if (mesh_->closed) solid_.emplace(*mesh_);
-  part_points_ = one_point_per_part(*mesh_);
+MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)), with_area_(triangles_with_area(*mesh_)) {
+  if (with_area_.empty()) throw InputError(mesh_->source + ": mesh: no triangle with an area: allowed is at least one");
+}
+
+const TriangleTree& MeshModel::triangles() const {
+  return triangles_.get([this] { return tree_of(*mesh_, with_area_); });
 }
 
 const fcl::BVHModel<fcl::OBBd>& MeshModel::boolean_tree() const {
-  std::call_once(boolean_tree_once_, [this] { build(boolean_tree_, *mesh_, with_area_); });
-  return boolean_tree_;
+  return boolean_tree_.get([this] { return fcl_tree<fcl::BVHModel<fcl::OBBd>>(*mesh_, with_area_); });
 }
 
 const fcl::BVHModel<fcl::RSSd>& MeshModel::distance_tree() const {
-  std::call_once(distance_tree_once_, [this] { build(distance_tree_, *mesh_, with_area_); });
-  return distance_tree_;
+  return distance_tree_.get([this] { return fcl_tree<fcl::BVHModel<fcl::RSSd>>(*mesh_, with_area_); });
+}
+
+bool MeshModel::is_closed() const {
+  return mesh_->closed;
+}
+
+const ClosedMesh& MeshModel::solid() const {
+  return solid_.get([this] { return std::make_unique<ClosedMesh>(*mesh_); });
+}
+
+const std::vector<Vector3d>& MeshModel::part_points() const {
+  return part_points_.get([this] { return std::make_unique<std::vector<Vector3d>>(one_point_per_part(*mesh_)); });
 }
 
 std::unique_ptr<fcl::BVHModel<fcl::RSSd>> MeshModel::distance_tree_of(const std::vector<int>& places) const {
@@ -79,14 +92,13 @@ FclShape make_fcl_shape(const Shape& shape, MeshStore& store) {
   if (const auto* mesh = std::get_if<MeshPtr>(&shape)) {
     result.kind = FclShape::Kind::kMesh;
     result.mesh = store.model(*mesh);
-    result.triangles = result.mesh->triangles();
   } else {
     const bool round = std::holds_alternative<Sphere>(shape) || std::holds_alternative<Capsule>(shape);
     result.kind = round ? FclShape::Kind::kRound : FclShape::Kind::kSolid;
     result.geometry = std::visit(PrimitiveVisitor{}, shape);
-    if (const auto* box = std::get_if<Box>(&shape)) result.triangles = tree_of_all(surface_of(*box));
+    if (const auto* box = std::get_if<Box>(&shape)) result.surface = tree_of_all(surface_of(*box));
     if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-      result.triangles = tree_of_all(surface_of(*cylinder));
+      result.surface = tree_of_all(surface_of(*cylinder));
       result.beyond_triangles = beyond_prism(*cylinder);
     }
   }

@@ -7,46 +7,45 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "bound.hpp"
 #include "closed_mesh.hpp"
+#include "lazy.hpp"
 #include "polyhedron.hpp"
 #include "swivel/core/shape.hpp"
 
 namespace swivel::detail {
 
-/// What collision needs of one mesh, computed once. Const calls are safe from many threads.
+/// What collision needs of one mesh. Each part is computed when it is first asked for: certificates leave FCL few questions, and
+/// boxes about a link are often all that is asked of it. Const calls are safe from many threads.
 class MeshModel {
  public:
   /// Throws InputError for a mesh without a triangle that has an area.
   explicit MeshModel(MeshPtr mesh);
   /// For certificates.
-  [[nodiscard]] const std::shared_ptr<const TriangleTree>& triangles() const { return triangles_; }
-  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test. FCL's trees are built
-  /// at the first call, since certificates leave few questions, and many worlds ask booleans only.
+  [[nodiscard]] const TriangleTree& triangles() const;
+  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
   [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const;
   /// For distances, which an OBB cannot bound.
   [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
   /// The same of some of the triangles that triangles() was made of, by their places there; at least one.
   [[nodiscard]] std::unique_ptr<fcl::BVHModel<fcl::RSSd>> distance_tree_of(const std::vector<int>& places) const;
-  /// Set when the mesh is closed.
-  [[nodiscard]] const std::optional<ClosedMesh>& solid() const { return solid_; }
+  [[nodiscard]] bool is_closed() const;
+  /// Of a mesh that is closed.
+  [[nodiscard]] const ClosedMesh& solid() const;
   /// A point of every connected part.
-  [[nodiscard]] const std::vector<Vector3d>& part_points() const { return part_points_; }
+  [[nodiscard]] const std::vector<Vector3d>& part_points() const;
 
  private:
   MeshPtr mesh_;
   std::vector<std::array<int, 3>> with_area_;
-  std::shared_ptr<const TriangleTree> triangles_;  // shared: every shape made of the mesh
-  std::optional<ClosedMesh> solid_;
-  std::vector<Vector3d> part_points_;
-  mutable std::once_flag boolean_tree_once_, distance_tree_once_;
-  mutable fcl::BVHModel<fcl::OBBd> boolean_tree_;
-  mutable fcl::BVHModel<fcl::RSSd> distance_tree_;
+  Lazy<TriangleTree> triangles_;
+  Lazy<ClosedMesh> solid_;
+  Lazy<std::vector<Vector3d>> part_points_;
+  Lazy<fcl::BVHModel<fcl::OBBd>> boolean_tree_;
+  Lazy<fcl::BVHModel<fcl::RSSd>> distance_tree_;
 };
 
 /// Models by mesh, so that one file serves many links, and one world's trees the next world.
@@ -65,9 +64,12 @@ struct FclShape {
   Shape shape;
   std::shared_ptr<const fcl::CollisionGeometryd> geometry;  // shared: worlds of one robot; null for a mesh
   std::shared_ptr<const MeshModel> mesh;                    // shared through the store; null unless a mesh
-  std::shared_ptr<const TriangleTree> triangles;            // shared: the same; the surface of a box or mesh, a prism in a cylinder
+  std::shared_ptr<const TriangleTree> surface;              // shared: the same; of a box, of a prism in a cylinder; null for others
   double beyond_triangles = 0;                              // no point of the cylinder is further from its prism, m
   Bound bound;
+  [[nodiscard]] bool has_triangles() const { return mesh || surface; }
+  /// The surface of a mesh or box, or of a prism in a cylinder.
+  [[nodiscard]] const TriangleTree& triangles() const { return mesh ? mesh->triangles() : *surface; }
   /// What FCL is asked for distances about.
   [[nodiscard]] const fcl::CollisionGeometryd& distance_geometry() const { return mesh ? mesh->distance_tree() : *geometry; }
 };

@@ -114,7 +114,7 @@ double PairTest::whole_distance(const PlacedShapeRef& a, const PlacedShapeRef& b
 double PairTest::near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double limit, double bound) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   const double beyond = a.shape->beyond_triangles + b.shape->beyond_triangles;
-  const auto near = a.shape->triangles->nearer(*b.shape->triangles, b_in_a, limit + beyond);
+  const auto near = a.shape->triangles().nearer(b.shape->triangles(), b_in_a, limit + beyond);
   if (near[0].empty()) return bound;
   const auto part_a = a.shape->mesh ? a.shape->mesh->distance_tree_of(near[0]) : nullptr;
   const auto part_b = b.shape->mesh ? b.shape->mesh->distance_tree_of(near[1]) : nullptr;

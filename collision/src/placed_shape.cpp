@@ -10,8 +10,8 @@ namespace {
 
 /// A point of `inner` lies in the solid mesh `outer`.
 bool holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
-  if (!outer.shape->mesh || !outer.shape->mesh->solid()) return false;
-  const ClosedMesh& solid = *outer.shape->mesh->solid();
+  if (!outer.shape->mesh || !outer.shape->mesh->is_closed()) return false;
+  const ClosedMesh& solid = outer.shape->mesh->solid();
   const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;
   if (!inner.shape->mesh) return solid.contains(to_outer.translation());
   const auto& points = inner.shape->mesh->part_points();

@@ -29,11 +29,11 @@ std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh) {
   return triangles;
 }
 
-std::shared_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some) {
+std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some) {
   std::vector<Triangle> triangles;
   triangles.reserve(some.size());
   for (const auto& t : some) triangles.emplace_back(at(mesh, t[0]), at(mesh, t[1]), at(mesh, t[2]));
-  return triangles.empty() ? nullptr : std::make_shared<const TriangleTree>(std::move(triangles));
+  return triangles.empty() ? nullptr : std::make_unique<const TriangleTree>(std::move(triangles));
 }
 
 TriangleMesh surface_of(const Box& box) {

@@ -11,7 +11,7 @@ namespace swivel::detail {
 /// returns an unset distance for a triangle without area.
 [[nodiscard]] std::vector<std::array<int, 3>> triangles_with_area(const TriangleMesh& mesh);
 /// Of these triangles of the mesh; null where there are none.
-[[nodiscard]] std::shared_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some);
+[[nodiscard]] std::unique_ptr<const TriangleTree> tree_of(const TriangleMesh& mesh, const std::vector<std::array<int, 3>>& some);
 
 [[nodiscard]] TriangleMesh surface_of(const Box& box);
 /// A prism inside the cylinder. No point of the cylinder is further than `beyond_prism` from it, m.

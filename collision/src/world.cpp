@@ -109,9 +109,11 @@ struct World::Impl {
   [[nodiscard]] double required(std::size_t k, const Level& level) const {
     return keeps[k][static_cast<std::size_t>(level.keep)] + level.more;
   }
+  /// Of two bodies of the robot. `pairs` has these last.
+  [[nodiscard]] bool is_own(const BodyPair& p) const { return p.b < static_cast<int>(robot->bodies.size()); }
   [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
     if (level.keep == Keep::kNothing) return level.more;
-    if (p.b >= static_cast<int>(robot->bodies.size())) return required(0, level);
+    if (!is_own(p)) return required(0, level);
     return required(*number_of(p), level);
   }
   [[nodiscard]] std::optional<std::size_t> number_of(const BodyPair& p) const {
@@ -362,28 +364,30 @@ struct World::Query::Impl {
     return std::min(d, world->required(k, level.keep) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
   }
 
-  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& likely, bool keep) {
+  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& likely, bool keep, bool own_too = true) {
     all_certified = certificates != Certificates::kOff;
-    const auto found = first(level, likely, keep && all_certified);
+    const auto found = first(level, likely, keep && all_certified, own_too);
     (found ? own.certified_colliding : own.certified_free) += all_certified;
     return found;
   }
-  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& likely, bool keep) {
+  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& likely, bool keep, bool own_too) {
     if (likely && below(*likely, level)) return likely;
     place_bodies();
-    if (keep) return first_open(level, likely);
+    if (keep) return first_open(level, likely, own_too);
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
+      if (!own_too && world->is_own(p)) break;
       const double d = required(k, level);
       if (d >= 0 && p != likely && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
     }
     return std::nullopt;
   }
-  std::optional<BodyPair> first_open(const Level& level, const std::optional<BodyPair>& likely) {
+  std::optional<BodyPair> first_open(const Level& level, const std::optional<BodyPair>& likely, bool own_too) {
     move_on();
     find_open(level);
     for (const std::size_t k : open) {
       const BodyPair& p = world->pairs[k];
+      if (!own_too && world->is_own(p)) break;
       const double d = required(k, level);
       if (d >= 0 && p != likely && is_below(p, d, renewed(k, d))) return p;
     }
@@ -466,19 +470,17 @@ struct World::Query::Impl {
   Certificate renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
+    double bound_now = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    if (bound_now < d + kMargin) bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
+    lower_bound[k] = bound_now + so_far;
+    if (bound_now >= d + kMargin) return Certificate::kFree;
     // A clearance that the next step uses up is not worth looking for: of bodies near by design it takes most of the time.
     const double last_step = step[p.a] + step[p.b];
     const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), witness[k]) < d + last_step);
     const double margin = lasts ? kMargin : kBoundSafety;
-    const auto clear_by = [&](double bound_now) {
-      lower_bound[k] = bound_now + so_far;
-      return bound_now >= d + margin;
-    };
-    if (clear_by(ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)))) return Certificate::kFree;
-    const double bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
-    if (clear_by(bound_now)) return Certificate::kFree;
+    if (bound_now >= d + margin) return Certificate::kFree;
     const Proof proof = prove(placed(p.a), placed(p.b), d, margin, witness[k]);
-    clear_by(std::max(bound_now, proof.bound));
+    lower_bound[k] = std::max(bound_now, proof.bound) + so_far;
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
   std::optional<Clearance> nearest(const Clearance& so_far);
@@ -515,6 +517,12 @@ std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& l
   impl_->move_to(q);
   impl_->stretch.reset();
   return impl_->first_below(level, likely, true);
+}
+
+std::optional<BodyPair> World::Query::next_below_of_scene(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
+  impl_->move_to(q);
+  impl_->stretch.reset();
+  return impl_->first_below(level, likely, true, false);
 }
 
 std::optional<BodyPair> World::Query::next_below_on(const Stretch& stretch, const Config& q, const Level& level) {

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <deque>
 #include <stdexcept>
+#include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "swivel/core/timeline.hpp"
 
@@ -178,7 +180,8 @@ class Search {
   }
 
   /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
-  /// neighbours, and each found now saves a round.
+  /// neighbours, and each found now saves a round. Nodes are asked only whether the obstacles bar them: to prove that they are valid
+  /// takes the robot's own pairs, too, which are as costly as they are near by design, and few come to lie on a path.
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;
     const auto add_neighbours = [&](const Failure& x) {
@@ -199,8 +202,10 @@ class Search {
         frontier.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
                                        [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
-        if (!again && verdicts_.node(layer, slot) == Verdict::kUnknown && cost_to_go_.at(layer, slot) != kUnreachable)
-          questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure});
+        if (again || verdicts_.node(layer, slot) != Verdict::kUnknown || cost_to_go_.at(layer, slot) == kUnreachable) continue;
+        const bool only_scene = failure != kNoFailure;
+        if (only_scene && std::exchange(grown_[(std::int64_t{layer} << 32) + slot], failure) == failure) continue;
+        questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, only_scene});
       }
       left -= static_cast<int>(questions.size());
       for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) add_neighbours(node);
@@ -261,7 +266,7 @@ class Search {
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const NodeQuestion& x = questions[k];
       if (answers_[k].valid) {
-        verdicts_.keep_node(x.layer, x.slot);
+        if (!x.only_scene) verdicts_.keep_node(x.layer, x.slot);
       } else {
         if (answers_[k].shared)
           lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
@@ -306,6 +311,7 @@ class Search {
   std::int64_t asked_ = 0;  // in this round
   int left_to_grow_ = 0;    // questions about neighbours, in this round
   static constexpr std::size_t kGrownAtOnce = 32;
+  std::unordered_map<std::int64_t, FailureId> grown_;  // by layer and slot: what grow() asked about last
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;

@@ -77,8 +77,8 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
         answers[k] = known->answer;
         continue;
       }
-      open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged;
-      if (!known->valid) open.pair = known->pair;
+      open.only_changed = holds == ClearanceMemory::Holds::kUnlessChanged && !x.only_scene;
+      if (!known->valid && !x.only_scene) open.pair = known->pair;
     }
     open_.push_back(open);
   }
@@ -87,7 +87,9 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   ask_open(
       [&](Open& open, int worker, Queries& queries) { answers[open.index] = node(questions[open.index], open, worker, queries); });
   if (memory_)
-    for (const Open& open : open_) memory_->note_node(questions[open.index], answers[open.index], open.pair, open.spare);
+    for (const Open& open : open_)
+      if (const NodeQuestion& x = questions[open.index]; !x.only_scene || !answers[open.index].valid)
+        memory_->note_node(x, answers[open.index], open.pair, open.spare);
 }
 
 NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
@@ -104,7 +106,8 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q || (!open.only_changed && !lattice_->manipulable(*q))) return {};
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
-  const auto pair = query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
+  const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
+                                         : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
   if (!pair) {
     if (open.only_changed) open.spare = query.spare(Keep::kNode);
     return {.valid = true};

@@ -12,11 +12,12 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
   if (!check_) return;
   const TraceSpan span("check of states");
   states_.clear();
+  const auto open = [&](std::size_t k) { return answers[k].valid && !questions[k].only_scene; };
   for (std::size_t k = 0; k < questions.size(); ++k)
-    if (answers[k].valid) states_.push_back(state(questions[k].layer, questions[k].slot, questions[k].q));
+    if (open(k)) states_.push_back(state(questions[k].layer, questions[k].slot, questions[k].q));
   auto allowed = check_.states(states_).begin();
-  for (NodeAnswer& answer : answers)
-    if (answer.valid) answer.valid = *allowed++;
+  for (std::size_t k = 0; k < questions.size(); ++k)
+    if (open(k)) answers[k].valid = *allowed++;
 }
 
 void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

@@ -57,7 +57,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
   std::int64_t reduced = 0;
   const MeshPtr panel = testing::as_mesh(testing::panel_mesh(1.0, 0.6, 0.04, 6), "panel");
   CollisionCounters kept_counters, plain_counters;
-  std::int64_t questions = 0, pairs = 0, named = 0, turned = 0;
+  std::int64_t questions = 0, pairs = 0, named = 0, turned = 0, scene_questions = 0, only_own = 0;
   for (int s = 0; s < test::trials(40); ++s) {
     std::vector<SceneObject> scene = test::random_problem(robot, random).scene;
     scene.push_back({"panel", panel, test::random_pose(random, Vector3d(0, 0, 0.6), 0.8), {}});
@@ -79,6 +79,17 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
         const double required = special ? world.keeps(*found).node + level.more : d;
         ASSERT_TRUE(required <= kVerdictBand || plain.pair_below(q, *found, required - kVerdictBand));
         reduced += special && world.keeps(*found).node < 0.04;
+      }
+      if (random.coin(0.2)) {
+        const auto of_scene = [&]() -> std::optional<BodyPair> {
+          if (likely && plain.pair_below(q, *likely, level)) return likely;
+          for (const BodyPair& pair : world.pairs())
+            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_below(q, pair, level)) return pair;
+          return std::nullopt;
+        }();
+        ASSERT_EQ(kept.next_below_of_scene(q, level, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
+        ++scene_questions;
+        only_own += found && !of_scene;
       }
       if (random.coin(0.1)) {  // other questions to the same query disturb nothing
         const Config elsewhere = test::random_config(arm.chain, random);
@@ -104,7 +115,9 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       static_cast<double>(kept_counters.pairs_kept) / static_cast<double>(questions),
       static_cast<double>(pairs) / static_cast<double>(questions), static_cast<long long>(kept_counters.fcl_calls),
       static_cast<long long>(plain_counters.fcl_calls));
-  std::printf("%lld answers were reduced pairs\n", static_cast<long long>(reduced));
+  std::printf("%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at which only the robot's own were near\n",
+              static_cast<long long>(reduced), static_cast<long long>(scene_questions), static_cast<long long>(only_own));
+  EXPECT_GT(scene_questions, questions / 10);
   EXPECT_EQ(plain_counters.pairs_kept, 0);
   EXPECT_GT(kept_counters.pairs_kept, pairs / 4);
   // A short search for a proof that begins elsewhere may miss one now and then.

@@ -186,6 +186,9 @@ class World {
     /// With Certificates::kOff nothing is kept.
     [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, const Level& level,
                                                      const std::optional<BodyPair>& likely = {});
+    /// The same of `likely` and the pairs with the scene alone.
+    [[nodiscard]] std::optional<BodyPair> next_below_of_scene(const Config& q, const Level& level,
+                                                              const std::optional<BodyPair>& likely);
     /// The same, where more than the level's Keep is asked of a pair only as far as it can come nearer on the stretch about q.
     [[nodiscard]] std::optional<BodyPair> next_below_on(const Stretch& stretch, const Config& q, const Level& level);
     /// At the posture of the last next_below or next_below_on, which named no pair at this level: as FCL sees it, every pair's

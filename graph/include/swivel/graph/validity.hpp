@@ -18,6 +18,9 @@ struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
   FailureId likely = kNoFailure;
+  /// Nothing is asked but whether the node fails by `likely` or by what stands around the robot; where it does not, the answer is
+  /// valid and says no more than that.
+  bool only_scene = false;
 };
 struct EdgeQuestion {
   int layer = 0;  ///< of a; b lies in the next layer
