@@ -537,8 +537,7 @@ int SrsLattice::along(int layer, int slot, int by) const {
 }
 
 void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000,
-                     kTool = 0b10000000;  // bit g: of group g
+  constexpr unsigned kShoulderLinks = 0b0000110, kWristLinks = 0b1100000, kTool = 0b10000000;  // bit g: of group g
   if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();

@@ -12,6 +12,17 @@ namespace {
 
 constexpr std::size_t kRows = 8192, kSlotsApart = 67;
 
+/// Beside the pairs of bodies.
+constexpr FailureId kManipulability = -2;
+
+/// Whether a manipulability that is below its bound, `spare` < 0, is that of every node with the same elbow. Its square is a
+/// determinant of lengths of metres, which rounding changes by 1e-12.
+bool is_shared_manipulability(const Lattice& lattice, double spare) {
+  constexpr double kBand = 1e-10;
+  const double least = lattice.limits().manipulability, found = least + spare;
+  return lattice.alike_in_manipulability() != 0 && found * found < least * least - kBand;
+}
+
 }  // namespace
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
@@ -70,7 +81,7 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   for (std::size_t k = 0; k < questions.size(); ++k) {
     const NodeQuestion& x = questions[k];
     Open open{k};
-    if (x.likely != kNoFailure) open.pair = pair_of(x.likely);
+    if (x.likely >= 0) open.pair = pair_of(x.likely);
     if (const auto* known = memory_ ? memory_->node(x.layer, x.slot) : nullptr) {
       const auto holds = memory_->holds(*known);
       if (holds == ClearanceMemory::Holds::kAll) {
@@ -104,7 +115,10 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
     return failure(*likely, lattice_->stand_alike(groups_of(*world_, *likely)));
   const auto q = row(question.layer, question.slot, question.q, worker);
-  if (!q || (!open.only_changed && !lattice_->manipulable(*q))) return {};
+  if (!q) return {};
+  if (!open.only_changed)
+    if (const double spare = lattice_->manipulability_spare(*q); spare < 0)
+      return {false, is_shared_manipulability(*lattice_, spare), lattice_->alike_in_manipulability(), kManipulability};
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
                                          : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);

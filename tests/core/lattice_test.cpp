@@ -89,6 +89,36 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
   EXPECT_LT(worst, 1e-9);
 }
 
+TEST(Lattice, NodesWithOneElbowAreAsManipulable) {
+  Random random(seed("Lattice.Manipulability"));
+  std::int64_t pairs = 0;
+  double most = 0;  // difference of det(J J^T)
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(20); ++trial) {
+      const Chain chain = arm_of(robot).chain;
+      const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
+      const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
+      const SrsLattice& lattice = *small.lattice;
+      ASSERT_NE(lattice.alike_in_manipulability(), 0u);
+      std::vector<int> alike;
+      for (int layer = 0; layer < lattice.layers(); ++layer)
+        for (int slot = 0; slot < lattice.width(); ++slot) {
+          const auto q = lattice.node(layer, slot);
+          if (!q) continue;
+          lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
+          const double here = chain.manipulability(*q);
+          for (const int other : alike)
+            if (const auto there = other > slot ? lattice.node(layer, other) : std::nullopt) {
+              most = std::max(most, std::abs(std::pow(chain.manipulability(*there), 2) - here * here));
+              ++pairs;
+            }
+        }
+    }
+  std::printf("%lld pairs of nodes, determinants differ by %.1e at most\n", static_cast<long long>(pairs), most);
+  EXPECT_GE(pairs, at_least(20001));
+  EXPECT_LT(most, 1e-11);  // a tenth of what a shared verdict needs
+}
+
 TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {
   const TestRobot robot = windings_robot();
   Random random(seed("Lattice.Windings"));

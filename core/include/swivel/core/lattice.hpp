@@ -67,7 +67,9 @@ class Lattice {
   /// Replaces `out` by all nodes of a layer that exist, in the order of slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
   /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and row().
-  [[nodiscard]] bool manipulable(const Config& q) const;
+  [[nodiscard]] bool manipulable(const Config& q) const { return manipulability_spare(q) >= 0; }
+  /// By how much more than the bound a row's manipulability is; 0 where none is asked for.
+  [[nodiscard]] double manipulability_spare(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
   /// Why a node, or its row, is missing: what it fails first, and for limits which joints.
   struct NodeFault {
@@ -120,6 +122,9 @@ class Lattice {
   [[nodiscard]] virtual bool stand_alike(unsigned groups) const = 0;
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
+  /// Groups such that rows of nodes at which their bodies stand alike have the same manipulability but for rounding; 0 where there
+  /// are none.
+  [[nodiscard]] virtual unsigned alike_in_manipulability() const { return 0; }
   /// How far the row of a node, where it has one, may place the bodies that move with joint `group` of 1..7 from where the joints
   /// of a node place them, itself or one at which they stand alike. `q`: the joints of either node.
   [[nodiscard]] virtual PoseShift row_shift(int layer, int group, const Config& q) const {
