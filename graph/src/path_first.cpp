@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
-#include <utility>
 
 #include "swivel/core/timeline.hpp"
 
@@ -89,6 +88,7 @@ class Search {
     int layer, slot;
     FailureId failure;
   };
+  static std::int64_t key(int layer, int slot) { return (std::int64_t{layer} << 32) + slot; }
 
   /// Asks what the path's nodes cost, where that is not known, and sets it; true where a node costs more than was known. A
   /// node's neighbours often cost as much, and each round in which a path turns out to cost more asks about twice as many of them
@@ -99,7 +99,7 @@ class Search {
     std::unordered_set<std::int64_t> asked;
     const auto ask_about = [&](int layer, int slot) {
       if (verdicts_.knows_cost(layer, slot) || cost_to_go_.at(layer, slot) == kUnreachable) return;
-      if (!asked.insert((std::int64_t{layer} << 32) + slot).second) return;
+      if (!asked.insert(key(layer, slot)).second) return;
       if (questions.size() % 256 == 0) cost_to_go_.budget().poll();
       questions.push_back({layer, slot, cost_to_go_.config(layer, slot)});
     };
@@ -203,9 +203,8 @@ class Search {
         const bool again = std::any_of(questions.begin(), questions.end(),
                                        [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
         if (again || verdicts_.node(layer, slot) != Verdict::kUnknown || cost_to_go_.at(layer, slot) == kUnreachable) continue;
-        const bool only_scene = failure != kNoFailure;
-        if (only_scene && std::exchange(grown_[(std::int64_t{layer} << 32) + slot], failure) == failure) continue;
-        questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, only_scene});
+        if (const auto known = spared_.find(key(layer, slot)); known != spared_.end() && known->second == failure) continue;
+        questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
       }
       left -= static_cast<int>(questions.size());
       for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) add_neighbours(node);
@@ -266,7 +265,10 @@ class Search {
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const NodeQuestion& x = questions[k];
       if (answers_[k].valid) {
-        if (!x.only_scene) verdicts_.keep_node(x.layer, x.slot);
+        if (x.only_scene)
+          spared_[key(x.layer, x.slot)] = x.likely;
+        else
+          verdicts_.keep_node(x.layer, x.slot);
       } else {
         if (answers_[k].shared)
           lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
@@ -311,7 +313,7 @@ class Search {
   std::int64_t asked_ = 0;  // in this round
   int left_to_grow_ = 0;    // questions about neighbours, in this round
   static constexpr std::size_t kGrownAtOnce = 32;
-  std::unordered_map<std::int64_t, FailureId> grown_;  // by layer and slot: what grow() asked about last
+  std::unordered_map<std::int64_t, FailureId> spared_;  // by key(): what grow() asked about last, of nodes that no obstacle barred
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
