@@ -26,6 +26,7 @@ class MeshModel {
   explicit MeshModel(MeshPtr mesh);
   /// For certificates.
   [[nodiscard]] const TriangleTree& triangles() const;
+  [[nodiscard]] bool is_ready() const { return triangles_.is_made(); }
   /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
   [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const;
   /// For distances, which an OBB cannot bound.

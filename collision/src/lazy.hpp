@@ -20,6 +20,7 @@ class Lazy {
       });
     return *value_;
   }
+  [[nodiscard]] bool is_made() const { return made_.load(std::memory_order_acquire); }
 
  private:
   mutable std::once_flag once_;

@@ -242,6 +242,27 @@ bool World::has_meshes() const {
   const auto is_mesh = [](const Impl::Body& body) { return std::holds_alternative<MeshPtr>(body.shape.shape); };
   return std::any_of(impl_->bodies.begin(), impl_->bodies.end(), is_mesh);
 }
+std::size_t World::triangles_to_make_ready() const {
+  std::size_t sum = 0;
+  for (const Impl::Body& body : impl_->bodies)
+    if (const auto& mesh = body.shape.mesh; mesh && !mesh->is_ready()) sum += std::get<MeshPtr>(body.shape.shape)->triangles.size();
+  return sum;
+}
+void World::make_ready(const std::function<bool()>& stop) const {
+  const TraceSpan span("meshes made ready");
+  const auto each_mesh = [&](const auto& make) {
+    for (const BodyPair& p : impl_->pairs)
+      for (const int body : {p.a, p.b}) {
+        if (stop()) return;
+        if (const auto& mesh = impl_->body(body).shape.mesh) make(*mesh);
+      }
+  };
+  each_mesh([](const MeshModel& mesh) { static_cast<void>(mesh.triangles()); });
+  each_mesh([](const MeshModel& mesh) {
+    static_cast<void>(mesh.part_points());
+    if (mesh.is_closed()) static_cast<void>(mesh.solid());
+  });
+}
 PairKeeps World::keeps(const BodyPair& pair) const {
   return impl_->keeps_of(pair);
 }
@@ -519,7 +540,8 @@ std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& l
   return impl_->first_below(level, likely, true);
 }
 
-std::optional<BodyPair> World::Query::next_below_of_scene(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
+std::optional<BodyPair> World::Query::next_below_of_scene(const Config& q, const Level& level,
+                                                          const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
   impl_->stretch.reset();
   return impl_->first_below(level, likely, true, false);

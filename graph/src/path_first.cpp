@@ -180,8 +180,8 @@ class Search {
   }
 
   /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
-  /// neighbours, and each found now saves a round. Nodes are asked only whether the obstacles bar them: to prove that they are valid
-  /// takes the robot's own pairs, too, which are as costly as they are near by design, and few come to lie on a path.
+  /// neighbours, and each found now saves a round. Nodes are asked only whether the obstacles bar them: to prove that they are
+  /// valid takes the robot's own pairs, too, which are as costly as they are near by design, and few come to lie on a path.
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;
     const auto add_neighbours = [&](const Failure& x) {

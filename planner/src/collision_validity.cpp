@@ -121,7 +121,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
       return {false, is_shared_manipulability(*lattice_, spare), lattice_->alike_in_manipulability(), kManipulability};
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
-                                         : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
+                                        : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
   if (!pair) {
     if (open.only_changed) open.spare = query.spare(Keep::kNode);
     return {.valid = true};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "answer_check.hpp"
@@ -359,12 +360,26 @@ struct Planner::Impl {
     count(validity);
     return found;
   }
+  /// Where a second thread may run, it makes heavy meshes ready while the first one finds paths without obstacles.
+  std::jthread meshes_ahead(const PlanOptions& options) {
+    constexpr std::size_t kHeavy = 5000;  // triangles: some milliseconds
+    if (threads_of(options).threads() == 1 || world->triangles_to_make_ready() < kHeavy) return {};
+    return std::jthread([world = &*world](const std::stop_token& stop) {
+      try {
+        world->make_ready([&] { return stop.stop_requested(); });
+      } catch (...) {  // who needs it comes to the same end
+      }
+    });
+  }
   void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
     Stopwatch watch, whole;
     lay_out(budget, result);
     const EdgeRule rule = world->edge_rule(robot->radii());
     watch.lap();
-    const Found found = search(rule, options, budget, result);
+    const Found found = [&] {
+      const std::jthread ahead = meshes_ahead(options);
+      return search(rule, options, budget, result);
+    }();
     result.time_ms["find"] = watch.lap();
     const Lattice& lattice = *layout->last().lattice;
     path = found.valid_path;

@@ -115,8 +115,10 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       static_cast<double>(kept_counters.pairs_kept) / static_cast<double>(questions),
       static_cast<double>(pairs) / static_cast<double>(questions), static_cast<long long>(kept_counters.fcl_calls),
       static_cast<long long>(plain_counters.fcl_calls));
-  std::printf("%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at which only the robot's own were near\n",
-              static_cast<long long>(reduced), static_cast<long long>(scene_questions), static_cast<long long>(only_own));
+  std::printf(
+      "%lld answers were reduced pairs; %lld questions about the scene alone, %lld of them at which only the robot's own were "
+      "near\n",
+      static_cast<long long>(reduced), static_cast<long long>(scene_questions), static_cast<long long>(only_own));
   EXPECT_GT(scene_questions, questions / 10);
   EXPECT_EQ(plain_counters.pairs_kept, 0);
   EXPECT_GT(kept_counters.pairs_kept, pairs / 4);

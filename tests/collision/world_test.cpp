@@ -201,12 +201,18 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
   EXPECT_GT(free, 50);
   EXPECT_LT(free, 950);
 
+  // Its meshes are made ready by whoever comes first.
+  const World fresh(robot, arm_of(robot), problem);
+  const std::size_t triangles = fresh.triangles_to_make_ready();
+  EXPECT_GT(triangles, 200u);
+  fresh.make_ready([] { return true; });
+  EXPECT_EQ(fresh.triangles_to_make_ready(), triangles);
   std::vector<std::vector<Answer>> answers(4, std::vector<Answer>(questions.size()));
   std::vector<std::vector<double>> clearances(4);
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < 4; ++t)
     threads.emplace_back([&, t] {
-      World::Query own(world);
+      World::Query own(fresh, t < 2 ? Certificates::kOff : Certificates::kOn);
       const std::size_t n = questions.size();
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t i = t % 2 ? n - 1 - k : (k + t * n / 4) % n;
@@ -215,7 +221,9 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
       for (std::size_t k = 0; k < 20; ++k)
         clearances[t].push_back(own.clearance(questions[k].q)->distance);  // builds the lazy trees
     });
+  threads.emplace_back([&] { fresh.make_ready([] { return false; }); });
   for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(fresh.triangles_to_make_ready(), 0u);
   for (std::size_t t = 0; t < 4; ++t) {
     EXPECT_EQ(answers[t], serial);
     EXPECT_EQ(clearances[t], clearances[0]);

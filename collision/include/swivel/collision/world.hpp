@@ -155,6 +155,11 @@ class World {
   [[nodiscard]] double displacement(int object, const Pose& from, const Pose& to) const;
   /// Of the robot or the scene: questions then take a hundred times as long.
   [[nodiscard]] bool has_meshes() const;
+  /// Of the meshes that make_ready() would begin with.
+  [[nodiscard]] std::size_t triangles_to_make_ready() const;
+  /// Makes ready what questions about meshes need (trees of their triangles), in the order of pairs(), until `stop` says so; what
+  /// is left is made where it is first needed. Safe beside questions on other threads.
+  void make_ready(const std::function<bool()>& stop) const;
   /// One of pairs(): what it must keep, by the limits of this world.
   [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const;
   /// What is asked of a pair, by its place in pairs(), m: its PairKeeps less what this world forgives. Less than zero where it is

@@ -128,8 +128,8 @@ class SrsLattice final : public Lattice {
   /// angle and sign of the elbow do; links 1 and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's.
   [[nodiscard]] bool stand_alike(unsigned) const override { return true; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
-  /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or turn it round, which turns a column
-  /// of J round and leaves J J^T as it is.
+  /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or turn it round, which turns a
+  /// column of J round and leaves J J^T as it is.
   [[nodiscard]] unsigned alike_in_manipulability() const override { return has_own_rows() ? 0 : kElbowLinks; }
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
