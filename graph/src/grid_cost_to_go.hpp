@@ -16,7 +16,8 @@ namespace swivel {
 ///
 /// Extent::kBounded leaves out what cannot matter: nodes that CoarseBound proves to lie on no path of cost `limit` or less. best()
 /// is exact then as well, and so is at() on every best path: as long as best() <= limit no path that matters is missing, and where
-/// it comes to be more, the limit is raised and the sweep repeated. Bounded only where the goal is the last layer.
+/// it comes to be more, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for goals before the last
+/// layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is left.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. LayerJoints are solved again where
 /// they are wanted again, but after the first repair of a lattice of up to a million nodes: there they are kept, 40 bytes a node of
@@ -98,14 +99,36 @@ class GridCostToGo final : public CostToGo {
   void relax_removed(Workspace& workspace);
   void clear_values();  // everything is unreachable
   void sweep_once();
-  void raise_limit();
+  void limit_by_reach();
+  /// False where the goal is out of reach, whatever the limit.
+  bool raise_limit();
   void raise_limit_until_exact();
+  /// What the nodes of a layer cost from layer 0 on, or less; null where nothing is known of the layer.
+  [[nodiscard]] const float* cost_before(int layer) const;
+  void keep_reach(int layer, const Workspace& workspace);
+  [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
+  void forget_reach() {
+    reach_.known = false;
+    reach_.slack = Reach().slack;
+  }
   void propagate_removals();
 
   const SrsLattice* lattice_;
   bool bounded_;
   std::unique_ptr<CoarseBound> coarse_bound_;  // made by the first bounded sweep
   double limit_ = kUnreachable;
+  /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the deepest.
+  struct Reach {
+    static constexpr int kStride = 4;
+    bool known = false;
+    std::int64_t removed = 0;  // what was removed by then
+    int deepest = -1;
+    double best = kUnreachable;  // of the deepest
+    std::vector<float> rows;     // [layer / kStride][slot], the deepest last; rounded down
+    double slack = 0.5;          // of the next limit over `best`
+  };
+  Reach reach_;
+  bool by_reach_ = false;  // nodes are held to the limit by reach_, not by the coarse bound
   TileTable tiles_;
   struct {
     int goal = 0;

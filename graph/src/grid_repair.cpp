@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What remains of the lattice after removals: values made exact again, and how far layer 0 still reaches.
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "grid_tiles.hpp"
 #include "swivel/core/timeline.hpp"
@@ -201,8 +203,26 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
   return best;
 }
 
+void GridCostToGo::keep_reach(int layer, const Workspace& workspace) {
+  constexpr double kMost = 1e30;  // more than any limit
+  const int n = lattice_->angles();
+  const auto width = static_cast<std::size_t>(lattice_->width());
+  const auto row = static_cast<std::size_t>((layer + Reach::kStride - 1) / Reach::kStride);
+  reach_.rows.resize(row * width);
+  reach_.rows.resize((row + 1) * width, std::numeric_limits<float>::infinity());
+  reach_.best = kUnreachable;
+  for (const Tile& tile : workspace.tiles)
+    for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot) {
+      const double cost = workspace.row[static_cast<std::size_t>(slot)];
+      reach_.best = std::min(reach_.best, cost);
+      reach_.rows[row * width + static_cast<std::size_t>(slot)] = std::nextafter(static_cast<float>(std::min(cost, kMost)), 0.0F);
+    }
+}
+
 int GridCostToGo::deepest_reachable() {
+  if (knows_reach()) return reach_.deepest;
   const TraceSpan span("reach");
+  reach_.known = false;
   const int n = lattice_->angles();
   Workspace* before = workspace_[0].get();
   Workspace* here = workspace_[1].get();
@@ -211,6 +231,8 @@ int GridCostToGo::deepest_reachable() {
   if (before->sheets.empty()) return -1;
   int layer = 1;
   for (; layer < lattice_->layers(); ++layer) {
+    budget_.poll();
+    if ((layer - 1) % Reach::kStride == 0) keep_reach(layer - 1, *before);
     begin_layer(layer, *here);
     const auto step_one = [&](int slot) {
       const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
@@ -247,7 +269,10 @@ int GridCostToGo::deepest_reachable() {
     if (here->sheets.empty()) break;
     std::swap(before, here);
   }
-  return layer - 1;
+  keep_reach(layer - 1, *before);
+  reach_.known = true;
+  reach_.removed = verdicts_.removed();
+  return reach_.deepest = layer - 1;
 }
 
 }  // namespace swivel

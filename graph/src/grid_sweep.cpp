@@ -62,7 +62,7 @@ void GridCostToGo::apply_masks(Workspace& workspace) const {
 void GridCostToGo::prune_above_limit(Workspace& workspace) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
-  const float* bound = coarse_bound_->row(workspace.layer);
+  const float* bound = cost_before(workspace.layer);
   for (const Tile& tile : workspace.tiles) {
     if (!tile.live) continue;
     const int slot = tile.sheet * n + tile.begin(), count = tile.end(n) - tile.begin();
@@ -106,6 +106,8 @@ void GridCostToGo::save() {
 }
 
 void GridCostToGo::restore() {
+  forget_reach();  // there was more to reach, for less
+  by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
   tiles_.restore(saved_.tiles);
@@ -113,36 +115,61 @@ void GridCostToGo::restore() {
 
 void GridCostToGo::compute(int goal_layer) {
   limit_ = kUnreachable;
+  by_reach_ = false;
   bool hopeless = false;
   for (int layer = 0; layer <= goal_ && !hopeless; ++layer) hopeless = !lattice_->alive(layer);
-  if (!hopeless && bounded_ && goal_layer == lattice_->layers() - 1) {
-    if (!coarse_bound_) {
-      coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_);
-      ik_nodes_ += coarse_bound_->ik_nodes();
+  if (goal_layer == lattice_->layers() - 1) {
+    forget_reach();
+    if (!hopeless && bounded_) {
+      if (!coarse_bound_) {
+        coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_);
+        ik_nodes_ += coarse_bound_->ik_nodes();
+      }
+      hopeless = coarse_bound_->best() == kUnreachable || !raise_limit();
     }
-    hopeless = coarse_bound_->best() == kUnreachable;
-    if (!hopeless) raise_limit();
+  } else if (bounded_ && knows_reach() && reach_.deepest == goal_layer) {
+    limit_by_reach();
   }
   if (hopeless) return clear_values();
   sweep_once();
   raise_limit_until_exact();
 }
 
-void GridCostToGo::raise_limit() {
-  if (coarse_bound_->row(0)) {
+const float* GridCostToGo::cost_before(int layer) const {
+  if (!by_reach_) return coarse_bound_ ? coarse_bound_->row(layer) : nullptr;
+  if (layer > reach_.deepest || (layer % Reach::kStride != 0 && layer != reach_.deepest)) return nullptr;
+  const int row = (layer + Reach::kStride - 1) / Reach::kStride;
+  return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
+}
+
+/// For a goal that is reached: the best path to it costs what was found on the way there.
+void GridCostToGo::limit_by_reach() {
+  constexpr double kMost = 1e29;  // beyond which costs are not told apart
+  limit_ = kUnreachable;
+  by_reach_ = reach_.best < kMost;
+  for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);  // of nodes it knows nothing
+  if (!by_reach_) return;
+  limit_ = (1 + reach_.slack) * reach_.best;
+  reach_.slack *= 2;
+}
+
+bool GridCostToGo::raise_limit() {
+  if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
     const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     for (const double share : {0.01, 0.2, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
       limit_ = least * (1 + share);
-      if (limit_ > passed && (found == kUnreachable || found <= limit_)) return;
+      if (limit_ > passed && (found == kUnreachable || found <= limit_)) return true;
     }
   }
-  limit_ = kUnreachable;
+  if (deepest_reachable() < goal_) return false;
+  limit_by_reach();
+  return true;
 }
 
 void GridCostToGo::raise_limit_until_exact() {
   while (limit_ != kUnreachable && !(best() <= limit_)) {
-    raise_limit();
+    if (!raise_limit()) return clear_values();
     sweep_once();
   }
 }

@@ -57,7 +57,7 @@ std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
 
 TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   Random random(seed("Bounded"));
-  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0;
+  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0;
   std::int64_t whole_ik = 0, bounded_ik = 0;
   double tightest = 0;
   for (const TestRobot& robot : all_robots()) {
@@ -133,17 +133,33 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         whole.sweep(deepest);
         bounded.sweep(deepest);
         ASSERT_EQ(bounded.best(), whole.best());
+        for (int round = 0; round < 4 && whole.best() != kUnreachable; ++round) {
+          std::int64_t expansions = 0;
+          const SlotPath best = best_path(whole, expansions);
+          ASSERT_EQ(best_path(bounded, expansions), best);
+          const int layer = random.below(deepest + 1);
+          for (GridCostToGo* cost_to_go : {&whole, &bounded}) {
+            cost_to_go->verdicts().remove_node(layer, best[static_cast<std::size_t>(layer)]);
+            cost_to_go->repair();
+          }
+          ASSERT_EQ(bounded.best(), whole.best());
+          ++to_deepest;
+        }
+        ASSERT_EQ(bounded.deepest_reachable(), whole.deepest_reachable());
       }
     }
   }
   std::printf(
-      "%d problems, %d rounds, optimum changed %d times, %d ended without a path; %d bounds held, up to %.4f of the cost; first "
+      "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from paths to the deepest layer; %d "
+      "bounds held, up to %.4f of the cost; first "
       "sweeps "
       "solved %.1f %% of the whole's nodes\n",
-      problems, rounds, changed, ended, bounds, tightest, 100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik));
+      problems, rounds, changed, ended, to_deepest, bounds, tightest,
+      100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik));
   EXPECT_GE(rounds, at_least(3 * problems + 1));
   EXPECT_GE(changed, at_least(problems + 1));
   EXPECT_GE(ended, at_least(4));
+  EXPECT_GE(to_deepest, at_least(10));
   EXPECT_GE(bounds, at_least(1001));
   EXPECT_GT(tightest, 0.99);
 }
