@@ -25,6 +25,8 @@ constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much p
 constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 constexpr std::size_t kLastJoint = kDof - 1;
+/// Of groups of links, as of stand_alike().
+constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000, kTool = 0b10000000;
 
 int wrapped_index(long long j, int n) {
   return static_cast<int>(((j % n) + n) % n);
@@ -537,7 +539,6 @@ int SrsLattice::along(int layer, int slot, int by) const {
 }
 
 void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  constexpr unsigned kShoulderLinks = 0b0000110, kWristLinks = 0b1100000, kTool = 0b10000000;  // bit g: of group g
   if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();
@@ -551,6 +552,10 @@ void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& o
   if (all_angles || moved(layer).empty()) return;
   const double angle = phi(layer, slot);  // cells move sheet by sheet
   std::erase_if(out, [&](int other) { return phi(layer, other) != angle; });
+}
+
+unsigned SrsLattice::alike_in_manipulability() const {
+  return has_own_rows() ? 0 : kElbowLinks;
 }
 
 PoseShift SrsLattice::row_shift(int layer, int group, const Config& q) const {

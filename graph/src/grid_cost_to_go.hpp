@@ -109,7 +109,7 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
   void forget_reach() {
     reach_.known = false;
-    reach_.slack = Reach().slack;
+    reach_.slack = Reach::kSlack;
   }
   void propagate_removals();
 
@@ -120,12 +120,13 @@ class GridCostToGo final : public CostToGo {
   /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the deepest.
   struct Reach {
     static constexpr int kStride = 4;
+    static constexpr double kSlack = 0.5;
     bool known = false;
     std::int64_t removed = 0;  // what was removed by then
     int deepest = -1;
     double best = kUnreachable;  // of the deepest
     std::vector<float> rows;     // [layer / kStride][slot], the deepest last; rounded down
-    double slack = 0.5;          // of the next limit over `best`
+    double slack = kSlack;       // of the next limit over `best`
   };
   Reach reach_;
   bool by_reach_ = false;  // nodes are held to the limit by reach_, not by the coarse bound

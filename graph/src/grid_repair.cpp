@@ -204,7 +204,7 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
 }
 
 void GridCostToGo::keep_reach(int layer, const Workspace& workspace) {
-  constexpr double kMost = 1e30;  // more than any limit
+  constexpr double kMost = 1e30;  // that a float holds
   const int n = lattice_->angles();
   const auto width = static_cast<std::size_t>(lattice_->width());
   const auto row = static_cast<std::size_t>((layer + Reach::kStride - 1) / Reach::kStride);

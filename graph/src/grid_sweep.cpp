@@ -144,10 +144,9 @@ const float* GridCostToGo::cost_before(int layer) const {
 
 /// For a goal that is reached: the best path to it costs what was found on the way there.
 void GridCostToGo::limit_by_reach() {
-  constexpr double kMost = 1e29;  // beyond which costs are not told apart
   limit_ = kUnreachable;
-  by_reach_ = reach_.best < kMost;
-  for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);  // of nodes it knows nothing
+  by_reach_ = true;
+  for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);  // which are not in it
   if (!by_reach_) return;
   limit_ = (1 + reach_.slack) * reach_.best;
   reach_.slack *= 2;

@@ -41,47 +41,54 @@ struct Small {
   }
 };
 
+/// Some of every robot. visit(small) may end the test by a fatal failure.
+template <class Visit>
+void each_small(Random& random, const Visit& visit) {
+  for (const TestRobot& robot : all_robots())
+    for (int trial = 0; trial < trials(20) && !testing::Test::HasFatalFailure(); ++trial) {
+      const Config q0 = random_config(arm_of(robot).chain, random), q1 = nearby(q0, 0.2, random);
+      visit(Small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1}));
+    }
+}
+
 TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
   Random random(seed("Lattice.Nodes"));
   std::int64_t valid = 0, faults = 0;
   double worst = 0;
-  for (const TestRobot& robot : all_robots())
-    for (int trial = 0; trial < trials(20); ++trial) {
-      const Chain chain = arm_of(robot).chain;
-      const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
-      const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
-      const SrsLattice& lattice = *small.lattice;
-      LayerNodes nodes;
-      for (int layer = 0; layer < lattice.layers(); ++layer) {
-        lattice.solve(layer, nodes);
-        for (int slot = 0; slot < lattice.width(); ++slot) {
-          const bool exists = nodes.valid(lattice.sheet_of(slot), lattice.angle_of(slot));
-          const auto fault = lattice.fault(layer, slot);
-          const auto alone = lattice.node(layer, slot);
-          ASSERT_EQ(exists, alone.has_value());
-          if (!exists) {
-            ASSERT_NE(fault.status, NodeStatus::kValid);
-            ++faults;
-            continue;
-          }
-          ASSERT_EQ(fault.status, NodeStatus::kValid);
-          ++valid;
-          const Config q = nodes.config(lattice.sheet_of(slot), lattice.angle_of(slot));
-          ASSERT_EQ(*alone, q);  // the same bits however asked
-          const Pose reached = chain.tool(q), wanted = lattice.path().layer(layer).tool;
-          worst =
-              std::max({worst, (reached.translation() - wanted.translation()).norm(), (reached.linear() - wanted.linear()).norm()});
-          ASSERT_EQ(small.srs.branch(q), lattice.branch_of(slot));
-          ASSERT_LT(
-              std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(q)) - lattice.phi(layer, slot), kTwoPi)),
-              1e-7);
-          for (int j = 0; j < kDof; ++j) {
-            const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
-            ASSERT_TRUE(limit.continuous || (q[j] >= limit.lower - 2e-9 && q[j] <= limit.upper + 2e-9));
-          }
+  each_small(random, [&](const Small& small) {
+    const Chain& chain = small.arm.chain;
+    const SrsLattice& lattice = *small.lattice;
+    LayerNodes nodes;
+    for (int layer = 0; layer < lattice.layers(); ++layer) {
+      lattice.solve(layer, nodes);
+      for (int slot = 0; slot < lattice.width(); ++slot) {
+        const bool exists = nodes.valid(lattice.sheet_of(slot), lattice.angle_of(slot));
+        const auto fault = lattice.fault(layer, slot);
+        const auto alone = lattice.node(layer, slot);
+        ASSERT_EQ(exists, alone.has_value());
+        if (!exists) {
+          ASSERT_NE(fault.status, NodeStatus::kValid);
+          ++faults;
+          continue;
+        }
+        ASSERT_EQ(fault.status, NodeStatus::kValid);
+        ++valid;
+        const Config q = nodes.config(lattice.sheet_of(slot), lattice.angle_of(slot));
+        ASSERT_EQ(*alone, q);  // the same bits however asked
+        const Pose reached = chain.tool(q), wanted = lattice.path().layer(layer).tool;
+        worst =
+            std::max({worst, (reached.translation() - wanted.translation()).norm(), (reached.linear() - wanted.linear()).norm()});
+        ASSERT_EQ(small.srs.branch(q), lattice.branch_of(slot));
+        ASSERT_LT(
+            std::abs(std::remainder(lattice.plane(layer).angle_of(small.srs.elbow_axis(q)) - lattice.phi(layer, slot), kTwoPi)),
+            1e-7);
+        for (int j = 0; j < kDof; ++j) {
+          const JointLimit& limit = chain.limit[static_cast<std::size_t>(j)];
+          ASSERT_TRUE(limit.continuous || (q[j] >= limit.lower - 2e-9 && q[j] <= limit.upper + 2e-9));
         }
       }
     }
+  });
   std::printf("%lld valid nodes, %lld faults, worst residual %.2e\n", static_cast<long long>(valid), static_cast<long long>(faults),
               worst);
   EXPECT_GE(valid, at_least(20001));
@@ -93,27 +100,24 @@ TEST(Lattice, NodesWithOneElbowAreAsManipulable) {
   Random random(seed("Lattice.Manipulability"));
   std::int64_t pairs = 0;
   double most = 0;  // difference of det(J J^T)
-  for (const TestRobot& robot : all_robots())
-    for (int trial = 0; trial < trials(20); ++trial) {
-      const Chain chain = arm_of(robot).chain;
-      const Config q0 = random_config(chain, random), q1 = nearby(q0, 0.2, random);
-      const Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
-      const SrsLattice& lattice = *small.lattice;
-      ASSERT_NE(lattice.alike_in_manipulability(), 0u);
-      std::vector<int> alike;
-      for (int layer = 0; layer < lattice.layers(); ++layer)
-        for (int slot = 0; slot < lattice.width(); ++slot) {
-          const auto q = lattice.node(layer, slot);
-          if (!q) continue;
-          lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
-          const double here = chain.manipulability(*q);
-          for (const int other : alike)
-            if (const auto there = other > slot ? lattice.node(layer, other) : std::nullopt) {
-              most = std::max(most, std::abs(std::pow(chain.manipulability(*there), 2) - here * here));
-              ++pairs;
-            }
-        }
-    }
+  each_small(random, [&](const Small& small) {
+    const Chain& chain = small.arm.chain;
+    const SrsLattice& lattice = *small.lattice;
+    ASSERT_NE(lattice.alike_in_manipulability(), 0u);
+    std::vector<int> alike;
+    for (int layer = 0; layer < lattice.layers(); ++layer)
+      for (int slot = 0; slot < lattice.width(); ++slot) {
+        const auto q = lattice.node(layer, slot);
+        if (!q) continue;
+        lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
+        const double here = chain.manipulability(*q);
+        for (const int other : alike)
+          if (const auto there = other > slot ? lattice.node(layer, other) : std::nullopt) {
+            most = std::max(most, std::abs(std::pow(chain.manipulability(*there), 2) - here * here));
+            ++pairs;
+          }
+      }
+  });
   std::printf("%lld pairs of nodes, determinants differ by %.1e at most\n", static_cast<long long>(pairs), most);
   EXPECT_GE(pairs, at_least(20001));
   EXPECT_LT(most, 1e-11);  // a tenth of what a shared verdict needs

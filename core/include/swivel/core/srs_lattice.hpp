@@ -130,7 +130,7 @@ class SrsLattice final : public Lattice {
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or turn it round, which turns a
   /// column of J round and leaves J J^T as it is.
-  [[nodiscard]] unsigned alike_in_manipulability() const override { return has_own_rows() ? 0 : kElbowLinks; }
+  [[nodiscard]] unsigned alike_in_manipulability() const override;
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
@@ -159,7 +159,6 @@ class SrsLattice final : public Lattice {
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
   /// Sheets fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
-  static constexpr unsigned kElbowLinks = 0b0011000;  ///< groups as of stand_alike()
   static constexpr int kFamilies = 2;
   [[nodiscard]] int family_of(int sheet) const { return sheet / windings_ & kElbowBit ? 1 : 0; }
   /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the sheets of one family.

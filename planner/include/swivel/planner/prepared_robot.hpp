@@ -36,8 +36,7 @@ class PreparedRobot {
   /// Throws InputError where the arm is not S-R-S, for `what` asks for one.
   [[nodiscard]] const SrsArm& srs(const char* what = "this") const;
   [[nodiscard]] const std::array<double, kDof>& radii() const { return radii_; }
-  /// Robot pairs and the meshes of the robot and the scene it was prepared with; the worlds of single plans are made
-  /// from it.
+  /// Robot pairs and the meshes of the robot and the scene it was prepared with; the worlds of single plans are made from it.
   [[nodiscard]] const World& world() const { return world_; }
 
  private:
