@@ -52,8 +52,9 @@ struct Summary {
 struct Circle {
   bool alive = false;
   std::vector<float> q[kDof];
-  std::vector<float> value;   // bound; kNever where no node is
-  std::vector<Summary> near;  // of each run of angles: what lies in its windows
+  std::vector<float> value;    // bound; kNever where no node is
+  std::vector<Summary> near;   // of each run of angles: what lies in its windows
+  std::vector<Summary> parts;  // scratch of look_around
 
   [[nodiscard]] Eigen::Map<const Lanes> lanes(const std::vector<float>& padded, int at) const {
     return Eigen::Map<const Lanes>(padded.data() + at);
@@ -74,8 +75,16 @@ struct Circle {
 
 class Chords {
  public:
-  Chords(const SrsLattice& lattice, int stride, const Budget& budget)
-      : lattice_(lattice), budget_(budget), n_(lattice.angles()), window_(std::min(n_ / 2, stride * lattice.window() + 1)) {
+  /// Of the layers c * stride, c = 0, 1, ..., and the last.
+  Chords(const SrsLattice& lattice, int stride, const Budget& budget, const SharedWork& work)
+      : lattice_(lattice),
+        stride_(stride),
+        budget_(budget),
+        work_(work),
+        n_(lattice.angles()),
+        window_(std::min(n_ / 2, stride * lattice.window() + 1)),
+        circles_(work.threads > 1 ? kAhead + 1 : 2),
+        nodes_(static_cast<std::size_t>(work.threads)) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task_.wraps = false;
@@ -97,60 +106,71 @@ class Chords {
   }
 
   [[nodiscard]] bool fits() const { return fits_; }
+  [[nodiscard]] int layers() const { return (lattice_.layers() - 1 + stride_ - 1) / stride_ + 1; }
 
-  /// The bounds of a layer's nodes from those of the layer given before; zeros in the first. False where none is reached.
-  bool advance(int layer, float* row) {
-    budget_.tell(Stage::kBounds, layer, lattice_.layers());
-    std::swap(circles_[0], circles_[1]);
-    load(layer);
-    const bool first = layer == 0;
+  /// The bounds of the nodes of layer c, as [slot]; c = 0, 1, ... in turn. False where none is reached.
+  bool advance(int c, float* row) {
+    budget_.tell(Stage::kBounds, layer_at(c), lattice_.layers());
+    if (const int ahead = static_cast<int>(circles_.size()) - 1; c % ahead == 0)
+      work_.for_each(std::min(ahead, layers() - c),
+                     [&](int k, int worker) { load(c + k, nodes_[static_cast<std::size_t>(worker)]); });
     std::fill_n(row, lattice_.width(), kNever);
-    bool any = false;
-    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet) {
-      Circle& here = circle(0, sheet);
-      if (!here.alive) continue;
-      budget_.poll();
-      float* best = row + static_cast<std::ptrdiff_t>(sheet) * n_;
-      if (first) std::fill_n(best, n_, 0.0F);
-      for (int run = 0; !first && run < runs(); ++run) {
-        const Lanes relaxed = relax(sheet, run);
-        std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
-      }
-      Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
-      if (!first) bounds = ((bounds - static_cast<float>(lost_)) * (1 - 0x1p-20F)).max(0);
-      bounds = values = (values == 0).select(bounds, kNever);
-      here.alive = bounds.minCoeff() < kNever;
-      any |= here.alive;
-      wrap(here.value);
-      look_around(here);
-    }
-    return any;
+    sheets_.clear();
+    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet)
+      if (circle(c, sheet).alive) sheets_.push_back(sheet);
+    work_.for_each(static_cast<int>(sheets_.size()), [&](int k, int) {
+      const int sheet = sheets_[static_cast<std::size_t>(k)];
+      bound(c, sheet, row + static_cast<std::ptrdiff_t>(sheet) * n_);
+    });
+    return std::any_of(sheets_.begin(), sheets_.end(), [&](int sheet) { return circle(c, sheet).alive; });
   }
 
  private:
-  Circle& circle(std::size_t which, int sheet) { return circles_[which][static_cast<std::size_t>(sheet)]; }
+  static constexpr std::size_t kAhead = 16;  // layers loaded at once where threads share them
+
+  [[nodiscard]] int layer_at(int c) const { return std::min(c * stride_, lattice_.layers() - 1); }
+  Circle& circle(int c, int sheet) {
+    return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(sheet)];
+  }
+  /// Of a sheet's nodes, from those of layer c - 1; zeros in layer 0.
+  void bound(int c, int sheet, float* best) {
+    budget_.poll();
+    Circle& here = circle(c, sheet);
+    if (c == 0) std::fill_n(best, n_, 0.0F);
+    for (int run = 0; c > 0 && run < runs(); ++run) {
+      const Lanes relaxed = relax(c, sheet, run);
+      std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
+    }
+    Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
+    if (c > 0) bounds = ((bounds - static_cast<float>(lost_)) * (1 - 0x1p-20F)).max(0);
+    bounds = values = (values == 0).select(bounds, kNever);
+    here.alive = bounds.minCoeff() < kNever;
+    wrap(here.value);
+    look_around(here);
+  }
   void wrap(std::vector<float>& padded) const {
     std::copy_n(padded.begin() + n_, window_, padded.begin());
     std::copy_n(padded.begin() + window_, window_, padded.begin() + window_ + n_);
   }
 
   /// Joints, and value 0 where a node is.
-  void load(int layer) {
-    lattice_.solve(layer, 0, n_, nodes_);
+  void load(int c, LayerNodes& nodes) {
+    budget_.poll();
+    lattice_.solve(layer_at(c), 0, n_, nodes);
     for (int sheet = 0; sheet < lattice_.sheets(); ++sheet) {
-      Circle& to = circle(0, sheet);
+      Circle& to = circle(c, sheet);
       to.alive = false;
-      if (!nodes_.alive(sheet)) continue;
+      if (!nodes.alive(sheet)) continue;
       const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
       to.value.resize(length, kNever);
       Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
-      value = (Track(nodes_.mask(sheet, 0), n_) + Track(nodes_.mask(sheet, 1), n_)).cast<float>();
+      value = (Track(nodes.mask(sheet, 0), n_) + Track(nodes.mask(sheet, 1), n_)).cast<float>();
       to.alive = value.minCoeff() == 0;
       if (!to.alive) continue;
       for (int k = 0; k < kDof; ++k) {
         std::vector<float>& q = to.q[k];
         q.resize(length);
-        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes_.q(sheet, k), n_).cast<float>();
+        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes.q(sheet, k), n_).cast<float>();
         wrap(q);
       }
     }
@@ -163,28 +183,28 @@ class Chords {
   /// What lies in the windows of every run, up to a run more on both sides.
   void look_around(Circle& circle) {
     const int length = n_ + 2 * window_;
-    parts_.clear();
-    for (int at = 0; at < length; at += kRun) parts_.push_back(circle.summary(at));
+    circle.parts.clear();
+    for (int at = 0; at < length; at += kRun) circle.parts.push_back(circle.summary(at));
     circle.near.assign(static_cast<std::size_t>(runs()), {});
     for (int run = 0; run < runs(); ++run) {
       const int last = std::min(length, begin(run) + kRun + 2 * window_) - 1;
       for (int part = begin(run) / kRun; part <= last / kRun; ++part)
-        circle.near[static_cast<std::size_t>(run)].add(parts_[static_cast<std::size_t>(part)]);
+        circle.near[static_cast<std::size_t>(run)].add(circle.parts[static_cast<std::size_t>(part)]);
     }
   }
 
   /// The bounds of a run's nodes before rounding is taken off.
-  Lanes relax(int sheet, int run) {
-    const Circle& here = circle(0, sheet);
+  Lanes relax(int c, int sheet, int run) {
+    const Circle& here = circle(c, sheet);
     const int at = window_ + begin(run), count = std::min(kRun, n_);
     Lanes best = Lanes::Constant(kNever);
     const Summary own = here.summary(at);
     if (own.least == kNever) return best;
     const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
-    relax_with(here, begin(run), count, circle(1, sheet), best.data());
+    relax_with(here, begin(run), count, circle(c - 1, sheet), best.data());
     float worst = worst_of_all();
     for (int other = 0; other < lattice_.sheets(); ++other) {
-      const Circle& before = circle(1, other);
+      const Circle& before = circle(c - 1, other);
       if (other == sheet || !before.alive) continue;
       const Summary& near = before.near[static_cast<std::size_t>(run)];
       float norm = 0;
@@ -197,47 +217,50 @@ class Chords {
     return best;
   }
 
-  void relax_with(const Circle& here, int begin, int count, const Circle& before, float* best) {
+  void relax_with(const Circle& here, int begin, int count, const Circle& before, float* best) const {
     if (!before.alive) return;
     int first = begin, last = begin + count - 1 + 2 * window_;  // positions in `before`
     while (first <= last && before.value[static_cast<std::size_t>(first)] == kNever) ++first;
     while (first <= last && before.value[static_cast<std::size_t>(last)] == kNever) --last;
     if (first > last) return;
     const int low = std::max(begin, first - count + 1), high = std::min(begin + 2 * window_, last);
-    task_.n = count;
-    task_.offsets = high - low + 1;
+    RelaxTask<float> task = task_;
+    task.n = count;
+    task.offsets = high - low + 1;
     for (std::size_t j = 0; j < kDof; ++j) {
-      task_.from[j] = here.q[j].data() + window_ + begin;
-      task_.to[j] = before.q[j].data() + low;
+      task.from[j] = here.q[j].data() + window_ + begin;
+      task.to[j] = before.q[j].data() + low;
     }
-    task_.value = before.value.data() + low;
-    task_.best = best;
-    relax_kernels().coarse(task_);
+    task.value = before.value.data() + low;
+    task.best = best;
+    relax_kernels().coarse(task);
   }
 
   const SrsLattice& lattice_;
+  int stride_;
   const Budget& budget_;
+  const SharedWork& work_;
   int n_, window_;
   RelaxTask<float> task_;
   double lost_ = 0;
   bool fits_ = true;
-  std::array<std::vector<Circle>, 2> circles_;  // [here, before][sheet]
-  std::vector<Summary> parts_;                  // scratch of look_around
-  LayerNodes nodes_;
+  std::vector<std::vector<Circle>> circles_;  // [c % size][sheet]: those loaded and one before
+  std::vector<int> sheets_;                   // of the layer at hand, with nodes
+  std::vector<LayerNodes> nodes_;             // scratch of load(): [worker]
 };
 
 }  // namespace
 
-CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget)
+CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget, const SharedWork& work)
     : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const TraceSpan span("coarse bound");
-  Chords chords(lattice, stride_, budget);
+  Chords chords(lattice, stride_, budget, work);
   if (!chords.fits()) return;
-  const int coarse = (last_ + stride_ - 1) / stride_ + 1;
+  const int coarse = chords.layers();
   rows_.resize(static_cast<std::size_t>(coarse) * static_cast<std::size_t>(width_));
   for (int c = 0; c < coarse; ++c) {
     ik_nodes_ += width_;
-    if (!chords.advance(std::min(c * stride_, last_), rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
+    if (!chords.advance(c, rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
       best_ = std::numeric_limits<double>::infinity();
       return;
     }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/shared_work.hpp"
 
 namespace swivel {
 
@@ -14,7 +15,7 @@ namespace swivel {
 class CoarseBound {
  public:
   /// Throws Stopped.
-  explicit CoarseBound(const SrsLattice& lattice, const Budget& budget = {});
+  explicit CoarseBound(const SrsLattice& lattice, const Budget& budget = {}, const SharedWork& work = {});
 
   /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
   [[nodiscard]] double best() const { return best_; }

@@ -20,8 +20,8 @@ namespace swivel {
 /// layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is left.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. LayerJoints are solved again where
-/// they are wanted again, but after the first repair of a lattice of up to a million nodes: there they are kept, 40 bytes a node of
-/// the layers that were visited.
+/// they are wanted again, but after the first repair, or search for the deepest layer, of a lattice of up to a million nodes: there
+/// they are kept, 40 bytes a node of the layers that were visited.
 class GridCostToGo final : public CostToGo {
  public:
   /// Takes over what `retired` had allocated; null is allowed.
@@ -72,8 +72,13 @@ class GridCostToGo final : public CostToGo {
   }
   double& value_at(int layer, int slot);  // holds its tile from now on
 
-  LayerJoints& joints(int layer, Workspace& workspace);
-  void solve_columns(LayerJoints& joints, int family, int first, int last);  // columns
+  /// From now on, in lattices that leave room for it: where one repair is needed more follow, and after a layer that is not
+  /// reached.
+  void keep_joints();
+  LayerJoints& joints(int layer);
+  void solve_ahead(int layer, int by, const Workspace& reached);                // by 1 or -1
+  void solve_open(LayerJoints& joints, int family, int first, int last) const;  // columns
+  void solve_columns(LayerJoints& joints, int family, int first, int last);     // columns
   void begin_layer(int layer, Workspace& workspace);
   void begin_with_all(int layer, Workspace& workspace);  // every node at cost 0
   void relax_run(int step_layer, const Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
@@ -136,7 +141,9 @@ class GridCostToGo final : public CostToGo {
     double limit = kUnreachable;
     TileTable::Held tiles;
   } saved_;
-  std::vector<std::unique_ptr<LayerJoints>> cache_;   // by layer; empty where joints are not kept
+  std::vector<std::unique_ptr<LayerJoints>> cache_;  // by layer; empty where joints are not kept
+  static constexpr int kLayersAhead = 8;
+  std::vector<LayerJoints> passing_;  // by layer % size, where they are not kept: those at hand and those solved ahead
   std::vector<std::unique_ptr<LayerJoints>> spares_;  // of a search before, for the cache
   std::array<std::unique_ptr<Workspace>, 2> workspace_;
   std::vector<int> columns_;  // scratch of reach_back

@@ -5,9 +5,11 @@
 
 namespace swivel {
 
-GridCostToGo::LayerJoints& GridCostToGo::joints(int layer, Workspace& workspace) {
-  LayerJoints* joints = &workspace.own;
-  if (!cache_.empty()) {
+GridCostToGo::LayerJoints& GridCostToGo::joints(int layer) {
+  LayerJoints* joints = nullptr;
+  if (cache_.empty()) {
+    joints = &passing_[static_cast<std::size_t>(layer) % passing_.size()];
+  } else {
     auto& kept = cache_[static_cast<std::size_t>(layer)];
     if (!kept && !spares_.empty()) {
       kept = std::move(spares_.back());
@@ -28,16 +30,26 @@ GridCostToGo::LayerJoints& GridCostToGo::joints(int layer, Workspace& workspace)
   return *joints;
 }
 
+/// Each counts once it is wanted, whether it was solved ahead or not.
 void GridCostToGo::solve_columns(LayerJoints& joints, int family, int first, int last) {
+  ColumnSet& solved = joints.solved[static_cast<std::size_t>(family)];
+  const int n = lattice_->angles();
+  for (int column = first; column < last; ++column)
+    if (solved[static_cast<std::size_t>(column)] != LayerJoints::kWanted)
+      ik_nodes_ += static_cast<std::int64_t>(std::min(n, (column + 1) * kTileWidth) - column * kTileWidth) * lattice_->sheets() / 2;
+  solve_open(joints, family, first, last);
+  std::fill(solved.begin() + first, solved.begin() + last, LayerJoints::kWanted);
+}
+
+void GridCostToGo::solve_open(LayerJoints& joints, int family, int first, int last) const {
   ColumnSet& solved = joints.solved[static_cast<std::size_t>(family)];
   const int n = lattice_->angles(), window = lattice_->window();
   for (int column = first, next = first; column < last; column = next) {
     next = column + 1;
-    if (solved[static_cast<std::size_t>(column)]) continue;
-    while (next < last && !solved[static_cast<std::size_t>(next)]) ++next;
-    std::fill(solved.begin() + column, solved.begin() + next, std::uint8_t{1});
+    if (solved[static_cast<std::size_t>(column)] != LayerJoints::kOpen) continue;
+    while (next < last && solved[static_cast<std::size_t>(next)] == LayerJoints::kOpen) ++next;
+    std::fill(solved.begin() + column, solved.begin() + next, LayerJoints::kAhead);
     const int begin = column * kTileWidth, end = std::min(n, next * kTileWidth);
-    ik_nodes_ += static_cast<std::int64_t>(end - begin) * lattice_->sheets() / 2;
     lattice_->solve_part(family, window + begin, window + end, joints.nodes);
     for (int done = column; done < next; ++done) find_ranges(joints, family, done);
     // The window reaches around the circle.
@@ -47,6 +59,27 @@ void GridCostToGo::solve_columns(LayerJoints& joints, int family, int first, int
       joints.nodes.repeat(window + from, window + from - n, end - from);
     }
   }
+}
+
+/// Layers beside each other reach much the same columns: threads solve them for the layers to come, a few at a time.
+void GridCostToGo::solve_ahead(int layer, int by, const Workspace& reached) {
+  const int left = by < 0 ? layer + 1 : lattice_->layers() - layer, count = std::min(kLayersAhead, left);
+  if (work_.threads == 1 || layer % kLayersAhead != 0) return;
+  std::array<LayerJoints*, kLayersAhead> ahead;
+  for (int k = 0; k < count; ++k) ahead[static_cast<std::size_t>(k)] = &joints(layer + by * k);
+  work_.for_each(count, [&](int k, int) {
+    for (int family = 0; family < SrsLattice::kFamilies; ++family) {
+      LayerJoints& joints = *ahead[static_cast<std::size_t>(k)];
+      const ColumnSet& columns = reached.reached[static_cast<std::size_t>(family)];
+      if (!joints.nodes.alive(family * lattice_->sheets() / 2)) continue;
+      for (int column = 0, next = 0; column < tile_columns(); column = next) {
+        next = column + 1;
+        if (!columns[static_cast<std::size_t>(column)]) continue;
+        while (next < tile_columns() && columns[static_cast<std::size_t>(next)]) ++next;
+        solve_open(joints, family, column, next);
+      }
+    }
+  });
 }
 
 void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) const {
@@ -74,7 +107,7 @@ GridCostToGo::NodeRun GridCostToGo::nodes(int layer, int family, int first, int 
     lattice_->solve_part(family, 0, count, scratch);
     return {&scratch, 0};
   }
-  LayerJoints& kept = joints(layer, *workspace_[0]);
+  LayerJoints& kept = joints(layer);
   for (int k = 0; k < count; ++k) {
     const int column = (first + k) % n / kTileWidth;
     solve_columns(kept, family, column, column + 1);

@@ -14,7 +14,7 @@ void GridCostToGo::begin_layer(int layer, Workspace& workspace) {
   }
   workspace.sheets.clear();
   workspace.layer = layer;
-  workspace.joints = &joints(layer, workspace);
+  workspace.joints = &joints(layer);
   workspace.tiles.clear();
   for (ColumnSet& reached : workspace.reached) reached.assign(static_cast<std::size_t>(tile_columns()), 0);
 }

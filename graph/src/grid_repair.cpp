@@ -93,10 +93,13 @@ void GridCostToGo::add_node_costs(Workspace& workspace) const {
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
 
-void GridCostToGo::compute_removals() {
-  // Where one repair is needed more follow, so joints are worth keeping, for lattices that leave room for 40 bytes a node.
+void GridCostToGo::keep_joints() {
   constexpr std::int64_t kMostKept = 1'000'000;
   if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));
+}
+
+void GridCostToGo::compute_removals() {
+  keep_joints();
   propagate_removals();
   raise_limit_until_exact();
 }
@@ -222,6 +225,7 @@ void GridCostToGo::keep_reach(int layer, const Workspace& workspace) {
 int GridCostToGo::deepest_reachable() {
   if (knows_reach()) return reach_.deepest;
   const TraceSpan span("reach");
+  keep_joints();
   reach_.known = false;
   const int n = lattice_->angles();
   Workspace* before = workspace_[0].get();
@@ -233,6 +237,7 @@ int GridCostToGo::deepest_reachable() {
   for (; layer < lattice_->layers(); ++layer) {
     budget_.poll();
     if ((layer - 1) % Reach::kStride == 0) keep_reach(layer - 1, *before);
+    solve_ahead(layer, 1, *before);
     begin_layer(layer, *here);
     const auto step_one = [&](int slot) {
       const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};

@@ -122,7 +122,7 @@ void GridCostToGo::compute(int goal_layer) {
     forget_reach();
     if (!hopeless && bounded_) {
       if (!coarse_bound_) {
-        coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_);
+        coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_, work_);
         ik_nodes_ += coarse_bound_->ik_nodes();
       }
       hopeless = coarse_bound_->best() == kUnreachable || !raise_limit();
@@ -174,6 +174,8 @@ void GridCostToGo::raise_limit_until_exact() {
 }
 
 void GridCostToGo::begin_with_all(int layer, Workspace& workspace) {
+  passing_.resize(work_.threads > 1 ? kLayersAhead + 1 : 2);
+  for (LayerJoints& joints : passing_) joints.layer = -1;  // what is solved again does not hang on how many there are
   begin_layer(layer, workspace);
   std::fill(workspace.row.begin(), workspace.row.end(), 0.0);
   for (int sheet = 0; sheet < lattice_->sheets(); ++sheet) {
@@ -206,6 +208,7 @@ void GridCostToGo::sweep_once() {
       break;
     }
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
+    solve_ahead(layer, -1, *next);
     begin_layer(layer, *here);
     reach_back(layer, *next, *here);
     relax(layer, *here, *next);

@@ -54,6 +54,7 @@ struct GridCostToGo::MiddleRanges {
 struct GridCostToGo::LayerJoints {
   int layer = -1;
   LayerNodes nodes;
+  enum : std::uint8_t { kOpen, kAhead, kWanted };   // kAhead: solved before anyone asked
   std::array<std::vector<std::uint8_t>, 2> solved;  // [family][column]
   /// Ranges of the joints that tell sheets apart, over what is solved: of each column, and of all.
   std::vector<MiddleRanges> of_tile, of_layer;  // [sheet][column], [sheet]
@@ -62,7 +63,6 @@ struct GridCostToGo::LayerJoints {
 /// A layer's values, ready to be relaxed against or being relaxed.
 struct GridCostToGo::Workspace {
   int layer = -1;
-  LayerJoints own;
   LayerJoints* joints = nullptr;
   std::vector<double> row;    // [sheet][angle], of the tiles
   std::vector<Tile> tiles;    // to be relaxed or holding values, in order

@@ -15,15 +15,16 @@
 #include <thread>
 #include <vector>
 
+#include "team.hpp"
+
 namespace swivel {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Work that is worth waking a thread, and beginning TBB and its threads. On two cores waking costs some 10 us and beginning 0.5
-/// ms.
+/// Work that is worth waking a thread, and beginning threads. On two cores waking costs some 10 us and beginning 0.5 ms.
 constexpr Clock::duration kWorthWaking = std::chrono::microseconds(40);
-constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(1);
+constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(3);
 
 }  // namespace
 
@@ -35,6 +36,7 @@ struct Executor::Impl {
   /// fewer: the least of all controls holds for the whole process.
   std::unique_ptr<tbb::global_control> allowed;
   std::unique_ptr<tbb::task_arena> arena;
+  std::unique_ptr<detail::Team> team;  // for brief calls
 };
 
 Executor::Executor(int threads, Backend backend) : impl_(std::make_unique<Impl>()) {
@@ -50,24 +52,30 @@ int Executor::threads() const {
 }
 
 void Executor::for_each(int count, const std::function<void(int, int)>& body) {
-  if (impl_->threads > 1 && count > 1) return share(0, count, body);
+  if (impl_->threads > 1 && count > 1) return share(count, body);
   for (int index = 0; index < count; ++index) body(index, 0);
 }
 
 void Executor::for_each_brief(int count, const std::function<void(int, int)>& body) {
-  if (impl_->threads == 1 || count <= 1 || impl_->backend != Backend::kTbb) return for_each(count, body);
+  if (impl_->threads == 1 || count <= 1) {
+    for (int index = 0; index < count; ++index) body(index, 0);
+    return;
+  }
+  if (impl_->team && impl_->team->awake()) return impl_->team->share(0, count, body);
   const Clock::time_point begin = Clock::now();
   for (int index = 0; index < count; ++index) {
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
-    if (left > std::max(kWorthWaking, impl_->arena ? kWorthWaking : kWorthBeginning - impl_->alone))
-      return share(index, count, body);
+    if (left > std::max(kWorthWaking, impl_->team ? kWorthWaking : kWorthBeginning - impl_->alone)) {
+      if (!impl_->team) impl_->team = std::make_unique<detail::Team>(impl_->threads - 1);
+      return impl_->team->share(index, count, body);
+    }
     body(index, 0);
   }
-  if (!impl_->arena) impl_->alone += Clock::now() - begin;
+  if (!impl_->team) impl_->alone += Clock::now() - begin;
 }
 
-void Executor::share(int first, int count, const std::function<void(int, int)>& body) {
+void Executor::share(int count, const std::function<void(int, int)>& body) {
   if (impl_->backend == Backend::kTbb) {
     if (!impl_->arena) {
       impl_->allowed = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
@@ -75,18 +83,18 @@ void Executor::share(int first, int count, const std::function<void(int, int)>& 
       impl_->arena = std::make_unique<tbb::task_arena>(impl_->threads);
     }
     impl_->arena->execute([&] {
-      tbb::parallel_for(tbb::blocked_range<int>(first, count, 1), [&](const tbb::blocked_range<int>& range) {
+      tbb::parallel_for(tbb::blocked_range<int>(0, count, 1), [&](const tbb::blocked_range<int>& range) {
         const int worker = tbb::this_task_arena::current_thread_index();
         for (int index = range.begin(); index != range.end(); ++index) body(index, worker);
       });
     });
     return;
   }
-  std::atomic<int> next{first};
+  std::atomic<int> next{0};
   std::exception_ptr failure;
   std::mutex failure_mutex;
   std::vector<std::thread> workers;
-  for (int worker = 0; worker < std::min(impl_->threads, count - first); ++worker)
+  for (int worker = 0; worker < std::min(impl_->threads, count); ++worker)
     workers.emplace_back([&, worker] {
       try {
         for (int index; (index = next.fetch_add(1)) < count;) body(index, worker);

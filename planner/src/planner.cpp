@@ -47,7 +47,11 @@ Certificates certificates_of(const PlanOptions& options) {
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
 int lanes_of(const PlanOptions& options) {
   if (options.planner == PlannerKind::kLazy) return 1;
-  return options.planner == PlannerKind::kParallel ? 4 : 0;
+  return options.planner == PlannerKind::kParallel ? 8 : 0;
+}
+
+SharedWork shared_with(Executor& threads) {
+  return {threads.threads(), [&threads](int parts, const auto& body) { threads.for_each_brief(parts, body); }};
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
@@ -339,12 +343,14 @@ struct Planner::Impl {
       count(validity);
       return found;
     }
-    constexpr int kFewLayers = 64;  // where chords are too long to bound much
+    constexpr int kFewLayers = 64;               // where chords are too long to bound much
+    constexpr std::int64_t kFewNodes = 250'000;  // some milliseconds, about what the memory takes that threads work ahead in
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
     if (once) cost_to_go->never_restarts();
+    cost_to_go->share(lattice.nodes() < kFewNodes ? SharedWork() : shared_with(threads));
     const bool swept = cost_to_go->restart(budget);
     std::optional<World> changed;
     if (remembered) {

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <functional>
+#include <thread>
 
 #include "grid_cost_to_go.hpp"
 #include "kernels/relax.hpp"
@@ -55,11 +58,25 @@ std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
   return cost;
 }
 
+/// Three threads, made for every call.
+SharedWork shared_by_threads() {
+  return {3, [](int parts, const std::function<void(int, int)>& body) {
+            std::atomic<int> next{0};
+            std::vector<std::thread> threads;
+            for (int worker = 0; worker < std::min(3, parts); ++worker)
+              threads.emplace_back([&, worker] {
+                for (int part = next++; part < parts; part = next++) body(part, worker);
+              });
+            for (std::thread& thread : threads) thread.join();
+          }};
+}
+
+/// A third of the problems are also swept by threads: the same values, the same counts.
 TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   Random random(seed("Bounded"));
   Random beyond(seed("Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
   int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0;
-  std::int64_t whole_ik = 0, bounded_ik = 0;
+  std::int64_t whole_ik = 0, bounded_ik = 0, compared = 0;
   double tightest = 0;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
@@ -68,13 +85,29 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       const Problem problem = random_problem(robot, arm.chain, random, 2 + random.below(30));
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded);
+      GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded), shared(lattice, Extent::kBounded);
+      const bool shares = problems % 3 == 0;
+      std::vector<GridCostToGo*> all{&whole, &bounded};
+      if (shares) {
+        all.push_back(&shared);
+        shared.share(shared_by_threads());
+        shared.sweep(lattice.layers() - 1);
+      }
+      const auto expect_shared_is_bounded = [&] {
+        if (!shares) return;
+        ASSERT_EQ(shared.ik_nodes(), bounded.ik_nodes());
+        ASSERT_EQ(shared.edges(), bounded.edges());
+        for (int layer = 0; layer < lattice.layers(); ++layer)
+          for (int slot = 0; slot < lattice.width(); ++slot) ASSERT_EQ(shared.at(layer, slot), bounded.at(layer, slot));
+        ++compared;
+      };
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       ++problems;
       whole_ik += whole.ik_nodes();
       bounded_ik += bounded.ik_nodes();
 
+      expect_shared_is_bounded();
       const CoarseBound bound(lattice);
       const auto come = cost_to_come(whole);
       ASSERT_LE(bound.best(), whole.best());
@@ -98,6 +131,9 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         const SlotPath best = best_path(whole, expansions);
         ASSERT_EQ(best_path(bounded, same_expansions), best) << what;
         ASSERT_EQ(expansions, same_expansions) << what;
+        if (shares) {
+          ASSERT_EQ(best_path(shared, expansions), best);
+        }
         if (best.empty()) {
           ++ended;
           break;
@@ -109,7 +145,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
         const int layer = random.below(lattice.layers()), slot = best[static_cast<std::size_t>(layer)];
         const int kind = random.below(4);
         const int reach = random.below(lattice.angles() / 2);
-        for (GridCostToGo* cost_to_go : {&whole, &bounded}) {
+        for (GridCostToGo* cost_to_go : all) {
           if (kind == 0 && layer > 0) {
             cost_to_go->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
           } else if (kind == 1) {
@@ -126,24 +162,33 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
           cost_to_go->repair();
         }
         changed += whole.best() != before;
+        expect_shared_is_bounded();
+        ASSERT_FALSE(HasFatalFailure());
       }
       if (whole.best() == kUnreachable) {
         const int deepest = whole.deepest_reachable();
         ASSERT_EQ(bounded.deepest_reachable(), deepest);
+        if (shares) {
+          ASSERT_EQ(shared.deepest_reachable(), deepest);
+        }
         if (deepest < 0) continue;
-        whole.sweep(deepest);
-        bounded.sweep(deepest);
+        for (GridCostToGo* cost_to_go : all) cost_to_go->sweep(deepest);
+        expect_shared_is_bounded();
         ASSERT_EQ(bounded.best(), whole.best());
         for (int round = 0; round < 4 && whole.best() != kUnreachable; ++round) {
           std::int64_t expansions = 0;
           const SlotPath best = best_path(whole, expansions);
           ASSERT_EQ(best_path(bounded, expansions), best);
+          if (shares) {
+            ASSERT_EQ(best_path(shared, expansions), best);
+          }
           const int layer = beyond.below(deepest + 1);
-          for (GridCostToGo* cost_to_go : {&whole, &bounded}) {
+          for (GridCostToGo* cost_to_go : all) {
             cost_to_go->verdicts().remove_node(layer, best[static_cast<std::size_t>(layer)]);
             cost_to_go->repair();
           }
           ASSERT_EQ(bounded.best(), whole.best());
+          expect_shared_is_bounded();
           ++to_deepest;
         }
         ASSERT_EQ(bounded.deepest_reachable(), whole.deepest_reachable());
@@ -152,11 +197,10 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   }
   std::printf(
       "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from paths to the deepest layer; %d "
-      "bounds held, up to %.4f of the cost; first "
-      "sweeps "
-      "solved %.1f %% of the whole's nodes\n",
+      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes; %lld tables by threads the same\n",
       problems, rounds, changed, ended, to_deepest, bounds, tightest,
-      100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik));
+      100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik), static_cast<long long>(compared));
+  EXPECT_GE(compared, at_least(problems + 1));
   EXPECT_GE(rounds, at_least(3 * problems + 1));
   EXPECT_GE(changed, at_least(problems + 1));
   EXPECT_GE(ended, at_least(4));

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -46,9 +48,47 @@ TEST_P(Backends, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
     }
 }
 
+/// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and some that throw.
+TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
+  Random random(seed("Executor.BriefCalls"));
+  std::int64_t visited = 0, thrown = 0;
+  for (const int threads : {2, 3, 8}) {
+    Executor executor(threads);
+    const auto keep_busy = [](int steps) {
+      for (std::atomic<int> step{0}; step < steps;) ++step;
+    };
+    executor.for_each_brief(40, [&](int, int) { keep_busy(1'000'000); });  // begins threads
+    std::vector<int> visits;
+    for (int call = 0; call < trials(2000); ++call) {
+      const int count = 1 + random.below(20), steps = random.below(2000), failing = random.below(8) == 0 ? random.below(count) : -1;
+      visits.assign(static_cast<std::size_t>(count), 0);
+      const auto body = [&](int index, int worker) {
+        if (worker < 0 || worker >= threads) throw std::logic_error("no such worker");
+        keep_busy(steps);
+        ++visits[static_cast<std::size_t>(index)];
+        if (index == failing) throw std::runtime_error("x");
+      };
+      if (failing < 0) {
+        executor.for_each_brief(count, body);
+        for (const int visit : visits) ASSERT_EQ(visit, 1);
+        visited += count;
+      } else {
+        ASSERT_THROW(executor.for_each_brief(count, body), std::runtime_error);
+        ++thrown;
+      }
+      if (random.below(50) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(random.below(5)));
+    }
+  }
+  std::printf("%lld indices visited once, %lld calls threw\n", static_cast<long long>(visited), static_cast<long long>(thrown));
+  EXPECT_GE(visited, at_least(40'000));
+  EXPECT_GE(thrown, at_least(500));
+}
+
 void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.status, first.status);
   EXPECT_EQ(result.cost, first.cost);
+  EXPECT_EQ(result.counters.ik_nodes, first.counters.ik_nodes);
+  EXPECT_EQ(result.counters.edges, first.counters.edges);
   EXPECT_EQ(result.counters.fcl_calls, first.counters.fcl_calls);
   EXPECT_EQ(result.counters.certified_free, first.counters.certified_free);
   EXPECT_EQ(result.counters.certified_colliding, first.counters.certified_colliding);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "swivel/core/lattice.hpp"
+#include "swivel/graph/shared_work.hpp"
 #include "swivel/graph/verdicts.hpp"
 
 namespace swivel {
@@ -30,6 +31,8 @@ class CostToGo {
   /// Forgets removals and counts, and begins again within another budget. True where values are now those of a lattice without
   /// removals and the last layer as its goal, as they were found before; else sweep() comes next.
   [[nodiscard]] bool restart(const Budget& budget);
+  /// Threads to share work with from now on; none unless said. Values are the same, bit for bit.
+  void share(const SharedWork& work) { work_ = work; }
   /// Nothing is kept for restart() from now on.
   void never_restarts() { restarts_ = false; }
 
@@ -75,6 +78,7 @@ class CostToGo {
   virtual void restore() = 0;
 
   Budget budget_;
+  SharedWork work_;
   int goal_ = 0;
   Verdicts verdicts_;
   std::int64_t ik_nodes_ = 0, edges_ = 0;

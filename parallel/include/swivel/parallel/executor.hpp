@@ -22,11 +22,12 @@ class Executor {
   /// Exceptions of body reach the caller.
   void for_each(int count, const std::function<void(int index, int worker)>& body);
   /// The same for calls that may be over before another thread is awake: the caller makes the first ones itself, as worker 0, and
-  /// shares out what is left once that would keep it for long. Until then no thread is begun.
+  /// shares out what is left once that would keep it for long, or at once with threads that are still awake. Until then no thread
+  /// is begun. By threads of its own, whatever the backend; not from within body.
   void for_each_brief(int count, const std::function<void(int index, int worker)>& body);
 
  private:
-  void share(int first, int count, const std::function<void(int index, int worker)>& body);
+  void share(int count, const std::function<void(int index, int worker)>& body);
 
   struct Impl;
   std::unique_ptr<Impl> impl_;

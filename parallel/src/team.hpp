@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace swivel::detail {
+
+/// Threads that help one caller with work of a few microseconds. To wake a thread takes longer than that, so helpers look for more
+/// for a while before they sleep, and leave the core to whoever wants it meanwhile.
+class Team {
+ public:
+  explicit Team(int helpers);
+  ~Team();
+  Team(const Team&) = delete;
+  Team& operator=(const Team&) = delete;
+
+  /// A helper looks for work.
+  [[nodiscard]] bool awake() const { return asleep_.load() < static_cast<int>(helpers_.size()); }
+  /// Calls body(index, worker) for index = first ... count - 1; the caller is worker 0. Rethrows what body threw first. Not from
+  /// within body.
+  void share(int first, int count, const std::function<void(int index, int worker)>& body);
+
+ private:
+  void help(int worker);
+  bool take_one(int worker);
+
+  std::vector<std::thread> helpers_;
+  /// How often work was shared, times 2^32, plus the indices that nobody has taken yet, the last first. While there are any,
+  /// `first_` and `body_` are theirs.
+  std::atomic<std::uint64_t> open_{0};
+  std::atomic<int> first_{0};
+  std::atomic<const std::function<void(int, int)>*> body_{nullptr};
+  std::atomic<int> done_{0};
+  std::atomic<int> asleep_{0};
+  std::atomic<bool> ended_{false};
+  std::mutex failure_mutex_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace swivel::detail
