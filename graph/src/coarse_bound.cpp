@@ -49,7 +49,7 @@ struct Summary {
 };
 
 /// One sheet of one layer, from -window to angles + window around the circle, and on to whole runs.
-struct Circle {
+struct alignas(64) Circle {  // threads write to neighbours
   bool alive = false;
   std::vector<float> q[kDof];
   std::vector<float> value;    // bound; kNever where no node is

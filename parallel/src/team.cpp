@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "team.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -13,10 +14,14 @@ using Clock = std::chrono::steady_clock;
 constexpr Clock::duration kStayAwake = std::chrono::milliseconds(2);
 constexpr int kLooks = 16;  // between two looks at the clock
 
-constexpr std::uint64_t kShared = std::uint64_t{1} << 32;
-std::uint64_t left_of(std::uint64_t open) {
-  return open % kShared;
-}
+/// How often work was shared, and indices first ... last - 1, in one word.
+struct Open {
+  static constexpr int kMost = 0xffff;
+  std::uint64_t times = 0, first = 0, last = 0;
+  explicit Open(std::uint64_t word) : times(word >> 32), first(word >> 16 & kMost), last(word & kMost) {}
+  [[nodiscard]] std::uint64_t word() const { return times << 32 | first << 16 | last; }
+  [[nodiscard]] bool any() const { return first < last; }
+};
 
 }  // namespace
 
@@ -26,18 +31,21 @@ Team::Team(int helpers) {
 
 Team::~Team() {
   ended_ = true;
-  open_ += kShared;
+  open_ += std::uint64_t{1} << 32;  // no longer what helpers wait on
   open_.notify_all();
   for (std::thread& helper : helpers_) helper.join();
 }
 
 /// False where nobody's help is wanted. Work that was shared since fails the exchange, so what was read belongs to what is taken.
+/// The caller takes from the end and helpers from the beginning: from call to call each meets what it wrote before.
 bool Team::take_one(int worker) {
-  std::uint64_t open = open_.load();
-  while (left_of(open) > 0) {
+  std::uint64_t word = open_.load();
+  for (;;) {
+    Open open(word);
+    if (!open.any()) return false;
     const std::function<void(int, int)>& body = *body_.load();
-    const int index = first_.load() + static_cast<int>(left_of(open)) - 1;
-    if (!open_.compare_exchange_weak(open, open - 1)) continue;
+    const int index = first_.load() + static_cast<int>(worker == 0 ? --open.last : open.first++);
+    if (!open_.compare_exchange_weak(word, open.word())) continue;
     try {
       body(index, worker);
     } catch (...) {
@@ -47,19 +55,25 @@ bool Team::take_one(int worker) {
     ++done_;
     return true;
   }
-  return false;
 }
 
 void Team::share(int first, int count, const std::function<void(int, int)>& body) {
-  if (first >= count) return;
+  for (; first < count; first += Open::kMost) share_some(first, std::min(Open::kMost, count - first), body);
+}
+
+void Team::share_some(int first, int count, const std::function<void(int, int)>& body) {
   first_ = first;
   body_ = &body;
   done_ = 0;
-  open_ = (open_.load() / kShared + 1) * kShared + static_cast<std::uint64_t>(count - first);
+  Open open(open_.load());
+  ++open.times;
+  open.first = 0;
+  open.last = static_cast<std::uint64_t>(count);
+  open_ = open.word();
   if (asleep_.load() > 0) open_.notify_all();
   while (take_one(0)) {
   }
-  while (done_.load() < count - first) std::this_thread::yield();
+  while (done_.load() < count) std::this_thread::yield();
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
@@ -70,10 +84,10 @@ void Team::help(int worker) {
       }
       last = Clock::now();
     }
-    for (int look = 0; look < kLooks && left_of(open_.load()) == 0; ++look) std::this_thread::yield();
+    for (int look = 0; look < kLooks && !Open(open_.load()).any(); ++look) std::this_thread::yield();
     if (Clock::now() - last < kStayAwake) continue;
     ++asleep_;
-    if (const std::uint64_t open = open_.load(); left_of(open) == 0 && !ended_.load()) open_.wait(open);
+    if (const std::uint64_t word = open_.load(); !Open(word).any() && !ended_.load()) open_.wait(word);
     --asleep_;
     last = Clock::now();
   }

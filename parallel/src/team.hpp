@@ -27,11 +27,12 @@ class Team {
 
  private:
   void help(int worker);
+  void share_some(int first, int count, const std::function<void(int, int)>& body);
   bool take_one(int worker);
 
   std::vector<std::thread> helpers_;
-  /// How often work was shared, times 2^32, plus the indices that nobody has taken yet, the last first. While there are any,
-  /// `first_` and `body_` are theirs.
+  /// How often work was shared, and which indices from `first_` on nobody has taken yet: see Open. While there are any, `first_`
+  /// and `body_` are theirs.
   std::atomic<std::uint64_t> open_{0};
   std::atomic<int> first_{0};
   std::atomic<const std::function<void(int, int)>*> body_{nullptr};
