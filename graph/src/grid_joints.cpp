@@ -86,14 +86,20 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
   const int half = lattice_->sheets() / 2, begin = lattice_->window() + column * kTileWidth;
   const int count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
-    const double* known = nullptr;  // sheets share arrays
-    JointRange found;
+    std::array<const double*, 2> known{};  // sheets share arrays: two for each sign of a triple
+    std::array<JointRange, 2> found;
     for (int sheet = family * half; sheet < (family + 1) * half; ++sheet) {
       const double* q = joints.nodes.q(sheet, MiddleRanges::kJoints[m]) + begin;
-      if (q != known) found = JointRange(q, count);
-      known = q;
-      joints.of_tile[tile_of_layer(sheet, column)].joint[m] = found;
-      joints.of_layer[static_cast<std::size_t>(sheet)].joint[m].add(found);
+      if (q != known[0]) {
+        std::swap(known[0], known[1]);
+        std::swap(found[0], found[1]);
+      }
+      if (q != known[0]) {
+        known[0] = q;
+        found[0] = JointRange(q, count);
+      }
+      joints.of_tile[tile_of_layer(sheet, column)].joint[m] = found[0];
+      joints.of_layer[static_cast<std::size_t>(sheet)].joint[m].add(found[0]);
     }
   }
 }

@@ -13,9 +13,14 @@ struct GridCostToGo::JointRange {
   double low = kUnreachable, high = -kUnreachable;
   JointRange() = default;
   JointRange(const double* q, int count) {
-    const Eigen::Map<const Eigen::ArrayXd> values(q, count);
-    low = values.minCoeff();
-    high = values.maxCoeff();
+    const auto of = [&](const auto& values) {
+      low = values.minCoeff();
+      high = values.maxCoeff();
+    };
+    if (count == kTileWidth)
+      of(Eigen::Map<const Eigen::Array<double, kTileWidth, 1>>(q));
+    else
+      of(Eigen::Map<const Eigen::ArrayXd>(q, count));
   }
   /// Of those that have a value; the others need not have been solved.
   JointRange(const double* q, const double* value, int begin, int end) {
