@@ -114,9 +114,10 @@ GridCostToGo::NodeRun GridCostToGo::nodes(int layer, int family, int first, int 
     return {&scratch, 0};
   }
   LayerJoints& kept = joints(layer);
-  for (int k = 0; k < count; ++k) {
-    const int column = (first + k) % n / kTileWidth;
+  for (int k = 0; k < count;) {
+    const int angle = (first + k) % n, column = angle / kTileWidth;
     solve_columns(kept, family, column, column + 1);
+    k += std::min(n, (column + 1) * kTileWidth) - angle;
   }
   return {&kept.nodes, (first + lattice_->window()) % n};
 }
