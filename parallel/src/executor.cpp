@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 /// Work that is worth waking a thread, and beginning threads. On two cores waking costs some 10 us and beginning 0.5 ms.
 constexpr Clock::duration kWorthWaking = std::chrono::microseconds(40);
 constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(3);
+constexpr int kMostHelpers = 7;  // of brief calls, which have few parts
 
 }  // namespace
 
@@ -67,7 +68,7 @@ void Executor::for_each_brief(int count, const std::function<void(int, int)>& bo
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
     if (left > std::max(kWorthWaking, impl_->team ? kWorthWaking : kWorthBeginning - impl_->alone)) {
-      if (!impl_->team) impl_->team = std::make_unique<detail::Team>(impl_->threads - 1);
+      if (!impl_->team) impl_->team = std::make_unique<detail::Team>(std::min(kMostHelpers, impl_->threads - 1));
       return impl_->team->share(index, count, body);
     }
     body(index, 0);

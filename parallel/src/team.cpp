@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "team.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <system_error>
 #include <utility>
 
 namespace swivel::detail {
@@ -25,15 +28,19 @@ struct Open {
 
 }  // namespace
 
-Team::Team(int helpers) {
-  for (int k = 0; k < helpers; ++k) helpers_.emplace_back([this, worker = k + 1] { help(worker); });
+Team::Team(int helpers) : process_(getpid()) {
+  try {
+    for (int k = 0; k < helpers; ++k) helpers_.emplace_back([this, worker = k + 1] { help(worker); });
+  } catch (const std::system_error&) {  // the system has no more threads: those that there are do
+  }
 }
 
 Team::~Team() {
   ended_ = true;
   open_ += std::uint64_t{1} << 32;  // no longer what helpers wait on
   open_.notify_all();
-  for (std::thread& helper : helpers_) helper.join();
+  const bool forked = getpid() != process_;  // then the helpers stayed behind
+  for (std::thread& helper : helpers_) forked ? helper.detach() : helper.join();
 }
 
 /// False where nobody's help is wanted. Work that was shared since fails the exchange, so what was read belongs to what is taken.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <sys/types.h>
+
 #include <atomic>
 #include <cstdint>
 #include <exception>
@@ -14,6 +16,7 @@ namespace swivel::detail {
 /// for a while before they sleep, and leave the core to whoever wants it meanwhile.
 class Team {
  public:
+  /// Fewer where the system has no more threads.
   explicit Team(int helpers);
   ~Team();
   Team(const Team&) = delete;
@@ -30,6 +33,7 @@ class Team {
   void share_some(int first, int count, const std::function<void(int, int)>& body);
   bool take_one(int worker);
 
+  pid_t process_;
   std::vector<std::thread> helpers_;
   /// How often work was shared, and which indices from `first_` on nobody has taken yet: see Open. While there are any, `first_`
   /// and `body_` are theirs.

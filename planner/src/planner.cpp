@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -370,12 +371,16 @@ struct Planner::Impl {
   std::jthread meshes_ahead(const PlanOptions& options) {
     constexpr std::size_t kHeavy = 5000;  // triangles: some milliseconds
     if (threads_of(options).threads() == 1 || world->triangles_to_make_ready() < kHeavy) return {};
-    return std::jthread([world = &*world](const std::stop_token& stop) {
-      try {
-        world->make_ready([&] { return stop.stop_requested(); });
-      } catch (...) {  // who needs it comes to the same end
-      }
-    });
+    try {
+      return std::jthread([world = &*world](const std::stop_token& stop) {
+        try {
+          world->make_ready([&] { return stop.stop_requested(); });
+        } catch (...) {  // who needs it comes to the same end
+        }
+      });
+    } catch (const std::system_error&) {  // the system has no more threads
+      return {};
+    }
   }
   void find(const PlanOptions& options, const Budget& budget, PlanResult& result) {
     Stopwatch watch, whole;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -83,6 +85,34 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
   EXPECT_GE(visited, at_least(40'000));
   EXPECT_GE(thrown, at_least(500));
 }
+
+#ifndef __SANITIZE_THREAD__
+TEST(Executor, AProcessThatForksNeedNotWaitForHelpers) {
+  auto executor = std::make_unique<Executor>(4);
+  const auto work = [&] {
+    std::atomic<int> sum{0};
+    executor->for_each_brief(40, [&](int index, int) {
+      for (std::atomic<int> step{0}; step < 1'000'000;) ++step;
+      sum += index;
+    });
+    return sum.load();
+  };
+  ASSERT_EQ(work(), 780);  // began helpers
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(30);  // ends it where it waits
+    const bool right = work() == 780;
+    executor.reset();
+    _exit(right ? 0 : 1);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(work(), 780);
+}
+#endif
 
 void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.status, first.status);
