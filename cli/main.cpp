@@ -10,6 +10,7 @@
 #include <new>
 
 #include "commands.hpp"
+#include "large_pages.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel::cli {
@@ -64,6 +65,7 @@ void report_removed(const std::vector<std::filesystem::path>& files, const std::
 
 int main(int argc, char** argv) {
   using namespace swivel::cli;
+  use_large_pages();
   occupy_standard_streams();
   // A reader that has left, or a file that may not grow, is an error of the write and not the end of the program.
   std::signal(SIGPIPE, SIG_IGN);
