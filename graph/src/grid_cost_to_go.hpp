@@ -19,9 +19,8 @@ namespace swivel {
 /// it comes to be more, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for goals before the last
 /// layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is left.
 ///
-/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. LayerJoints are solved again where
-/// they are wanted again, but after the first repair, or search for the deepest layer, of a lattice of up to a million nodes: there
-/// they are kept, 40 bytes a node of the layers that were visited.
+/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they are
+/// wanted again: that takes less time than a fresh page of memory.
 class GridCostToGo final : public CostToGo {
  public:
   /// Takes over what `retired` had allocated; null is allowed.
@@ -55,13 +54,14 @@ class GridCostToGo final : public CostToGo {
   struct Workspace;
   using ColumnSet = std::vector<std::uint8_t>;  // [column]
 
-  /// LayerJoints of the nodes j = first ... first + count - 1 of a layer for the sheets of one family, count <= 2 window + 1; entry
-  /// k of the run is at nodes->q(sheet, joint)[shift + k].
-  struct NodeRun {
+  /// Joints of one node.
+  struct OneNode {
     const LayerNodes* nodes = nullptr;
-    int shift = 0;
+    int sheet = 0, place = 0;
+    [[nodiscard]] bool valid() const { return nodes->valid(sheet, place); }
+    [[nodiscard]] Config config() const { return nodes->config(sheet, place); }
   };
-  [[nodiscard]] NodeRun nodes(int layer, int family, int first, int count, LayerNodes& scratch);
+  [[nodiscard]] OneNode one_node(int layer, int slot);
   [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
   [[nodiscard]] std::size_t tile_of_layer(int sheet, int column) const {
     return static_cast<std::size_t>(sheet) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
@@ -72,10 +72,8 @@ class GridCostToGo final : public CostToGo {
   }
   double& value_at(int layer, int slot);  // holds its tile from now on
 
-  /// From now on, in lattices that leave room for it: where one repair is needed more follow, and after a layer that is not
-  /// reached.
-  void keep_joints();
   LayerJoints& joints(int layer);
+  void forget_joints();  // what is solved again does not hang on how many layers there is room for
   void solve_ahead(int layer, int by, const Workspace& reached);                // by 1 or -1
   void solve_open(LayerJoints& joints, int family, int first, int last) const;  // columns
   void solve_columns(LayerJoints& joints, int family, int first, int last);     // columns
@@ -97,6 +95,7 @@ class GridCostToGo final : public CostToGo {
   void publish_values(Workspace& workspace);
   void store_tiles(const Workspace& workspace);
   void load_tiles(int layer, const ColumnSet& columns, Workspace& workspace);
+  void solve_window(int layer, int family, const SrsLattice::Run& run);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
@@ -141,22 +140,26 @@ class GridCostToGo final : public CostToGo {
     double limit = kUnreachable;
     TileTable::Held tiles;
   } saved_;
-  std::vector<std::unique_ptr<LayerJoints>> cache_;  // by layer; empty where joints are not kept
   static constexpr int kLayersAhead = 8;
-  std::vector<LayerJoints> passing_;  // by layer % size, where they are not kept: those at hand and those solved ahead
-  std::vector<std::unique_ptr<LayerJoints>> spares_;  // of a search before, for the cache
+  std::vector<LayerJoints> passing_;  // by layer % size: those at hand and those solved ahead
   std::array<std::unique_ptr<Workspace>, 2> workspace_;
   std::vector<int> columns_;  // scratch of reach_back
-  LayerNodes scratch_;
-  /// The run that each_in_window() solved last, in `window_scratch_` or kept: a best path's nodes are asked one after the other,
-  /// each among the steps of the last.
-  struct Solved {
+  /// As many neighbours as a vector has lanes, for one_node(): nodes are asked about together with others around them. By layer,
+  /// family and column.
+  struct Neighbours {
+    std::int64_t of = -1;
+    LayerNodes nodes;
+  };
+  static constexpr std::size_t kNeighbourhoods = 509;
+  std::vector<Neighbours> neighbours_;
+  /// The run that each_in_window() solved last: a best path's nodes are asked one after the other, each among the steps of the
+  /// last.
+  struct Window {
     int layer = -1, family = 0;
     SrsLattice::Run run;
-    NodeRun nodes;
+    LayerNodes nodes;
   };
-  Solved solved_;
-  LayerNodes window_scratch_;
+  Window window_;
 };
 
 }  // namespace swivel

@@ -6,19 +6,7 @@
 namespace swivel {
 
 GridCostToGo::LayerJoints& GridCostToGo::joints(int layer) {
-  LayerJoints* joints = nullptr;
-  if (cache_.empty()) {
-    joints = &passing_[static_cast<std::size_t>(layer) % passing_.size()];
-  } else {
-    auto& kept = cache_[static_cast<std::size_t>(layer)];
-    if (!kept && !spares_.empty()) {
-      kept = std::move(spares_.back());
-      kept->layer = -1;
-      spares_.pop_back();
-    }
-    if (!kept) kept = std::make_unique<LayerJoints>();
-    joints = kept.get();
-  }
+  LayerJoints* joints = &passing_[static_cast<std::size_t>(layer) % passing_.size()];
   if (joints->layer != layer) {
     const int n = lattice_->angles(), window = lattice_->window();
     joints->layer = layer;
@@ -104,35 +92,34 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
   }
 }
 
-GridCostToGo::NodeRun GridCostToGo::nodes(int layer, int family, int first, int count, LayerNodes& scratch) {
-  const int n = lattice_->angles();
-  if (cache_.empty()) {
-    if (n >= kTileWidth) count = (count + kTileWidth - 1) / kTileWidth * kTileWidth;  // whole vectors are quicker
+void GridCostToGo::forget_joints() {
+  passing_.resize(work_.threads > 1 ? kLayersAhead + 1 : 2);
+  for (LayerJoints& joints : passing_) joints.layer = -1;
+}
+
+GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
+  constexpr std::int64_t kLayersApart = 67;  // neighbours along the path and along the coordinate must not share a place
+  const int sheet = lattice_->sheet_of(slot), family = lattice_->family_of(sheet), angle = lattice_->angle_of(slot);
+  const int column = angle / kTileWidth, count = std::min(kTileWidth, lattice_->angles());
+  if (neighbours_.empty()) neighbours_.resize(kNeighbourhoods);
+  const std::int64_t in_layer = family * tile_columns() + column;
+  Neighbours& found = neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];
+  if (const std::int64_t of = layer * std::int64_t{2} * tile_columns() + in_layer; found.of != of) {
+    found.of = of;
     ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->sheets() / 2;
-    lattice_->lay_out(layer, first, count, scratch);
-    lattice_->solve_part(family, 0, count, scratch);
-    return {&scratch, 0};
+    lattice_->lay_out(layer, column * kTileWidth, count, found.nodes);
+    lattice_->solve_part(family, 0, count, found.nodes);
   }
-  LayerJoints& kept = joints(layer);
-  for (int k = 0; k < count;) {
-    const int angle = (first + k) % n, column = angle / kTileWidth;
-    solve_columns(kept, family, column, column + 1);
-    k += std::min(n, (column + 1) * kTileWidth) - angle;
-  }
-  return {&kept.nodes, (first + lattice_->window()) % n};
+  return {&found.nodes, sheet, angle - column * kTileWidth};
 }
 
 Config GridCostToGo::config(int layer, int slot) {
-  const int sheet = lattice_->sheet_of(slot);
-  const NodeRun here = nodes(layer, lattice_->family_of(sheet), lattice_->angle_of(slot), 1, scratch_);
-  return here.nodes->config(sheet, here.shift);
+  return one_node(layer, slot).config();
 }
 
 std::optional<Config> GridCostToGo::node(int layer, int slot) {
-  const int sheet = lattice_->sheet_of(slot);
-  const NodeRun here = nodes(layer, lattice_->family_of(sheet), lattice_->angle_of(slot), 1, scratch_);
-  if (!here.nodes->valid(sheet, here.shift)) return std::nullopt;
-  return here.nodes->config(sheet, here.shift);
+  const OneNode node = one_node(layer, slot);
+  return node.valid() ? std::optional(node.config()) : std::nullopt;
 }
 
 }  // namespace swivel

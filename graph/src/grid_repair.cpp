@@ -18,31 +18,44 @@ double& GridCostToGo::value_at(int layer, int slot) {
 /// worth a look when its turn comes.
 template <class Worth, class Visit>
 void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit) {
-  const int n = lattice_->angles();
+  const int n = lattice_->angles(), half = lattice_->sheets() / 2;
   const SrsLattice::Run run = lattice_->run_after(layer, slot);
   for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    NodeRun next;
-    for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
-      for (int k = 0; lattice_->family_of(sheet) == family && k < run.count; ++k) {
-        const int b = sheet * n + (run.first + k) % n;
-        const double rest = at(layer + 1, b);
-        if (!worth(rest)) continue;
-        if (!next.nodes) {
-          next = nodes(layer + 1, family, run.first, run.count, window_scratch_);
-          solved_ = {layer + 1, family, run, next};
+    bool known = false;
+    for (int sheet = family * half; sheet < (family + 1) * half; ++sheet)
+      for (int k = 0, next = 0; k < run.count; k = next) {
+        const int angle = (run.first + k) % n, column = angle / kTileWidth;
+        next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
+        const std::size_t tile = tile_index(layer + 1, sheet, column);
+        if (!tiles_.holds(tile)) continue;
+        const double* rest = tiles_[tile].data() + angle % kTileWidth;
+        for (int j = k; j < next; ++j, ++rest) {
+          if (!worth(*rest)) continue;
+          if (!known) solve_window(layer + 1, family, run);
+          known = true;
+          visit(sheet * n + (run.first + j) % n, *rest, lattice_->delta(q, window_.nodes.config(sheet, j)));
         }
-        visit(b, rest, lattice_->delta(q, next.nodes->config(sheet, next.shift + k)));
       }
   }
 }
 
+void GridCostToGo::solve_window(int layer, int family, const SrsLattice::Run& run) {
+  int count = run.count;
+  if (lattice_->angles() >= kTileWidth) count = (count + kTileWidth - 1) / kTileWidth * kTileWidth;  // whole vectors are quicker
+  window_.layer = layer;
+  window_.family = family;
+  window_.run = run;
+  ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->sheets() / 2;
+  lattice_->lay_out(layer, run.first, count, window_.nodes);
+  lattice_->solve_part(family, 0, count, window_.nodes);
+}
+
 double GridCostToGo::relax_one(int layer, int slot) {
-  const int sheet = lattice_->sheet_of(slot);
-  const NodeRun here = nodes(layer, lattice_->family_of(sheet), lattice_->angle_of(slot), 1, scratch_);
-  if (!here.nodes->valid(sheet, here.shift) || verdicts_.node(layer, slot) == Verdict::kRemoved) return kUnreachable;
+  const OneNode here = one_node(layer, slot);
+  if (!here.valid() || verdicts_.node(layer, slot) == Verdict::kRemoved) return kUnreachable;
   double best = kUnreachable;
   each_in_window(
-      layer, slot, here.nodes->config(sheet, here.shift), [&](double rest) { return rest < best; },
+      layer, slot, here.config(), [&](double rest) { return rest < best; },
       [&](int b, double rest, const Config& delta) {
         ++edges_;
         const double value = lattice_->edge_cost(delta) + rest;
@@ -54,9 +67,9 @@ double GridCostToGo::relax_one(int layer, int slot) {
 
 void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
   const int n = lattice_->angles(), sheet = lattice_->sheet_of(slot);
-  const int offset = (lattice_->angle_of(slot) - solved_.run.first + n) % n;
-  const bool known = solved_.layer == layer && solved_.family == lattice_->family_of(sheet) && offset < solved_.run.count;
-  const Config q = known ? solved_.nodes.nodes->config(sheet, solved_.nodes.shift + offset) : config(layer, slot);
+  const int offset = (lattice_->angle_of(slot) - window_.run.first + n) % n;
+  const bool known = window_.layer == layer && window_.family == lattice_->family_of(sheet) && offset < window_.run.count;
+  const Config q = known ? window_.nodes.config(sheet, offset) : config(layer, slot);
   const double own = verdicts_.cost(layer, slot);
   out.clear();
   each_in_window(
@@ -93,13 +106,7 @@ void GridCostToGo::add_node_costs(Workspace& workspace) const {
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
 
-void GridCostToGo::keep_joints() {
-  constexpr std::int64_t kMostKept = 1'000'000;
-  if (lattice_->nodes() <= kMostKept) cache_.resize(static_cast<std::size_t>(lattice_->layers()));
-}
-
 void GridCostToGo::compute_removals() {
-  keep_joints();
   propagate_removals();
   raise_limit_until_exact();
 }
@@ -122,6 +129,7 @@ GridCostToGo::ColumnSet GridCostToGo::widened(const ColumnSet& columns) const {
 
 void GridCostToGo::propagate_removals() {
   const TraceSpan span("repair");
+  forget_joints();
   const int n = lattice_->angles();
   ColumnSet changed(static_cast<std::size_t>(tile_columns()), 0), here_changed(changed.size());  // columns, of any sheet
   bool any = false;
@@ -187,10 +195,10 @@ void GridCostToGo::propagate_removals() {
 // --- reach
 
 double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& before) {
-  const int n = lattice_->angles(), length = n + 2 * lattice_->window(), sheet = lattice_->sheet_of(slot);
-  const NodeRun here = nodes(layer, lattice_->family_of(sheet), lattice_->angle_of(slot), 1, scratch_);
-  if (!here.nodes->valid(sheet, here.shift) || verdicts_.node(layer, slot) == Verdict::kRemoved) return kUnreachable;
-  const Config q = here.nodes->config(sheet, here.shift);
+  const int n = lattice_->angles(), length = n + 2 * lattice_->window();
+  const OneNode here = one_node(layer, slot);
+  if (!here.valid() || verdicts_.node(layer, slot) == Verdict::kRemoved) return kUnreachable;
+  const Config q = here.config();
   const SrsLattice::Run run = lattice_->run_before(layer - 1, slot);
   double best = kUnreachable;
   for (const int other : before.sheets)
@@ -225,7 +233,6 @@ void GridCostToGo::keep_reach(int layer, const Workspace& workspace) {
 int GridCostToGo::deepest_reachable() {
   if (knows_reach()) return reach_.deepest;
   const TraceSpan span("reach");
-  keep_joints();
   reach_.known = false;
   const int n = lattice_->angles();
   Workspace* before = workspace_[0].get();

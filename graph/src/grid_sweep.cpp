@@ -29,9 +29,9 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
       tiles_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.sheets() * tile_columns()),
              retired ? std::move(retired->tiles_) : TileTable()) {
   if (retired) {
-    spares_ = std::move(retired->spares_);
-    for (auto& joints : retired->cache_)
-      if (joints) spares_.push_back(std::move(joints));
+    passing_ = std::move(retired->passing_);
+    neighbours_ = std::move(retired->neighbours_);
+    for (Neighbours& neighbours : neighbours_) neighbours.of = -1;
   }
   const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
   for (auto& workspace : workspace_) {
@@ -174,8 +174,7 @@ void GridCostToGo::raise_limit_until_exact() {
 }
 
 void GridCostToGo::begin_with_all(int layer, Workspace& workspace) {
-  passing_.resize(work_.threads > 1 ? kLayersAhead + 1 : 2);
-  for (LayerJoints& joints : passing_) joints.layer = -1;  // what is solved again does not hang on how many there are
+  forget_joints();
   begin_layer(layer, workspace);
   std::fill(workspace.row.begin(), workspace.row.end(), 0.0);
   for (int sheet = 0; sheet < lattice_->sheets(); ++sheet) {

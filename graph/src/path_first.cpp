@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 #include <stdexcept>
 #include <unordered_map>
 #include <unordered_set>
@@ -51,10 +52,12 @@ class Search {
     ask(std::span<const NodeQuestion>(first.nodes));
     ask(std::span<const EdgeQuestion>(first.edges));
     if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) cost_to_go_.repair();
+    const std::int64_t first_iteration = counters.iterations;
     for (;;) {
       cost_to_go_.budget().poll();
       const SlotPath path = best_path(cost_to_go_, counters.expansions);
       if (path.empty()) return {};
+      if (counters.iterations == first_iteration) first_cost_ = cost_to_go_.best();
       counters.candidate = path;
       ++counters.iterations;
       if (asks_costs_ && costs_more(path)) {
@@ -135,24 +138,38 @@ class Search {
   bool valid(const SlotPath& path) {
     const TraceSpan span("candidate path");
     const int layers = static_cast<int>(path.size());
-    std::vector<Config> joints;
-    for (int i = 0; i < layers; ++i) {
-      if (i % 64 == 0) cost_to_go_.budget().poll();
-      joints.push_back(cost_to_go_.config(i, path[static_cast<std::size_t>(i)]));
-    }
+    std::vector<std::optional<Config>> solved(path.size());  // where anything is unknown
+    const auto joints = [&](int layer) -> const Config& {
+      auto& q = solved[static_cast<std::size_t>(layer)];
+      if (!q) q = cost_to_go_.config(layer, path[static_cast<std::size_t>(layer)]);
+      return *q;
+    };
+    const auto poll_at = [&](int layer) {
+      if (layer % 64 == 0) cost_to_go_.budget().poll();
+    };
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     asked_ = 0;
     left_to_grow_ = most_grown();
+    // Where paths cost that much more than the first, obstacles bar most of them, and each would find a little more of the same.
+    if (!beyond_reach_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
+      grow_on();
+      for (int i = 0; i < layers; ++i)
+        if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
+    }
     std::vector<NodeQuestion> nodes;
-    for (int i = 0; i < layers; ++i)
-      if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints[at(i)]});
+    for (int i = 0; i < layers; ++i) {
+      poll_at(i);
+      if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints(i)});
+    }
     const auto node_unknown = [&](const NodeQuestion& x) { return verdicts_.node(x.layer, x.slot) == Verdict::kUnknown; };
     if (!all_valid(nodes, node_unknown, layers)) return false;
     if (!validity_.asks_edges()) return true;
     std::vector<EdgeQuestion> edges;
-    for (int i = 0; i + 1 < layers; ++i)
+    for (int i = 0; i + 1 < layers; ++i) {
+      poll_at(i);
       if (verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
-        edges.push_back({i, path[at(i)], path[at(i + 1)], joints[at(i)], joints[at(i + 1)]});
+        edges.push_back({i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)});
+    }
     const auto edge_unknown = [&](const EdgeQuestion& x) { return verdicts_.edge(x.layer, x.a, x.b) == Verdict::kUnknown; };
     return all_valid(edges, edge_unknown, layers);
   }
@@ -184,6 +201,22 @@ class Search {
   /// valid takes the robot's own pairs, too, which are as costly as they are near by design, and few come to lie on a path.
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;
+    grow(failed, frontier);
+  }
+
+  /// Goes on where regions ended at nodes that no path reached at the cost of then, and that paths reach by now.
+  void grow_on() {
+    std::deque<Failure> frontier;
+    std::erase_if(beyond_reach_, [&](const Failure& x) {
+      const bool known = verdicts_.node(x.layer, x.slot) != Verdict::kUnknown;
+      if (!known && cost_to_go_.at(x.layer, x.slot) == kUnreachable) return false;
+      if (!known) frontier.push_back(x);
+      return true;
+    });
+    grow({}, frontier);
+  }
+
+  void grow(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
     const auto add_neighbours = [&](const Failure& x) {
       for (const int by : {-1, 1}) {
         const int slot = x.layer + by <= cost_to_go_.goal_layer() ? lattice_.along(x.layer, x.slot, by) : -1;
@@ -202,7 +235,11 @@ class Search {
         frontier.pop_front();
         const bool again = std::any_of(questions.begin(), questions.end(),
                                        [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
-        if (again || verdicts_.node(layer, slot) != Verdict::kUnknown || cost_to_go_.at(layer, slot) == kUnreachable) continue;
+        if (again || verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
+        if (cost_to_go_.at(layer, slot) == kUnreachable) {
+          beyond_reach_.push_back({layer, slot, failure});
+          continue;
+        }
         if (const auto known = spared_.find(key(layer, slot)); known != spared_.end() && known->second == failure) continue;
         questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
       }
@@ -309,11 +346,14 @@ class Search {
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;  // neighbours on either side that costs_more() asks about
   /// Questions that cost about as much as a repair and the path after it.
-  static constexpr std::int64_t kWorthARound = 128;
+  static constexpr std::int64_t kWorthARound = 64;
   std::int64_t asked_ = 0;  // in this round
   int left_to_grow_ = 0;    // questions about neighbours, in this round
   static constexpr std::size_t kGrownAtOnce = 32;
   std::unordered_map<std::int64_t, FailureId> spared_;  // by key(): what grow() asked about last, of nodes that no obstacle barred
+  static constexpr double kMuchDearer = 1.2;
+  double first_cost_ = 0;              // of the first path
+  std::vector<Failure> beyond_reach_;  // where regions ended
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
