@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have: paths of two to
 // five waypoints, up to four obstacles, meshes among them, with and without a start, with random limits; feasible and not.
-//   eager_ratios [--count N] [--first N] [--seed N] PROBLEM.yaml...    default 500 problems from the first on, robots in turn
-// Prepared robots, one thread, medians of three in turn: until the verdict, and the whole call, which explains why there is no
-// path, the same way for both. Prints each problem on which the verdict of `lazy` comes later, and percentiles.
+//   eager_ratios [--count N] [--first N] [--seed N] [--rounds N] PROBLEM.yaml...
+// Default: 500 problems from the first on, robots in turn, three rounds. Prepared robots, one thread, medians of the rounds, in
+// which the planners take turns: until the verdict, and the whole call, which explains why there is no path, the same way for
+// both. Prints each problem on which the verdict of `lazy` comes later, and percentiles.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -120,24 +121,23 @@ Problem random_problem(const Problem& robot, const Chain& chain, Random& random)
   return problem;
 }
 
-constexpr std::size_t kRounds = 3;
 /// Of one planner, by round.
 struct Times {
-  std::array<double, kRounds> verdict{}, whole{};  // ms
+  std::vector<double> verdict, whole;  // ms
 };
-PlanResult timed(const PreparedRobot& robot, const Problem& problem, PlannerKind planner, Times& times, std::size_t round) {
+PlanResult timed(const PreparedRobot& robot, const Problem& problem, PlannerKind planner, Times& times) {
   PlanOptions options;
   options.planner = planner;
   options.threads = 1;
   const auto start = std::chrono::steady_clock::now();
   PlanResult result = plan(robot, problem, options);
-  times.whole[round] = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  times.verdict[round] = result.time_ms.at("plan");
+  times.whole.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+  times.verdict.push_back(result.time_ms.at("plan"));
   return result;
 }
-double median(std::array<double, kRounds> values) {
+double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
-  return values[kRounds / 2];
+  return values[values.size() / 2];
 }
 
 void print(const char* what, std::vector<double> ratios) {
@@ -148,23 +148,25 @@ void print(const char* what, std::vector<double> ratios) {
 }
 
 struct Options {
-  std::uint64_t count = 500, first = 0, seed = 1;
+  std::uint64_t count = 500, first = 0, seed = 1, rounds = 3;
   std::vector<std::string> files;
 };
 Options options_of(int argc, char** argv) {
   Options options;
   for (int k = 1; k < argc; ++k) {
     const std::string word = argv[k];
-    if ((word == "--count" || word == "--first" || word == "--seed") && k + 1 < argc)
+    if ((word == "--count" || word == "--first" || word == "--seed" || word == "--rounds") && k + 1 < argc)
       (word == "--count"   ? options.count
        : word == "--first" ? options.first
-                           : options.seed) = std::strtoull(argv[++k], nullptr, 10);
+       : word == "--seed"  ? options.seed
+                           : options.rounds) = std::strtoull(argv[++k], nullptr, 10);
     else if (word[0] != '-')
       options.files.push_back(word);
     else
-      throw InputError("eager_ratios: " + word + ": allowed are --count N, --first N, --seed N and problems");
+      throw InputError("eager_ratios: " + word + ": allowed are --count N, --first N, --seed N, --rounds N and problems");
   }
-  if (options.files.empty()) throw InputError("eager_ratios [--count N] [--first N] [--seed N] PROBLEM.yaml...");
+  if (options.files.empty()) throw InputError("eager_ratios [--count N] [--first N] [--seed N] [--rounds N] PROBLEM.yaml...");
+  if (options.rounds == 0) throw InputError("eager_ratios: --rounds: allowed are whole numbers from 1 on");
   return options;
 }
 
@@ -183,9 +185,9 @@ void run(const Options& options) {
     const Problem problem = random_problem(problems[which], robots[which].arm().chain, random);
     Times lazy, eager;
     bool equal = true, found = false;
-    for (std::size_t round = 0; round < kRounds; ++round) {
-      const PlanResult a = timed(robots[which], problem, PlannerKind::kLazy, lazy, round);
-      const PlanResult b = timed(robots[which], problem, PlannerKind::kEagerDp, eager, round);
+    for (std::uint64_t round = 0; round < options.rounds; ++round) {
+      const PlanResult a = timed(robots[which], problem, PlannerKind::kLazy, lazy);
+      const PlanResult b = timed(robots[which], problem, PlannerKind::kEagerDp, eager);
       found = a.status == PlanStatus::kSolved;
       equal = equal && a.status == b.status && (!found || a.cost == b.cost);
     }
