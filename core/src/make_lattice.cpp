@@ -64,6 +64,11 @@ std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& 
   return rows;
 }
 
+bool has_path_joints(const Lattice& lattice, const std::vector<int>& slots) {
+  const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice);
+  return !slots.empty() && (!arcs || std::holds_alternative<ArcLattice::Rows>(arcs->unwrap(slots)));
+}
+
 std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots) {
   if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->rows(slots);
   std::vector<TrajectoryRow> rows;

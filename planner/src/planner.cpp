@@ -313,7 +313,7 @@ struct Planner::Impl {
     }
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
-      if (!found.decided || found.outcome.path.empty() || !path_joints(lattice, found.outcome.path).empty()) return found;
+      if (!found.decided || found.outcome.path.empty() || has_path_joints(lattice, found.outcome.path)) return found;
       layout->second = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
       result.lattice.nodes = layout->second->lattice->nodes();
       found = search(*layout->second, false, rule, options, budget, result);

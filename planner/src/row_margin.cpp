@@ -5,19 +5,22 @@
 
 namespace swivel {
 
-RowMargin::RowMargin(const Lattice& lattice, const World& world) : lattice_(&lattice) {
-  if (!lattice.has_own_rows()) return;
-  for (const RobotBody& body : world.bodies()) {
-    Body& mine = bodies_.emplace_back(Body{body.group, 0});
+std::vector<RowMargin::Body> RowMargin::measured() const {
+  std::vector<Body> bodies;
+  if (!lattice_->has_own_rows()) return bodies;
+  for (const RobotBody& body : world_->bodies()) {
+    Body& mine = bodies.emplace_back(Body{body.group, 0});
     if (body.group == 0) continue;
-    const Vector3d about = lattice.row_shift(0, body.group, Config::Zero()).about;
+    const Vector3d about = lattice_->row_shift(0, body.group, Config::Zero()).about;
     for (const Ball& ball : bounding_balls(body.shape))
       mine.radius = std::max(mine.radius, (body.pose * ball.center - about).norm() + ball.radius);
   }
+  return bodies;
 }
 
 template <class Shift>
 double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
+  std::call_once(once_, [&] { bodies_ = measured(); });
   double sum = 0;
   for (const int body : {pair.a, pair.b}) {
     if (body >= static_cast<int>(bodies_.size())) continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <mutex>
 #include <vector>
 
 #include "swivel/collision/world.hpp"
@@ -7,10 +8,11 @@
 
 namespace swivel {
 
-/// How much the clearance of two bodies may differ where a lattice knows the poses of bodies only so well.
+/// How much the clearance of two bodies may differ where a lattice knows the poses of bodies only so well. The bodies are measured
+/// when this is first asked: most plans whose paths meet no obstacle never ask. Threads may ask at once.
 class RowMargin {
  public:
-  RowMargin(const Lattice& lattice, const World& world);
+  RowMargin(const Lattice& lattice, const World& world) : lattice_(&lattice), world_(&world) {}
   /// Between the joints q of a node and its row (Lattice::row_shift), m; 0 where nodes are their own rows, infinite where nothing
   /// is known.
   [[nodiscard]] double from_node(int layer, const Config& q, const BodyPair& pair) const;
@@ -21,12 +23,16 @@ class RowMargin {
   template <class Shift>
   [[nodiscard]] double sum(const BodyPair& pair, const Shift& shift) const;
 
-  const Lattice* lattice_;
   struct Body {
     int group = 0;
     double radius = 0;  ///< m, of its farthest point from where PoseShift is about
   };
-  std::vector<Body> bodies_;  // of the robot; empty where nodes are their own rows
+  [[nodiscard]] std::vector<Body> measured() const;  // empty where nodes are their own rows
+
+  const Lattice* lattice_;
+  const World* world_;
+  mutable std::once_flag once_;
+  mutable std::vector<Body> bodies_;  // of the robot
 };
 
 }  // namespace swivel

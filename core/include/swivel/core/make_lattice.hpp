@@ -32,7 +32,10 @@ namespace swivel {
 /// the lattice takes bounded joints of more than a turn as circles and their values leave the limits along this path.
 [[nodiscard]] std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots);
 
-/// The same with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie between those of
+/// Whether path_joints() is not empty; takes less time where no joint is taken as a circle.
+[[nodiscard]] bool has_path_joints(const Lattice& lattice, const std::vector<int>& slots);
+
+/// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie between those of
 /// the lattice (Lattice::has_layers_between).
 [[nodiscard]] std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots);
 
