@@ -12,8 +12,8 @@
 
 #include "bound.hpp"
 #include "closed_mesh.hpp"
-#include "lazy.hpp"
 #include "polyhedron.hpp"
+#include "swivel/core/lazy.hpp"
 #include "swivel/core/shape.hpp"
 
 namespace swivel::detail {

@@ -2,6 +2,7 @@
 #include "row_margin.hpp"
 
 #include <algorithm>
+#include <memory>
 
 namespace swivel {
 
@@ -20,11 +21,11 @@ std::vector<RowMargin::Body> RowMargin::measured() const {
 
 template <class Shift>
 double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
-  std::call_once(once_, [&] { bodies_ = measured(); });
+  const std::vector<Body>& bodies = bodies_.get([this] { return std::make_unique<std::vector<Body>>(measured()); });
   double sum = 0;
   for (const int body : {pair.a, pair.b}) {
-    if (body >= static_cast<int>(bodies_.size())) continue;
-    const Body& moving = bodies_[static_cast<std::size_t>(body)];
+    if (body >= static_cast<int>(bodies.size())) continue;
+    const Body& moving = bodies[static_cast<std::size_t>(body)];
     if (moving.group > 0) sum += shift(moving.group).of(moving.radius);
   }
   return sum;

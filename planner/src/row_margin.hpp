@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <mutex>
 #include <vector>
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/lazy.hpp"
 
 namespace swivel {
 
@@ -27,12 +27,11 @@ class RowMargin {
     int group = 0;
     double radius = 0;  ///< m, of its farthest point from where PoseShift is about
   };
-  [[nodiscard]] std::vector<Body> measured() const;  // empty where nodes are their own rows
+  [[nodiscard]] std::vector<Body> measured() const;
 
   const Lattice* lattice_;
   const World* world_;
-  mutable std::once_flag once_;
-  mutable std::vector<Body> bodies_;  // of the robot
+  Lazy<std::vector<Body>> bodies_;  // of the robot; empty where nodes are their own rows
 };
 
 }  // namespace swivel

@@ -35,8 +35,8 @@ namespace swivel {
 /// Whether path_joints() is not empty; takes less time where no joint is taken as a circle.
 [[nodiscard]] bool has_path_joints(const Lattice& lattice, const std::vector<int>& slots);
 
-/// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie between those of
-/// the lattice (Lattice::has_layers_between).
+/// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie
+/// between those of the lattice (Lattice::has_layers_between).
 [[nodiscard]] std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots);
 
 /// By how much the tool stands turned at a row, rad.

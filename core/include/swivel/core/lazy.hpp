@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-namespace swivel::detail {
+namespace swivel {
 
 /// What is made when it is first asked for, once, by whichever thread comes first.
 template <class T>
@@ -28,4 +28,4 @@ class Lazy {
   mutable std::unique_ptr<const T> value_;
 };
 
-}  // namespace swivel::detail
+}  // namespace swivel
