@@ -48,7 +48,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   // A fixed batch, so that what is asked (and counted) does not depend on the number of threads. A check of the caller's is asked
   // about as many at once, since calling it may cost more than its answers.
   const bool in_batches = options.planner == PlannerKind::kParallel || options.hooks.check;
-  const PathFirstOptions path_first_options{.batch = in_batches ? 32 : 1};
+  const PathFirstOptions path_first_options{.batch = in_batches ? 32 : 8};
   try {
     if (!swept) {
       ask_suspects(cost_to_go, validity, suspects);

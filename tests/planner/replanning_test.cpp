@@ -179,7 +179,7 @@ TEST(Planner, BeginsWithoutWhatFailedWhereThePathWas) {
 
 TEST(Planner, StopsAndGoesOn) {
   Problem problem = io::load_problem(data_dir() / "problems/experiment_c.yaml");
-  problem.resolution = {.ds = 0.01, .dphi = 0.1};
+  problem.resolution = {.ds = 0.005, .dphi = 0.1};
   problem = episode_problem(problem, 1, 17);
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
