@@ -33,16 +33,28 @@ struct Range {
 bool is_round(const PlacedShapeRef& body) {
   return body.shape->kind == FclShape::Kind::kRound;
 }
-
-double radius_of(const Shape& round) {
-  const auto* sphere = std::get_if<Sphere>(&round);
-  return sphere ? sphere->radius : std::get<Capsule>(round).radius;
+/// A cylinder that the capsule about it exceeds by little.
+bool is_rod(const PlacedShapeRef& body) {
+  const auto* cylinder = std::get_if<Cylinder>(&body.shape->shape);
+  return cylinder && cylinder->length >= 2 * cylinder->radius;
 }
 
-/// What the radius grows: base frame.
+/// What a sphere, a capsule or a rod grows from: radius and, in the shape's frame, length along z, m.
+struct Core {
+  double radius, length;
+};
+Core core_of(const Shape& shape) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {sphere->radius, 0};
+  if (const auto* rod = std::get_if<Cylinder>(&shape)) return {rod->radius, rod->length};
+  const auto& capsule = std::get<Capsule>(shape);
+  return {capsule.radius, capsule.length};
+}
+double radius_of(const PlacedShapeRef& round) {
+  return core_of(round.shape->shape).radius;
+}
+/// Base frame.
 Segment core_of(const PlacedShapeRef& round) {
-  const auto* capsule = std::get_if<Capsule>(&round.shape->shape);
-  const Vector3d along = capsule ? Vector3d(capsule->length * round.pose->linear().col(2)) : Vector3d::Zero();
+  const Vector3d along = core_of(round.shape->shape).length * round.pose->linear().col(2);
   return {round.pose->translation() - along / 2, along};
 }
 
@@ -93,9 +105,9 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
 
 Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double margin, int& triangle) {
   const Segment core = core_of(round);
-  const double radius = radius_of(round.shape->shape);
+  const double radius = radius_of(round);
   if (is_round(other))
-    return Range(d, margin, radius + radius_of(other.shape->shape)).of(std::sqrt(squared_distance(core, core_of(other))));
+    return Range(d, margin, radius + radius_of(other)).of(std::sqrt(squared_distance(core, core_of(other))));
   const Segment there = in_frame(core, *other.pose);
   const Range range(d, margin, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
@@ -180,6 +192,11 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
   if (is_round(a)) return prove_round(a, b, d, margin, witness.b);
   if (is_round(b)) return prove_round(b, a, d, margin, witness.a);
+  // Its axis is nearer to a rod's surface than the prism's long triangles make it.
+  if (is_rod(a))
+    if (const Proof proof = prove_round(a, b, d, margin, witness.b); proof.certificate == Certificate::kFree) return proof;
+  if (is_rod(b))
+    if (const Proof proof = prove_round(b, a, d, margin, witness.a); proof.certificate == Certificate::kFree) return proof;
   return prove_triangles(a, b, d, margin, witness);
 }
 
@@ -209,7 +226,7 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
   if (!is_round(a)) return finds_deeper(low, b, a, witness.a) || finds_deeper(low, a, b, witness.b);
   if (b.shape->mesh) {
     const Segment core = in_frame(core_of(a), *b.pose);
-    const double radius = radius_of(a.shape->shape);
+    const double radius = radius_of(a);
     const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
     const auto nearer = [&](const Vector3d& p) { return gap(p) < low; };
     return b.shape->triangles().seek(

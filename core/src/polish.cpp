@@ -60,6 +60,11 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
   if (arm.exact) return seed;
   constexpr int kSteps = 5;
   constexpr double kResidual = 1e-10;
+  // After a step this short Newton leaves its square times second derivatives below 1,000: less than the residual.
+  constexpr double kLastStep = 1e-7, kLeastSine = 0.1;
+  const auto near_seed = [&](const Config& q) {
+    return (q - seed).lpNorm<Eigen::Infinity>() > kMostPolished ? std::nullopt : std::optional(q);
+  };
   const Vector3d ur = plane.u.cross(plane.r);
   Config q = seed;
   for (int step = 0; step <= kSteps; ++step) {
@@ -75,10 +80,7 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
     error.segment<3>(3) = rotation_vector(tool.linear() * reached.linear().transpose());
     error[6] = std::remainder(phi - std::atan2(y, x), kTwoPi);
     if (!error.allFinite()) return std::nullopt;
-    if (error.lpNorm<Eigen::Infinity>() <= kResidual) {
-      if ((q - seed).lpNorm<Eigen::Infinity>() > kMostPolished) return std::nullopt;
-      return q;
-    }
+    if (error.lpNorm<Eigen::Infinity>() <= kResidual) return near_seed(q);
     if (step == kSteps) break;
     std::array<std::array<double, kDof + 1>, kDof> rows{};
     for (std::size_t k = 0; k < kDof; ++k) {
@@ -95,7 +97,9 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
     rows[6][0] = arm.axis[0].cross(h).dot(normal);
     rows[6][1] = turned(arm.axis[1], arm.axis[0], c0, s0).cross(h).dot(normal);
     rows[6][2] = by_two(arm.axis[2]).cross(h).dot(normal);
-    q += solved(rows);
+    const Config change = solved(rows);
+    q += change;
+    if (change.lpNorm<Eigen::Infinity>() <= kLastStep && x * x + y * y >= kLeastSine * kLeastSine) return near_seed(q);
   }
   return std::nullopt;
 }

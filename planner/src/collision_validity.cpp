@@ -10,7 +10,7 @@ namespace swivel {
 
 namespace {
 
-constexpr std::size_t kRows = 8192, kSlotsApart = 67;
+constexpr std::size_t kMostRows = 8192, kRowsOfLayer = 8, kSlotsApart = 67;
 
 /// Beside the pairs of bodies.
 constexpr FailureId kManipulability = -2;
@@ -43,7 +43,7 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int partition = 0; partition < partitions; ++partition) partitions_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
-  if (lattice.has_own_rows()) rows_.assign(static_cast<std::size_t>(executor.threads()), std::vector<Row>(kRows));
+  if (lattice.has_own_rows()) rows_.assign(static_cast<std::size_t>(executor.threads()), std::vector<Row>(std::min(kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
 }
 
 std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {

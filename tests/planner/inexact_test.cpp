@@ -7,6 +7,8 @@
 #include "brute_force.hpp"
 #include "inexact_robots.hpp"
 #include "random_problem.hpp"
+#include "swivel/core/angle.hpp"
+#include "swivel/core/arm_angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
@@ -168,6 +170,44 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
   std::printf("%d postures, %d joints of nodes beyond a limit\n", tried, beyond);
   EXPECT_GT(tried, 100);
   EXPECT_GT(beyond, 20);
+}
+
+/// Rows lie on the exact chain at the arm angle, whether Newton looked at its last step or took it as short enough. Of postures
+/// anywhere, also near singular ones, where it has to look.
+TEST(Inexact, EveryRowIsOnTheExactChain) {
+  const std::uint64_t base = seed("Inexact.Residual");
+  Random random(base);
+  int rows = 0, none = 0, near_singular = 0;
+  double farthest = 0, most_turned = 0;
+  for (int set = 0; set < 4; ++set)
+    for (const TestRobot& robot : inexact_robots(random)) {
+      const Chain chain = arm_of(robot).chain;
+      const SrsArm arm = fit_srs(chain, robot.name);
+      for (int trial = 0; trial < trials(2000) / 4; ++trial) {
+        Config q = random_config(chain, random);
+        if (trial % 4 == 0) q[1] = std::copysign(std::pow(10, random.uniform(-4, -1)), q[1]);  // near a stretched shoulder
+        const Pose tool = chain.tool(q);
+        const ArmPlane plane = first_plane(arm, tool);
+        if (reach_status(arm, plane.reach) != ReachStatus::kReachable) continue;
+        const double phi = plane.angle_of(arm.elbow_axis(q));
+        const auto circles = elbow_circles(arm, plane, tool);
+        for (int branch = 0; branch < kBranches; ++branch) {
+          const auto row = polish(chain, arm, plane, tool, phi, srs_ik(arm, circles, phi, branch));
+          none += !row;
+          if (!row) continue;
+          ++rows;
+          near_singular += std::abs(std::sin(arm.shoulder_angle(*row))) < 0.01;
+          farthest = std::max(farthest, (chain.tool(*row).matrix() - tool.matrix()).norm());
+          most_turned = std::max(most_turned, std::abs(wrap_angle(arm_angle(arm, plane, *row) - phi)));
+        }
+      }
+    }
+  std::printf("SWIVEL_TEST_SEED %llu: %d rows, %d poses without, %d near a stretched shoulder, residual %.2g, arm angle %.2g rad\n",
+              static_cast<unsigned long long>(base), rows, none, near_singular, farthest, most_turned);
+  EXPECT_GT(rows, 1000);
+  EXPECT_GT(near_singular, 100);
+  EXPECT_LE(farthest, 3.2e-10);  // each of nine numbers to 1e-10
+  EXPECT_LE(most_turned, 1.01e-10);
 }
 
 /// A start keeps its joints wherever the fitted arm has none: stretched further than that can reach, or singular for it.
