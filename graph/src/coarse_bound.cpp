@@ -65,10 +65,8 @@ struct alignas(64) Circle {  // threads write to neighbours
     Summary sum;
     sum.least = values.minCoeff();
     if (sum.least == kNever) return sum;
-    for (std::size_t m = 0; m < kMiddle.size(); ++m) {
-      const auto joint = lanes(q[kMiddle[m]], at);
-      sum.joint[m] = {(values < kNever).select(joint, kNever).minCoeff(), (values < kNever).select(joint, -kNever).maxCoeff()};
-    }
+    for (std::size_t m = 0; m < kMiddle.size(); ++m)
+      relax_kernels().coarse_range(q[kMiddle[m]].data() + at, values.data(), kRun, sum.joint[m].low, sum.joint[m].high);
     return sum;
   }
 };

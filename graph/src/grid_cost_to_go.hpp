@@ -83,6 +83,8 @@ class GridCostToGo final : public CostToGo {
                  double* best);
   void relax(int step_layer, Workspace& from, const Workspace& to);
   void find_ranges(LayerJoints& joints, int family, int column) const;
+  /// No step takes a joint from one range into the other. Continuous joints have no plain ranges, which tell nothing.
+  [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
                                  int other) const;

@@ -39,12 +39,13 @@ void GridCostToGo::reach_back(int step_layer, const Workspace& to, Workspace& fr
   }
 }
 
+bool GridCostToGo::out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const {
+  return !lattice_->continuous()[static_cast<std::size_t>(joint)] && a.gap(b) > lattice_->step_bound(step_layer)[joint];
+}
+
 bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const {
-  const Config& bound = lattice_->step_bound(step_layer);
-  for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
-    const int joint = MiddleRanges::kJoints[m];
-    if (!lattice_->continuous()[static_cast<std::size_t>(joint)] && a.joint[m].gap(b.joint[m]) > bound[joint]) return false;
-  }
+  for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m)
+    if (out_of_step(step_layer, MiddleRanges::kJoints[m], a.joint[m], b.joint[m])) return false;
   return true;
 }
 
@@ -54,11 +55,12 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
   const auto theirs = [&](int joint) { return JointRange(to.nodes().q(other, joint), value, windows.first, windows.last + 1); };
-  if (windows.ranges.joint[0].empty())
-    for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) windows.ranges.joint[m] = theirs(MiddleRanges::kJoints[m]);
-  if (!may_meet(step_layer, own_ranges, windows.ranges)) return false;
-  // Window a singular pose the outer joints of the triple must meet as well. LayerJoints of several turns tell windings apart.
-  // Continuous joints have no plain interval.
+  for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
+    JointRange& range = windows.ranges.joint[m];
+    if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
+    if (out_of_step(step_layer, MiddleRanges::kJoints[m], own_ranges.joint[m], range)) return false;
+  }
+  // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart.
   const int begin = lattice_->window() + column * kTileWidth,
             count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   const bool one_family = lattice_->family_of(sheet) == lattice_->family_of(other);
@@ -66,7 +68,7 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
     const bool shared = one_family && from.nodes().q(sheet, joint) == from.nodes().q(other, joint);  // tells nothing apart
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const JointRange own(from.nodes().q(sheet, joint) + begin, count);
-    if (own.gap(theirs(joint)) > lattice_->step_bound(step_layer)[joint]) return false;
+    if (out_of_step(step_layer, joint, own, theirs(joint))) return false;
   }
   return true;
 }

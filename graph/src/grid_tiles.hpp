@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "grid_cost_to_go.hpp"
+#include "kernels/relax.hpp"
 
 namespace swivel {
 
@@ -24,14 +25,9 @@ struct GridCostToGo::JointRange {
   }
   /// Of those that have a value; the others need not have been solved.
   JointRange(const double* q, const double* value, int begin, int end) {
-    for (int k = begin; k < end; ++k)
-      if (value[k] != kUnreachable) add(q[k]);
+    relax_kernels().range(q + begin, value + begin, end - begin, low, high);
   }
   [[nodiscard]] bool empty() const { return low > high; }
-  void add(double q) {
-    low = q < low ? q : low;
-    high = q > high ? q : high;
-  }
   void add(const JointRange& other) {
     low = std::min(low, other.low);
     high = std::max(high, other.high);

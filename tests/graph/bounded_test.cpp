@@ -329,6 +329,42 @@ TEST(Kernels, EveryVectorUnitRelaxesToThePlainBits) {
   EXPECT_GT(idle_runs, runs / 60);
 }
 
+template <class T>
+void expect_plain_ranges(Random& random, const std::vector<const RelaxKernels*>& units,
+                         void (*RelaxKernels::*range)(const T*, const T*, int, T&, T&), int& ranges, int& empty) {
+  for (int trial = 0; trial < trials(4000); ++trial) {
+    const int n = random.below(40);
+    const double known = random.coin(0.2) ? 0.05 : 0.7;
+    std::vector<T> q(static_cast<std::size_t>(n)), value(q.size());
+    T low = std::numeric_limits<T>::infinity(), high = -low;
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      q[k] = static_cast<T>(random.uniform(-7, 7));
+      value[k] = random.coin(known) ? static_cast<T>(random.uniform(0, 5)) : std::numeric_limits<T>::infinity();
+      if (value[k] == std::numeric_limits<T>::infinity()) continue;
+      low = std::min(low, q[k]);
+      high = std::max(high, q[k]);
+    }
+    for (const RelaxKernels* kernels : units) {
+      T found_low = 1, found_high = 1;
+      (kernels->*range)(q.data(), value.data(), n, found_low, found_high);
+      ASSERT_EQ(found_low, low) << n;
+      ASSERT_EQ(found_high, high) << n;
+      ++ranges;
+      empty += low > high;
+    }
+  }
+}
+
+TEST(Kernels, RangesAreOfTheNodesWithAValue) {
+  Random random(seed("Ranges"));
+  const std::vector<const RelaxKernels*> units = vector_units();
+  int ranges = 0, empty = 0;
+  expect_plain_ranges<double>(random, units, &RelaxKernels::range, ranges, empty);
+  expect_plain_ranges<float>(random, units, &RelaxKernels::coarse_range, ranges, empty);
+  std::printf("%zu units, %d ranges, %d of no node\n", units.size(), ranges, empty);
+  EXPECT_GT(empty, ranges / 100);
+}
+
 /// Nodes in runs along which joints change little, as on arcs, or anywhere; partners near some of them.
 TEST(Kernels, EveryNodeMeetsEveryPartnerInItsReach) {
   Random random(seed("RelaxAll"));

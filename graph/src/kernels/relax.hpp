@@ -28,6 +28,9 @@ struct RelaxKernels {
   /// Every node with every one of the partners 0 ... offsets - 1; those out of reach by `bound` are left by groups.
   void (*relax_all)(const RelaxTask<double>&);
   void (*coarse)(const RelaxTask<float>&);
+  /// Least and greatest of those of n joints whose value is finite; low > high where none is.
+  void (*range)(const double* q, const double* value, int n, double& low, double& high);
+  void (*coarse_range)(const float* q, const float* value, int n, float& low, float& high);
 };
 const RelaxKernels& relax_kernels();
 const RelaxKernels& scalar_relax_kernels();

@@ -322,5 +322,42 @@ void relax(const RelaxTask<T>& task) {
     task.wraps ? relax_run<RelaxMetric::kMax, true>(task) : relax_run<RelaxMetric::kMax, false>(task);
 }
 
+/// The least of the lanes, by halves.
+template <class V, class T>
+inline T least_lane(V lanes) {
+  constexpr int kLanes = sizeof(V) / sizeof(T);
+  T lane[kLanes];
+  __builtin_memcpy(lane, &lanes, sizeof lanes);
+  for (int half = kLanes / 2; half > 0; half /= 2)
+    for (int k = 0; k < half; ++k) lane[k] = lane[k + half] < lane[k] ? lane[k + half] : lane[k];
+  return lane[0];
+}
+
+template <class V, class T>
+inline void add_to_range(const T* q, const T* value, V& low, V& minus_high) {
+  const V joint = load<V>(q), none = V{} + T(__builtin_inf()), known = load<V>(value);
+  const V up = known < none ? joint : none, down = known < none ? -joint : none;
+  low = up < low ? up : low;
+  minus_high = down < minus_high ? down : minus_high;
+}
+
+template <class T>
+void range(const T* q, const T* value, int n, T& low, T& high) {
+  using Lanes = typename Widest<T>::Lanes;
+  constexpr int kLanes = sizeof(Lanes) / sizeof(T);
+  T least = T(__builtin_inf()), minus_most = least;
+  if (n >= kLanes) {
+    Lanes lows = Lanes{} + least, minus_highs = lows;
+    for (int at = 0; at + kLanes <= n; at += kLanes) add_to_range(q + at, value + at, lows, minus_highs);
+    add_to_range(q + n - kLanes, value + n - kLanes, lows, minus_highs);
+    least = least_lane<Lanes, T>(lows);
+    minus_most = least_lane<Lanes, T>(minus_highs);
+  } else {
+    for (int at = 0; at < n; ++at) add_to_range(q + at, value + at, least, minus_most);
+  }
+  low = least;
+  high = -minus_most;
+}
+
 }  // namespace
 }  // namespace swivel::SWIVEL_ISA
