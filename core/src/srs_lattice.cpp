@@ -241,9 +241,10 @@ void SrsLattice::solve(int layer, int first, int count, LayerNodes& out) const {
   for (int elbow = 0; elbow < 2; ++elbow) solve_part(elbow, 0, count, out);
 }
 
-void LayerNodes::repeat(int from, int to, int count) {
-  for (Eigen::Index array = 0; array + count_ <= data_.size(); array += count_)
-    std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
+void LayerNodes::repeat(int elbow, int from, int to, int count) {
+  for (const Span& arrays : arrays_[static_cast<std::size_t>(elbow)])
+    for (std::size_t array = arrays.begin; array < arrays.end; array += static_cast<std::size_t>(count_))
+      std::copy_n(data_.data() + array + from, count, data_.data() + array + to);
 }
 
 std::optional<double> SrsLattice::elbow_angle(int layer, int elbow) const {
@@ -262,6 +263,7 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   if (layout == out.layout_ && !start) return;
   out.layout_ = layout;
   out.count_ = count;
+  out.arrays_ = {};
   out.offsets_.resize(static_cast<std::size_t>(sheets()));
   constexpr std::size_t kOwn = kDof + 1;  // joints and a mask
   const auto own = static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
@@ -282,6 +284,7 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
+    const std::size_t begin = used;
     // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with windings, per sheet.
     std::array<std::array<std::size_t, kDof>, 2> track{};
     std::array<std::array<std::size_t, 2>, 2> mask{};  // [sign][triple]
@@ -307,14 +310,18 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
         offsets.q[static_cast<std::size_t>(j)] = track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
                                                  static_cast<std::size_t>(winding_images(sheet % windings_, j)) * n;
     }
+    out.arrays_[static_cast<std::size_t>(elbow)][0] = {begin, used};
   }
   if (!moved) return;
   used = tracks_ * n;
   for (int sheet = 0; sheet < sheets(); ++sheet) {
     if (!(moved >> (sheet / windings_) & 1)) continue;
     LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
+    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(family_of(sheet))][1];
+    if (arrays.end == 0) arrays.begin = used;
     for (std::size_t& joint : offsets.q) joint = allot();
     offsets.mask = {allot(), free};
+    arrays.end = used;
   }
 }
 

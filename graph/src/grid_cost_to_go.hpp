@@ -30,8 +30,8 @@ class GridCostToGo final : public CostToGo {
 
   [[nodiscard]] const SrsLattice& lattice() const override { return *lattice_; }
   [[nodiscard]] double at(int layer, int slot) const override {
-    const int j = lattice_->angle_of(slot);
-    return tiles_[tile_index(layer, lattice_->sheet_of(slot), j / kTileWidth)][static_cast<std::size_t>(j % kTileWidth)];
+    const int sheet = lattice_->sheet_of(slot), j = lattice_->angle_of(slot);
+    return tiles_of(sheet)[tile_index(layer, sheet, j / kTileWidth)][static_cast<std::size_t>(j % kTileWidth)];
   }
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
@@ -52,6 +52,7 @@ class GridCostToGo final : public CostToGo {
   struct Tile;
   struct MiddleRanges;
   struct Workspace;
+  struct Front;
   using ColumnSet = std::vector<std::uint8_t>;  // [column]
 
   /// Joints of one node.
@@ -66,43 +67,61 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] std::size_t tile_of_layer(int sheet, int column) const {
     return static_cast<std::size_t>(sheet) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
   }
+  [[nodiscard]] int half_sheets() const { return lattice_->sheets() / 2; }
+  [[nodiscard]] int first_sheet(int family) const { return family * half_sheets(); }
+  [[nodiscard]] const TileTable& tiles_of(int sheet) const { return tiles_[static_cast<std::size_t>(lattice_->family_of(sheet))]; }
+  [[nodiscard]] TileTable& tiles_of(int sheet) { return tiles_[static_cast<std::size_t>(lattice_->family_of(sheet))]; }
+  /// In the table of its family.
   [[nodiscard]] std::size_t tile_index(int layer, int sheet, int column) const {
-    return static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->sheets() * tile_columns()) +
-           tile_of_layer(sheet, column);
+    return static_cast<std::size_t>(layer) * tile_of_layer(half_sheets(), 0) + tile_of_layer(sheet % half_sheets(), column);
   }
   double& value_at(int layer, int slot);  // holds its tile from now on
 
-  LayerJoints& joints(int layer);
-  void forget_joints();  // what is solved again does not hang on how many layers there is room for
-  void solve_ahead(int layer, int by, const Workspace& reached);                // by 1 or -1
-  void solve_open(LayerJoints& joints, int family, int first, int last) const;  // columns
-  void solve_columns(LayerJoints& joints, int family, int first, int last);     // columns
-  void begin_layer(int layer, Workspace& workspace);
-  void begin_with_all(int layer, Workspace& workspace);  // every node at cost 0
-  void relax_run(int step_layer, const Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
-                 double* best);
-  void relax(int step_layer, Workspace& from, const Workspace& to);
+  // Families, the signs of the elbow, meet at hardly any layer: between, each is a lattice of its own, which one thread goes
+  // through by itself. Nothing that a part writes is read by the other.
+  /// Layers that families go through one after the other or side by side, until the next poll of what else there is to do.
+  static constexpr int kMostAlone = 64;
+  /// An edge may lead from a family of `layer` to one of a neighbouring layer.
+  [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
+  /// From one of the two to the other.
+  [[nodiscard]] bool families_meet(int step_layer) const;
+  /// part(family) for both, by two threads where work is shared.
+  template <class Part>
+  void by_family(const Part& part);
+  void collect_counts();
+  Workspace& workspace(int layer) { return *workspace_[static_cast<std::size_t>(layer % 2)]; }
+  LayerJoints& joints(int family, int layer);
+  void forget_joints();
+  void solve_columns(Workspace& workspace, int family, int first, int last);
   void find_ranges(LayerJoints& joints, int family, int column) const;
+  void begin(int family, int layer, Workspace& workspace) const;
+  void begin_with_all(int family, int layer, Workspace& workspace);  // every node at cost 0
+  void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace);
+  void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
+  void relax(int family, int step_layer, Workspace& from, const Workspace& to);
+  void relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
+                 double* best);
+  void apply_masks(int family, Workspace& workspace) const;
+  void add_node_costs(int family, Workspace& workspace) const;
+  void prune_above_limit(int family, Workspace& workspace) const;
+  void publish_values(int family, Workspace& workspace) const;
   /// No step takes a joint from one range into the other. Continuous joints have no plain ranges, which tell nothing.
   [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
                                  int other) const;
-  void reach_back(int step_layer, const Workspace& to, Workspace& from);
   /// Columns of the circle that lie in the windows of these.
   [[nodiscard]] ColumnSet widened(const ColumnSet& columns) const;
-  void apply_masks(Workspace& workspace) const;
-  void add_node_costs(Workspace& workspace) const;
-  void prune_above_limit(Workspace& workspace) const;
-  void publish_values(Workspace& workspace);
-  void store_tiles(const Workspace& workspace);
-  void load_tiles(int layer, const ColumnSet& columns, Workspace& workspace);
+  void store_tiles(int family, const Workspace& workspace);
+  /// Whether values differ from those kept, which they replace then; `changed`: of which columns.
+  [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, ColumnSet& changed);
   void solve_window(int layer, int family, const SrsLattice::Run& run);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Workspace& before);
-  void relax_removed(Workspace& workspace);
+  void relax_removed(int layer);
+  void repair_layer(int family, int layer, Front& front);
   void clear_values();  // everything is unreachable
   void sweep_once();
   void limit_by_reach();
@@ -111,7 +130,8 @@ class GridCostToGo final : public CostToGo {
   void raise_limit_until_exact();
   /// What the nodes of a layer cost from layer 0 on, or less; null where nothing is known of the layer.
   [[nodiscard]] const float* cost_before(int layer) const;
-  void keep_reach(int layer, const Workspace& workspace);
+  void begin_reach_rows(int layers);
+  void keep_reach(int family, int layer, int row);
   [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
   void forget_reach() {
     reach_.known = false;
@@ -136,16 +156,14 @@ class GridCostToGo final : public CostToGo {
   };
   Reach reach_;
   bool by_reach_ = false;  // nodes are held to the limit by reach_, not by the coarse bound
-  TileTable tiles_;
+  std::array<TileTable, 2> tiles_;  // [family]
   struct {
     int goal = 0;
     double limit = kUnreachable;
-    TileTable::Held tiles;
+    std::array<TileTable::Held, 2> tiles;
   } saved_;
-  static constexpr int kLayersAhead = 8;
-  std::vector<LayerJoints> passing_;  // by layer % size: those at hand and those solved ahead
-  std::array<std::unique_ptr<Workspace>, 2> workspace_;
-  std::vector<int> columns_;  // scratch of reach_back
+  std::vector<LayerJoints> passing_;                     // [family][layer % 2]: those at hand
+  std::array<std::unique_ptr<Workspace>, 2> workspace_;  // [layer % 2]
   /// As many neighbours as a vector has lanes, for one_node(): nodes are asked about together with others around them. By layer,
   /// family and column.
   struct Neighbours {

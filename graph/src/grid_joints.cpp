@@ -1,73 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <utility>
 
 #include "grid_tiles.hpp"
 
 namespace swivel {
 
-GridCostToGo::LayerJoints& GridCostToGo::joints(int layer) {
-  LayerJoints* joints = &passing_[static_cast<std::size_t>(layer) % passing_.size()];
+GridCostToGo::LayerJoints& GridCostToGo::joints(int family, int layer) {
+  LayerJoints* joints = &passing_[static_cast<std::size_t>(2 * family + layer % 2)];
   if (joints->layer != layer) {
     const int n = lattice_->angles(), window = lattice_->window();
     joints->layer = layer;
     lattice_->lay_out(layer, (n - window % n) % n, n + 2 * window, joints->nodes);
-    for (auto& solved : joints->solved) solved.assign(static_cast<std::size_t>(tile_columns()), 0);
+    joints->solved.assign(static_cast<std::size_t>(tile_columns()), 0);
     joints->of_tile.resize(tile_of_layer(lattice_->sheets(), 0));
     joints->of_layer.assign(static_cast<std::size_t>(lattice_->sheets()), {});
   }
   return *joints;
 }
 
-/// Each counts once it is wanted, whether it was solved ahead or not.
-void GridCostToGo::solve_columns(LayerJoints& joints, int family, int first, int last) {
-  ColumnSet& solved = joints.solved[static_cast<std::size_t>(family)];
-  const int n = lattice_->angles();
-  for (int column = first; column < last; ++column)
-    if (solved[static_cast<std::size_t>(column)] != LayerJoints::kWanted)
-      ik_nodes_ += static_cast<std::int64_t>(std::min(n, (column + 1) * kTileWidth) - column * kTileWidth) * lattice_->sheets() / 2;
-  solve_open(joints, family, first, last);
-  std::fill(solved.begin() + first, solved.begin() + last, LayerJoints::kWanted);
-}
-
-void GridCostToGo::solve_open(LayerJoints& joints, int family, int first, int last) const {
-  ColumnSet& solved = joints.solved[static_cast<std::size_t>(family)];
+void GridCostToGo::solve_columns(Workspace& workspace, int family, int first, int last) {
+  Workspace::Half& half = workspace.half(family);
+  if (!half.joints) half.joints = &joints(family, half.layer);
+  LayerJoints& joints = *half.joints;
   const int n = lattice_->angles(), window = lattice_->window();
   for (int column = first, next = first; column < last; column = next) {
     next = column + 1;
-    if (solved[static_cast<std::size_t>(column)] != LayerJoints::kOpen) continue;
-    while (next < last && solved[static_cast<std::size_t>(next)] == LayerJoints::kOpen) ++next;
-    std::fill(solved.begin() + column, solved.begin() + next, LayerJoints::kAhead);
+    if (joints.solved[static_cast<std::size_t>(column)]) continue;
+    while (next < last && !joints.solved[static_cast<std::size_t>(next)]) ++next;
+    std::fill(joints.solved.begin() + column, joints.solved.begin() + next, std::uint8_t{1});
     const int begin = column * kTileWidth, end = std::min(n, next * kTileWidth);
+    half.ik_nodes += static_cast<std::int64_t>(end - begin) * half_sheets();
     lattice_->solve_part(family, window + begin, window + end, joints.nodes);
     for (int done = column; done < next; ++done) find_ranges(joints, family, done);
     // The window reaches around the circle.
-    if (begin < window) joints.nodes.repeat(window + begin, window + begin + n, std::min(end, window) - begin);
+    if (begin < window) joints.nodes.repeat(family, window + begin, window + begin + n, std::min(end, window) - begin);
     if (end > n - window) {
       const int from = std::max(begin, n - window);
-      joints.nodes.repeat(window + from, window + from - n, end - from);
+      joints.nodes.repeat(family, window + from, window + from - n, end - from);
     }
   }
-}
-
-/// Layers beside each other reach much the same columns: threads solve them for the layers to come, a few at a time.
-void GridCostToGo::solve_ahead(int layer, int by, const Workspace& reached) {
-  const int left = by < 0 ? layer + 1 : lattice_->layers() - layer, count = std::min(kLayersAhead, left);
-  if (work_.threads == 1 || layer % kLayersAhead != 0) return;
-  std::array<LayerJoints*, kLayersAhead> ahead;
-  for (int k = 0; k < count; ++k) ahead[static_cast<std::size_t>(k)] = &joints(layer + by * k);
-  work_.for_each(count, [&](int k, int) {
-    for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-      LayerJoints& joints = *ahead[static_cast<std::size_t>(k)];
-      const ColumnSet& columns = reached.reached[static_cast<std::size_t>(family)];
-      if (!joints.nodes.alive(family * lattice_->sheets() / 2)) continue;
-      for (int column = 0, next = 0; column < tile_columns(); column = next) {
-        next = column + 1;
-        if (!columns[static_cast<std::size_t>(column)]) continue;
-        while (next < tile_columns() && columns[static_cast<std::size_t>(next)]) ++next;
-        solve_open(joints, family, column, next);
-      }
-    }
-  });
 }
 
 void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) const {
@@ -92,8 +64,25 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
   }
 }
 
+bool GridCostToGo::families_meet(int step_layer, int layer, int family, int other_layer, int other) const {
+  return family == other || (lattice_->alive(layer, family) && lattice_->alive(other_layer, other) &&
+                             lattice_->families_may_connect(step_layer, layer, family, other_layer, other));
+}
+
+bool GridCostToGo::families_meet(int step_layer) const {
+  return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) || families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
+}
+
+void GridCostToGo::collect_counts() {
+  for (auto& workspace : workspace_)
+    for (Workspace::Half& half : workspace->halves) {
+      ik_nodes_ += std::exchange(half.ik_nodes, 0);
+      edges_ += std::exchange(half.edges, 0);
+    }
+}
+
 void GridCostToGo::forget_joints() {
-  passing_.resize(work_.threads > 1 ? kLayersAhead + 1 : 2);
+  passing_.resize(4);
   for (LayerJoints& joints : passing_) joints.layer = -1;
 }
 

@@ -6,37 +6,52 @@
 
 namespace swivel {
 
-void GridCostToGo::begin_layer(int layer, Workspace& workspace) {
-  const int n = lattice_->angles(), length = n + 2 * lattice_->window();
-  for (const int sheet : workspace.sheets) {
+void GridCostToGo::begin(int family, int layer, Workspace& workspace) const {
+  const int length = lattice_->angles() + 2 * lattice_->window();
+  Workspace::Half& half = workspace.half(family);
+  half.layer = layer;
+  half.joints = nullptr;
+  for (const int sheet : half.sheets) {
     const auto row = workspace.value.begin() + static_cast<std::ptrdiff_t>(sheet) * length;
     std::fill(row, row + length, kUnreachable);
   }
-  workspace.sheets.clear();
-  workspace.layer = layer;
-  workspace.joints = &joints(layer);
-  workspace.tiles.clear();
-  for (ColumnSet& reached : workspace.reached) reached.assign(static_cast<std::size_t>(tile_columns()), 0);
+  half.sheets.clear();
+  half.tiles.clear();
+  half.reached.assign(static_cast<std::size_t>(tile_columns()), 0);
 }
 
-void GridCostToGo::reach_back(int step_layer, const Workspace& to, Workspace& from) {
-  for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    const int first_sheet = family * lattice_->sheets() / 2;
-    if (!from.nodes().alive(first_sheet)) continue;  // all of a family's sheets, or none
-    const std::array<bool, 2> reaches{lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 0),
-                                      lattice_->families_may_connect(step_layer, from.layer, family, to.layer, 1)};
-    columns_.clear();
-    for (int column = 0; column < tile_columns(); ++column) {
-      const auto c = static_cast<std::size_t>(column);
-      if ((reaches[0] && to.reached[0][c]) || (reaches[1] && to.reached[1][c])) columns_.push_back(column);
-    }
-    for (std::size_t k = 0, next = 0; k < columns_.size(); k = next) {
-      for (next = k + 1; next < columns_.size() && columns_[next] == columns_[next - 1] + 1;) ++next;
-      solve_columns(*from.joints, family, columns_[k], columns_[next - 1] + 1);
-    }
-    for (int sheet = first_sheet; sheet < first_sheet + lattice_->sheets() / 2; ++sheet)
-      for (const int column : columns_) from.tiles.push_back({sheet, column});
+void GridCostToGo::begin_with_all(int family, int layer, Workspace& workspace) {
+  begin(family, layer, workspace);
+  if (!lattice_->alive(layer, family)) return;
+  const int width = lattice_->width() / 2;
+  std::fill_n(workspace.row.begin() + family * width, width, 0.0);
+  solve_columns(workspace, family, 0, tile_columns());
+  Workspace::Half& half = workspace.half(family);
+  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
+    for (int column = 0; column < tile_columns() && half.joints->nodes.alive(sheet); ++column)
+      half.tiles.push_back({sheet, column, true});
+  apply_masks(family, workspace);
+}
+
+void GridCostToGo::reach_back(int family, int step_layer, const Workspace& to, Workspace& from) {
+  Workspace::Half& half = from.half(family);
+  if (!lattice_->alive(half.layer, family)) return;
+  const int to_layer = to.half(family).layer;
+  std::vector<int>& columns = half.columns;
+  columns.clear();
+  const Workspace::Half& own = to.half(family);
+  const Workspace::Half* other =
+      families_meet(step_layer, half.layer, family, to_layer, 1 - family) ? &to.half(1 - family) : nullptr;
+  for (int column = 0; column < tile_columns(); ++column) {
+    const auto c = static_cast<std::size_t>(column);
+    if (own.reached[c] || (other && other->reached[c])) columns.push_back(column);
   }
+  for (std::size_t k = 0, next = 0; k < columns.size(); k = next) {
+    for (next = k + 1; next < columns.size() && columns[next] == columns[next - 1] + 1;) ++next;
+    solve_columns(from, family, columns[k], columns[next - 1] + 1);
+  }
+  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
+    for (const int column : columns) half.tiles.push_back({sheet, column});
 }
 
 bool GridCostToGo::out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const {
@@ -50,13 +65,16 @@ bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleR
 }
 
 bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to, int other) const {
-  const MiddleRanges& own_ranges = from.joints->of_tile[tile_of_layer(sheet, column)];
-  if (!may_meet(step_layer, own_ranges, to.joints->of_layer[static_cast<std::size_t>(other)])) return false;
+  const LayerJoints &own_joints = *from.half(lattice_->family_of(sheet)).joints,
+                    &other_joints = *to.half(lattice_->family_of(other)).joints;
+  const MiddleRanges& own_ranges = own_joints.of_tile[tile_of_layer(sheet, column)];
+  if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)])) return false;
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
-  const auto theirs = [&](int joint) { return JointRange(to.nodes().q(other, joint), value, windows.first, windows.last + 1); };
+  const auto theirs = [&](int joint) { return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1); };
+  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->family_of(sheet))];
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
-    JointRange& range = windows.ranges.joint[m];
+    JointRange& range = ranges.joint[m];
     if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
     if (out_of_step(step_layer, MiddleRanges::kJoints[m], own_ranges.joint[m], range)) return false;
   }
@@ -65,46 +83,52 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
             count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   const bool one_family = lattice_->family_of(sheet) == lattice_->family_of(other);
   for (const int joint : SrsLattice::kOuterJoints) {
-    const bool shared = one_family && from.nodes().q(sheet, joint) == from.nodes().q(other, joint);  // tells nothing apart
+    const double* q = own_joints.nodes.q(sheet, joint);
+    const bool shared = one_family && q == own_joints.nodes.q(other, joint);  // tells nothing apart
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
-    const JointRange own(from.nodes().q(sheet, joint) + begin, count);
+    const JointRange own(q + begin, count);
     if (out_of_step(step_layer, joint, own, theirs(joint))) return false;
   }
   return true;
 }
 
-void GridCostToGo::relax_run(int step_layer, const Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
+void GridCostToGo::relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
                              double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
+  Workspace::Half& half = from.half(lattice_->family_of(sheet));
+  const LayerNodes& other_nodes = to.half(lattice_->family_of(other)).joints->nodes;
   RelaxTask<double> task = relax_task(*lattice_, step_layer);
   task.n = count;
   task.offsets = 2 * window + 1;
   for (int j = 0; j < kDof; ++j) {
-    task.from[j] = from.nodes().q(sheet, j) + window + first;
-    task.to[j] = to.nodes().q(other, j) + first;
+    task.from[j] = half.joints->nodes.q(sheet, j) + window + first;
+    task.to[j] = other_nodes.q(other, j) + first;
   }
   task.best = best;
   task.value = to.value.data() + static_cast<std::ptrdiff_t>(other) * length + first;
-  edges_ += static_cast<std::int64_t>(count) * task.offsets;
+  half.edges += static_cast<std::int64_t>(count) * task.offsets;
   relax_kernels().relax(task);
 }
 
-void GridCostToGo::relax(int step_layer, Workspace& from, const Workspace& to) {
+void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Workspace& to) {
   const int n = lattice_->angles();
-  for (const Tile& tile : from.tiles) {
+  const Workspace::Half& here = from.half(family);
+  std::vector<Tile>& tiles = from.half(family).tiles;
+  for (const Tile& tile : tiles) {
     double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
     std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
   }
-  for (std::size_t first = 0, last = 0; first < from.tiles.size(); first = last) {
+  std::array<bool, SrsLattice::kFamilies> meets;
+  for (int other = 0; other < SrsLattice::kFamilies; ++other)
+    meets[static_cast<std::size_t>(other)] = families_meet(step_layer, here.layer, family, to.half(family).layer, other);
+  for (std::size_t first = 0, last = 0; first < tiles.size(); first = last) {
     budget_.poll();
-    const int sheet = from.tiles[first].sheet;
-    while (last < from.tiles.size() && from.tiles[last].sheet == sheet) ++last;
-    for (const int other : to.sheets) {
-      if (sheet != other && (!lattice_->families_may_connect(step_layer, from.layer, lattice_->family_of(sheet), to.layer,
-                                                             lattice_->family_of(other)) ||
-                             !may_meet(step_layer, from.joints->of_layer[static_cast<std::size_t>(sheet)],
-                                       to.joints->of_layer[static_cast<std::size_t>(other)])))
-        continue;
+    const int sheet = tiles[first].sheet;
+    while (last < tiles.size() && tiles[last].sheet == sheet) ++last;
+    const auto relax_with = [&](int other, const LayerJoints& joints) {
+      if (sheet != other && !may_meet(step_layer, here.joints->of_layer[static_cast<std::size_t>(sheet)],
+                                      joints.of_layer[static_cast<std::size_t>(other)]))
+        return;
       int begin = 0, end = 0;  // a run of columns
       const auto relax_columns = [&] {
         if (begin == end) return;
@@ -113,7 +137,7 @@ void GridCostToGo::relax(int step_layer, Workspace& from, const Workspace& to) {
         relax_run(step_layer, from, sheet, start, stop - start, to, other, from.row.data() + sheet * n + start);
       };
       for (std::size_t k = first; k < last; ++k) {
-        Tile& tile = from.tiles[k];
+        Tile& tile = tiles[k];
         if (to.windows[tile_of_layer(other, tile.column)].last < 0 ||
             (sheet != other && !may_connect(step_layer, from, sheet, tile.column, to, other)))
           continue;
@@ -125,27 +149,30 @@ void GridCostToGo::relax(int step_layer, Workspace& from, const Workspace& to) {
         end = tile.column + 1;
       }
       relax_columns();
-    }
+    };
+    for (int others = 0; others < SrsLattice::kFamilies; ++others)
+      if (meets[static_cast<std::size_t>(others)])
+        for (const int other : to.half(others).sheets) relax_with(other, *to.half(others).joints);
   }
 }
 
-void GridCostToGo::publish_values(Workspace& workspace) {
+void GridCostToGo::publish_values(int family, Workspace& workspace) const {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
+  Workspace::Half& half = workspace.half(family);
   std::size_t kept = 0;
-  for (const Tile& tile : workspace.tiles) {
+  for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
     const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
     double* value = workspace.value.data() + static_cast<std::ptrdiff_t>(tile.sheet) * length;
     Workspace::Window* windows = workspace.windows.data() + tile_of_layer(tile.sheet, 0);
-    ColumnSet& reached = workspace.reached[static_cast<std::size_t>(lattice_->family_of(tile.sheet))];
     int first = tile.begin(), last = tile.end(n) - 1;
     while (first <= last && row[first] == kUnreachable) ++first;
     while (first <= last && row[last] == kUnreachable) --last;
     if (first > last) continue;
-    workspace.tiles[kept++] = tile;
-    if (workspace.sheets.empty() || workspace.sheets.back() != tile.sheet) {
+    half.tiles[kept++] = tile;
+    if (half.sheets.empty() || half.sheets.back() != tile.sheet) {
       std::fill(windows, windows + tile_columns(), Workspace::Window{length, -1, {}});
-      workspace.sheets.push_back(tile.sheet);
+      half.sheets.push_back(tile.sheet);
     }
     std::copy(row + first, row + last + 1, value + window + first);
     for (const int turn : {0, n, -n}) {
@@ -157,11 +184,11 @@ void GridCostToGo::publish_values(Workspace& workspace) {
       for (int c = begin; c <= end; ++c) {
         windows[c].first = std::min(windows[c].first, std::max(low, c * kTileWidth));
         windows[c].last = std::max(windows[c].last, std::min(high, c * kTileWidth + kTileWidth - 1 + 2 * window));
-        reached[static_cast<std::size_t>(c)] = 1;
+        half.reached[static_cast<std::size_t>(c)] = 1;
       }
     }
   }
-  workspace.tiles.resize(kept);
+  half.tiles.resize(kept);
 }
 
 }  // namespace swivel

@@ -10,8 +10,8 @@
 namespace swivel {
 
 double& GridCostToGo::value_at(int layer, int slot) {
-  const int j = lattice_->angle_of(slot);
-  return tiles_.hold(tile_index(layer, lattice_->sheet_of(slot), j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
+  const int sheet = lattice_->sheet_of(slot), j = lattice_->angle_of(slot);
+  return tiles_of(sheet).hold(tile_index(layer, sheet, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
 }
 
 /// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node and whose cost-to-go `rest` is
@@ -27,8 +27,9 @@ void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Wo
         const int angle = (run.first + k) % n, column = angle / kTileWidth;
         next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
         const std::size_t tile = tile_index(layer + 1, sheet, column);
-        if (!tiles_.holds(tile)) continue;
-        const double* rest = tiles_[tile].data() + angle % kTileWidth;
+        const TileTable& tiles = tiles_of(sheet);
+        if (!tiles.holds(tile)) continue;
+        const double* rest = tiles[tile].data() + angle % kTileWidth;
         for (int j = k; j < next; ++j, ++rest) {
           if (!worth(*rest)) continue;
           if (!known) solve_window(layer + 1, family, run);
@@ -81,27 +82,28 @@ void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& o
       });
 }
 
-void GridCostToGo::relax_removed(Workspace& workspace) {
-  const auto* removed = verdicts_.removed_edges(workspace.layer);
+void GridCostToGo::relax_removed(int layer) {
+  const auto* removed = verdicts_.removed_edges(layer);
   if (!removed) return;
+  Workspace& here = workspace(layer);
   for (const auto& [a, edges] : removed->tails) {
-    if (!workspace.find(lattice_->sheet_of(a), lattice_->angle_of(a) / kTileWidth)) continue;
-    double& value = workspace.row[static_cast<std::size_t>(a)];
-    const double own = verdicts_.cost(workspace.layer, a);
+    if (!here.find(*lattice_, a)) continue;
+    double& value = here.row[static_cast<std::size_t>(a)];
+    const double own = verdicts_.cost(layer, a);
     const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
-      return own + (edge.cost + at(workspace.layer + 1, edge.other)) == value;
+      return own + (edge.cost + at(layer + 1, edge.other)) == value;
     };
-    if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(workspace.layer, a);
+    if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(layer, a);
   }
 }
 
 // --- removals and costs
 
-void GridCostToGo::add_node_costs(Workspace& workspace) const {
-  const double* own = verdicts_.costs(workspace.layer);
+void GridCostToGo::add_node_costs(int family, Workspace& workspace) const {
+  const double* own = verdicts_.costs(workspace.half(family).layer);
   if (!own) return;
   const int n = lattice_->angles();
-  for (const Tile& tile : workspace.tiles)
+  for (const Tile& tile : workspace.half(family).tiles)
     for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
@@ -127,68 +129,116 @@ GridCostToGo::ColumnSet GridCostToGo::widened(const ColumnSet& columns) const {
   return result;
 }
 
+/// What of a family's values has changed on the way down: columns of the layer after, of any sheet, and of this one.
+struct alignas(64) GridCostToGo::Front {
+  ColumnSet after, here;
+  bool any_after = false, any_here = false;
+  void next_layer() {
+    after.swap(here);
+    any_after = any_here;
+    std::fill(here.begin(), here.end(), std::uint8_t{0});
+    any_here = false;
+  }
+  void add(const Front& other) {
+    any_after = any_after || other.any_after;
+    for (std::size_t c = 0; c < after.size(); ++c) after[c] |= other.after[c];
+  }
+};
+
 void GridCostToGo::propagate_removals() {
   const TraceSpan span("repair");
   forget_joints();
-  const int n = lattice_->angles();
-  ColumnSet changed(static_cast<std::size_t>(tile_columns()), 0), here_changed(changed.size());  // columns, of any sheet
-  bool any = false;
-  Workspace* next = workspace_[0].get();
-  Workspace* here = workspace_[1].get();
-  while (!verdicts_.pending.empty() && verdicts_.pending.rbegin()->first > goal_)
-    verdicts_.pending.erase(std::prev(verdicts_.pending.end()));
-  for (int layer = verdicts_.pending.empty() ? -1 : verdicts_.pending.rbegin()->first; layer >= 0; --layer) {
-    std::fill(here_changed.begin(), here_changed.end(), std::uint8_t{0});
-    bool here_any = false;
-    const auto set = [&](int slot, double value) {
-      if (at(layer, slot) == value) return;
-      value_at(layer, slot) = value;
-      here_changed[static_cast<std::size_t>(lattice_->angle_of(slot) / kTileWidth)] = 1;
-      here_any = true;
-    };
-    const auto pending = verdicts_.pending.find(layer);
-    // NodeRun now cost what they cost first, with the layer after as it was; where that changed, too, they are relaxed next.
-    if (pending != verdicts_.pending.end())
-      for (const int slot : pending->second.raised)
-        if (const double value = at(layer, slot); value != kUnreachable) set(slot, verdicts_.cost(layer, slot) + value);
-    if (any && layer == 0 && lattice_->has_start()) {
-      if (at(0, lattice_->start_slot()) != kUnreachable) set(lattice_->start_slot(), relax_one(0, lattice_->start_slot()));
-    } else if (any) {
-      const ColumnSet dependent = widened(changed);
-      load_tiles(layer + 1, widened(dependent), *next);
-      publish_values(*next);
-      load_tiles(layer, dependent, *here);
-      relax(layer, *here, *next);
-      apply_masks(*here);
-      add_node_costs(*here);
-      relax_removed(*here);
-      prune_above_limit(*here);
-      for (const Tile& tile : here->tiles) {
-        const double* const values = here->row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n + tile.begin();
-        TileTable::Costs& known = tiles_.hold(tile_index(layer, tile.sheet, tile.column));
-        const auto count = static_cast<std::size_t>(tile.end(n) - tile.begin());
-        if (std::equal(values, values + count, known.begin())) continue;
-        std::copy_n(values, count, known.begin());
-        here_changed[static_cast<std::size_t>(tile.column)] = 1;
-        here_any = true;
+  auto& pending = verdicts_.pending;
+  while (!pending.empty() && pending.rbegin()->first > goal_) pending.erase(std::prev(pending.end()));
+  std::array<Front, SrsLattice::kFamilies> fronts;
+  for (Front& front : fronts) front.after = front.here = ColumnSet(static_cast<std::size_t>(tile_columns()), 0);
+  const auto set = [&](int layer, int slot, double value) {
+    if (at(layer, slot) == value) return;
+    value_at(layer, slot) = value;
+    Front& front = fronts[static_cast<std::size_t>(lattice_->family_of(lattice_->sheet_of(slot)))];
+    front.here[static_cast<std::size_t>(lattice_->angle_of(slot) / kTileWidth)] = 1;
+    front.any_here = true;
+  };
+  const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->sheet_of(slot)) == family; };
+  // NodeRun now cost what they cost first, with the layer after as it was; where that changed, too, they are relaxed next.
+  const auto raise = [&](int family, int layer, const Verdicts::Pending& now) {
+    for (const int slot : now.raised)
+      if (of_family(family, slot))
+        if (const double value = at(layer, slot); value != kUnreachable) set(layer, slot, verdicts_.cost(layer, slot) + value);
+  };
+  const auto remove = [&](int family, int layer, const Verdicts::Pending& now) {
+    for (const int slot : now.nodes)
+      if (of_family(family, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
+  };
+  const auto load = [&](int family, int layer, const ColumnSet& dependent) {
+    load_tiles(family, layer + 1, widened(dependent), workspace(layer + 1));
+    publish_values(family, workspace(layer + 1));
+    load_tiles(family, layer, dependent, workspace(layer));
+  };
+  const auto relax_loaded = [&](int family, int layer) {
+    relax(family, layer, workspace(layer), workspace(layer + 1));
+    apply_masks(family, workspace(layer));
+    add_node_costs(family, workspace(layer));
+  };
+  const auto settle = [&](int family, int layer, Front& front) {
+    prune_above_limit(family, workspace(layer));
+    if (renew_tiles(family, workspace(layer), front.here)) front.any_here = true;
+  };
+  const auto goes_alone = [&](int layer) {
+    const auto now = pending.find(layer);
+    return (layer > 0 || !lattice_->has_start()) && (now == pending.end() || now->second.tails.empty()) &&
+           !verdicts_.removed_edges(layer) && (layer == goal_ || !families_meet(layer));
+  };
+  for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
+    int end = layer;  // of the layers that families go through alone
+    while (end >= 0 && layer - end < kMostAlone && goes_alone(end)) --end;
+    if (end < layer) {
+      budget_.poll();
+      by_family([&](int family) {
+        Front& front = fronts[static_cast<std::size_t>(family)];
+        for (int here = layer; here > end; --here) {
+          const auto now = pending.find(here);
+          if (now != pending.end()) raise(family, here, now->second);
+          if (front.any_after) {
+            load(family, here, widened(front.after));
+            relax_loaded(family, here);
+            settle(family, here, front);
+          }
+          if (now != pending.end()) remove(family, here, now->second);
+          front.next_layer();
+        }
+      });
+      pending.erase(pending.upper_bound(end), pending.end());
+    } else {
+      --end;
+      fronts[0].add(fronts[1]);
+      fronts[1].add(fronts[0]);
+      const bool any = fronts[0].any_after;
+      const auto now = pending.find(layer);
+      for (int family = 0; family < SrsLattice::kFamilies && now != pending.end(); ++family) raise(family, layer, now->second);
+      if (any && layer == 0 && lattice_->has_start()) {
+        const int slot = lattice_->start_slot();
+        if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
+      } else if (any) {
+        const ColumnSet dependent = widened(fronts[0].after);
+        by_family([&](int family) { load(family, layer, dependent); });
+        by_family([&](int family) { relax_loaded(family, layer); });
+        relax_removed(layer);
+        for (int family = 0; family < SrsLattice::kFamilies; ++family)
+          settle(family, layer, fronts[static_cast<std::size_t>(family)]);
       }
-    }
-    std::swap(here, next);  // its joints serve once more
-    if (pending != verdicts_.pending.end()) {
-      for (const int slot : pending->second.nodes)
-        if (at(layer, slot) != kUnreachable) set(slot, kUnreachable);
-      for (const int slot : pending->second.tails) {
-        budget_.poll();
-        if (layer < goal_ && at(layer, slot) != kUnreachable) set(slot, relax_one(layer, slot));
+      if (now != pending.end()) {
+        for (int family = 0; family < SrsLattice::kFamilies; ++family) remove(family, layer, now->second);
+        for (const int slot : now->second.tails) {
+          budget_.poll();
+          if (layer < goal_ && at(layer, slot) != kUnreachable) set(layer, slot, relax_one(layer, slot));
+        }
+        pending.erase(now);
       }
-      verdicts_.pending.erase(pending);
+      for (Front& front : fronts) front.next_layer();
     }
-    changed.swap(here_changed);
-    any = here_any;
-    if (!any) {
-      if (verdicts_.pending.empty()) break;
-      layer = verdicts_.pending.rbegin()->first + 1;  // nothing to do until there
-    }
+    layer = end;
+    if (!fronts[0].any_after && !fronts[1].any_after) layer = pending.empty() ? -1 : pending.rbegin()->first;  // nothing until there
   }
 }
 
@@ -201,90 +251,141 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
   const Config q = here.config();
   const SrsLattice::Run run = lattice_->run_before(layer - 1, slot);
   double best = kUnreachable;
-  for (const int other : before.sheets)
-    for (int k = 0; k < run.count; ++k) {
-      const int j = (run.first + k) % n, a = other * n + j;
-      const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
-      if (done >= best) continue;
-      const Config delta = lattice_->delta(config(layer - 1, a), q);
-      const double value = lattice_->edge_cost(delta) + done;
-      if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
-        best = value;
-    }
+  for (const Workspace::Half& half : before.halves)
+    for (const int other : half.sheets)
+      for (int k = 0; k < run.count; ++k) {
+        const int j = (run.first + k) % n, a = other * n + j;
+        const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
+        if (done >= best) continue;
+        const Config delta = lattice_->delta(config(layer - 1, a), q);
+        const double value = lattice_->edge_cost(delta) + done;
+        if (value < best && lattice_->step_allowed(layer - 1, delta) && verdicts_.edge(layer - 1, a, slot) != Verdict::kRemoved)
+          best = value;
+      }
   return best;
 }
 
-void GridCostToGo::keep_reach(int layer, const Workspace& workspace) {
+/// As many as `layers` layers take, and one more.
+void GridCostToGo::begin_reach_rows(int layers) {
+  const auto rows = static_cast<std::size_t>((layers + Reach::kStride - 1) / Reach::kStride) + 1;
+  reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()), std::numeric_limits<float>::infinity());
+}
+
+void GridCostToGo::keep_reach(int family, int layer, int row) {
   constexpr double kMost = 1e30;  // that a float holds
-  const int n = lattice_->angles();
-  const auto width = static_cast<std::size_t>(lattice_->width());
-  const auto row = static_cast<std::size_t>((layer + Reach::kStride - 1) / Reach::kStride);
-  reach_.rows.resize(row * width);
-  reach_.rows.resize((row + 1) * width, std::numeric_limits<float>::infinity());
-  reach_.best = kUnreachable;
-  for (const Tile& tile : workspace.tiles)
-    for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot) {
-      const double cost = workspace.row[static_cast<std::size_t>(slot)];
-      reach_.best = std::min(reach_.best, cost);
-      reach_.rows[row * width + static_cast<std::size_t>(slot)] = std::nextafter(static_cast<float>(std::min(cost, kMost)), 0.0F);
-    }
+  const int n = lattice_->angles(), width = lattice_->width() / 2;
+  float* const kept = reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
+  std::fill_n(kept + family * width, width, std::numeric_limits<float>::infinity());
+  const Workspace& here = workspace(layer);
+  if (here.half(family).layer != layer) return;  // the family does not come here
+  for (const Tile& tile : here.half(family).tiles)
+    for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
+      kept[slot] = std::nextafter(static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
 }
 
 int GridCostToGo::deepest_reachable() {
   if (knows_reach()) return reach_.deepest;
   const TraceSpan span("reach");
   reach_.known = false;
+  reach_.rows.clear();
   const int n = lattice_->angles();
-  Workspace* before = workspace_[0].get();
-  Workspace* here = workspace_[1].get();
-  begin_with_all(0, *before);
-  publish_values(*before);
-  if (before->sheets.empty()) return -1;
-  int layer = 1;
-  for (; layer < lattice_->layers(); ++layer) {
-    budget_.poll();
-    if ((layer - 1) % Reach::kStride == 0) keep_reach(layer - 1, *before);
-    solve_ahead(layer, 1, *before);
-    begin_layer(layer, *here);
-    const auto step_one = [&](int slot) {
-      const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
-      double* row = here->row.data() + tile.sheet * n;
-      const auto place = std::lower_bound(here->tiles.begin(), here->tiles.end(), tile);
-      if (place == here->tiles.end() || *place != tile) {
-        std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
-        here->tiles.insert(place, tile);
-      }
-      solve_columns(*here->joints, lattice_->family_of(tile.sheet), tile.column, tile.column + 1);
-      row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, *before);
-    };
-    const auto reaches = [&](const Verdicts::HalfEdge& edge, double value) {
+  forget_joints();
+  by_family([&](int family) {
+    begin_with_all(family, 0, workspace(0));
+    publish_values(family, workspace(0));
+  });
+  if (!workspace(0).reaches_any()) return -1;
+  std::array<int, SrsLattice::kFamilies> deepest{0, 0};
+  const auto row_of = [](int layer) { return (layer + Reach::kStride - 1) / Reach::kStride; };
+  const auto keep_every_few = [&](int family, int layer) {
+    if (layer % Reach::kStride == 0) keep_reach(family, layer, row_of(layer));
+  };
+  const auto step = [&](int family, int layer) {
+    Workspace &here = workspace(layer), &before = workspace(layer - 1);
+    begin(family, layer, here);
+    reach_back(family, layer - 1, before, here);
+    relax(family, layer - 1, here, before);
+    apply_masks(family, here);
+  };
+  // Of a node of a layer, where the step that its cost came by is removed, or the layer before is the start alone.
+  const auto step_one = [&](int layer, int slot) {
+    Workspace& here = workspace(layer);
+    const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
+    const int family = lattice_->family_of(tile.sheet);
+    std::vector<Tile>& tiles = here.half(family).tiles;
+    double* row = here.row.data() + tile.sheet * n;
+    const auto place = std::lower_bound(tiles.begin(), tiles.end(), tile);
+    if (place == tiles.end() || *place != tile) {
+      std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
+      tiles.insert(place, tile);
+    }
+    solve_columns(here, family, tile.column, tile.column + 1);
+    row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, workspace(layer - 1));
+  };
+  const auto step_from_start = [&] {
+    const SrsLattice::Run run = lattice_->run_after(0, lattice_->start_slot());
+    for (int family = 0; family < SrsLattice::kFamilies; ++family) begin(family, 1, workspace(1));
+    for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+      for (int k = 0; k < run.count; ++k) step_one(1, sheet * n + (run.first + k) % n);
+  };
+  const auto step_again = [&](int layer, const Verdicts::RemovedEdges& removed) {
+    const Workspace& before = workspace(layer - 1);
+    const auto gives_value = [&](const Verdicts::HalfEdge& edge, double value) {
       const int n_padded = n + 2 * lattice_->window(), sheet = lattice_->sheet_of(edge.other);
       const int place = sheet * n_padded + lattice_->window() + lattice_->angle_of(edge.other);
-      return edge.cost + before->value[static_cast<std::size_t>(place)] == value;
+      return edge.cost + before.value[static_cast<std::size_t>(place)] == value;
     };
-    if (layer == 1 && lattice_->has_start()) {
-      const SrsLattice::Run run = lattice_->run_after(0, lattice_->start_slot());
-      for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
-        for (int k = 0; k < run.count; ++k) step_one(sheet * n + (run.first + k) % n);
-    } else {
-      reach_back(layer - 1, *before, *here);
-      relax(layer - 1, *here, *before);
-      apply_masks(*here);
-      if (const auto* removed = verdicts_.removed_edges(layer - 1))
-        for (const auto& [b, edges] : removed->heads)
-          if (here->find(lattice_->sheet_of(b), lattice_->angle_of(b) / kTileWidth) &&
-              std::any_of(edges.begin(), edges.end(),
-                          [&](const Verdicts::HalfEdge& edge) { return reaches(edge, here->row[static_cast<std::size_t>(b)]); }))
-            step_one(b);
-    }
-    publish_values(*here);
-    if (here->sheets.empty()) break;
-    std::swap(before, here);
+    for (const auto& [b, edges] : removed.heads)
+      if (workspace(layer).find(*lattice_, b) && std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
+            return gives_value(edge, workspace(layer).row[static_cast<std::size_t>(b)]);
+          }))
+        step_one(layer, b);
+  };
+  const auto goes_alone = [&](int layer) {
+    return (layer > 1 || !lattice_->has_start()) && !verdicts_.removed_edges(layer - 1) && !families_meet(layer - 1);
+  };
+  const auto finish = [&](int family, int layer) {
+    publish_values(family, workspace(layer));
+    int& last = deepest[static_cast<std::size_t>(family)];
+    if (!workspace(layer).half(family).sheets.empty())
+      last = layer;
+    else if (last == layer - 1)
+      keep_reach(family, last, row_of(last));
+  };
+  begin_reach_rows(0);
+  for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any(); layer = end) {
+    budget_.poll();
+    end = layer + 1;
+    const bool alone = goes_alone(layer);
+    while (alone && end < lattice_->layers() && end - layer < kMostAlone && goes_alone(end)) ++end;
+    begin_reach_rows(end - 1);
+    const auto* removed = verdicts_.removed_edges(layer - 1);
+    const bool from_start = layer == 1 && lattice_->has_start();
+    by_family([&](int family) {
+      for (int at = layer; at < end; ++at) {
+        keep_every_few(family, at - 1);
+        if (!from_start) step(family, at);
+        if (alone) finish(family, at);
+      }
+    });
+    if (alone) continue;
+    if (from_start)
+      step_from_start();
+    else if (removed)
+      step_again(layer, *removed);
+    for (int family = 0; family < SrsLattice::kFamilies; ++family) finish(family, layer);
+    collect_counts();
   }
-  keep_reach(layer - 1, *before);
+  reach_.deepest = std::max(deepest[0], deepest[1]);
+  const bool to_the_end = reach_.deepest == lattice_->layers() - 1;
+  for (int family = 0; family < SrsLattice::kFamilies; ++family)
+    if (to_the_end || deepest[static_cast<std::size_t>(family)] < reach_.deepest)
+      keep_reach(family, reach_.deepest, row_of(reach_.deepest));
+  const auto row = reach_.rows.begin() + static_cast<std::ptrdiff_t>(row_of(reach_.deepest)) * lattice_->width();
+  reach_.best = *std::min_element(row, row + lattice_->width());
   reach_.known = true;
   reach_.removed = verdicts_.removed();
-  return reach_.deepest = layer - 1;
+  return reach_.deepest;
 }
 
 }  // namespace swivel

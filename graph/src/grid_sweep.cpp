@@ -25,15 +25,16 @@ void each(int count, const F& f) {
 GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
     : CostToGo(lattice, budget),
       lattice_(&lattice),
-      bounded_(extent == Extent::kBounded),
-      tiles_(static_cast<std::size_t>(lattice.layers()) * static_cast<std::size_t>(lattice.sheets() * tile_columns()),
-             retired ? std::move(retired->tiles_) : TileTable()) {
+      bounded_(extent == Extent::kBounded) {
+  const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
+  for (std::size_t family = 0; family < tiles_.size(); ++family)
+    tiles_[family] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles / 2,
+                               retired ? std::move(retired->tiles_[family]) : TileTable());
   if (retired) {
     passing_ = std::move(retired->passing_);
     neighbours_ = std::move(retired->neighbours_);
     for (Neighbours& neighbours : neighbours_) neighbours.of = -1;
   }
-  const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
   for (auto& workspace : workspace_) {
     workspace = std::make_unique<Workspace>();
     workspace->row.resize(static_cast<std::size_t>(lattice.width()));
@@ -42,16 +43,17 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
   }
 }
 
-void GridCostToGo::apply_masks(Workspace& workspace) const {
+void GridCostToGo::apply_masks(int family, Workspace& workspace) const {
   const int n = lattice_->angles(), window = lattice_->window();
-  for (const Tile& tile : workspace.tiles) {
+  const Workspace::Half& half = workspace.half(family);
+  for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
     const int slot = tile.sheet * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
-    const double* one = workspace.nodes().mask(tile.sheet, 0) + at;
-    const double* other = workspace.nodes().mask(tile.sheet, 1) + at;
+    const double* one = half.joints->nodes.mask(tile.sheet, 0) + at;
+    const double* other = half.joints->nodes.mask(tile.sheet, 1) + at;
     each<kTileWidth>(count, [&](int k) { values[k] += one[k] + other[k]; });
-    const Verdict* verdict = verdicts_.nodes(workspace.layer, slot);
+    const Verdict* verdict = verdicts_.nodes(half.layer, slot);
     if (std::memchr(verdict, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
       each<kTileWidth>(count, [&](int k) {
         if (verdict[k] == Verdict::kRemoved) values[k] = kUnreachable;
@@ -59,11 +61,11 @@ void GridCostToGo::apply_masks(Workspace& workspace) const {
   }
 }
 
-void GridCostToGo::prune_above_limit(Workspace& workspace) const {
+void GridCostToGo::prune_above_limit(int family, Workspace& workspace) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
-  const float* bound = cost_before(workspace.layer);
-  for (const Tile& tile : workspace.tiles) {
+  const float* bound = cost_before(workspace.half(family).layer);
+  for (const Tile& tile : workspace.half(family).tiles) {
     if (!tile.live) continue;
     const int slot = tile.sheet * n + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
@@ -74,35 +76,51 @@ void GridCostToGo::prune_above_limit(Workspace& workspace) const {
   }
 }
 
-void GridCostToGo::store_tiles(const Workspace& workspace) {
+void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
   const int n = lattice_->angles();
-  for (const Tile& tile : workspace.tiles) {
-    TileTable::Costs& costs = tiles_.hold(tile_index(workspace.layer, tile.sheet, tile.column));
+  const Workspace::Half& half = workspace.half(family);
+  for (const Tile& tile : half.tiles) {
+    TileTable::Costs& costs = tiles_of(tile.sheet).hold(tile_index(half.layer, tile.sheet, tile.column));
     const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
     std::fill(std::copy(row + tile.begin(), row + tile.end(n), costs.begin()), costs.end(), kUnreachable);
   }
 }
 
-void GridCostToGo::load_tiles(int layer, const ColumnSet& columns, Workspace& workspace) {
-  begin_layer(layer, workspace);
+void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace) {
+  begin(family, layer, workspace);
   const int n = lattice_->angles();
-  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
     for (int column = 0; column < tile_columns(); ++column) {
       const std::size_t held = tile_index(layer, sheet, column);
-      if (!columns[static_cast<std::size_t>(column)] || !tiles_.holds(held)) continue;
-      const TileTable::Costs& costs = tiles_[held];
+      if (!columns[static_cast<std::size_t>(column)] || !tiles_of(sheet).holds(held)) continue;
+      const TileTable::Costs& costs = tiles_of(sheet)[held];
       if (*std::min_element(costs.begin(), costs.end()) == kUnreachable) continue;
-      solve_columns(*workspace.joints, lattice_->family_of(sheet), column, column + 1);
-      const Tile& tile = workspace.tiles.emplace_back(Tile{sheet, column, true});
+      solve_columns(workspace, family, column, column + 1);
+      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{sheet, column, true});
       std::copy_n(costs.begin(), tile.end(n) - tile.begin(),
                   workspace.row.begin() + static_cast<std::ptrdiff_t>(sheet) * n + tile.begin());
     }
 }
 
+bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, ColumnSet& changed) {
+  const int n = lattice_->angles();
+  bool any = false;
+  for (const Tile& tile : workspace.half(family).tiles) {
+    const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n + tile.begin();
+    TileTable::Costs& known = tiles_of(tile.sheet).hold(tile_index(workspace.half(family).layer, tile.sheet, tile.column));
+    const auto count = static_cast<std::size_t>(tile.end(n) - tile.begin());
+    if (std::equal(values, values + count, known.begin())) continue;
+    std::copy_n(values, count, known.begin());
+    changed[static_cast<std::size_t>(tile.column)] = 1;
+    any = true;
+  }
+  return any;
+}
+
 GridCostToGo::~GridCostToGo() = default;
 
 void GridCostToGo::save() {
-  saved_ = {goal_, limit_, tiles_.held()};
+  saved_ = {goal_, limit_, {tiles_[0].held(), tiles_[1].held()}};
 }
 
 void GridCostToGo::restore() {
@@ -110,7 +128,7 @@ void GridCostToGo::restore() {
   by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
-  tiles_.restore(saved_.tiles);
+  for (std::size_t family = 0; family < tiles_.size(); ++family) tiles_[family].restore(saved_.tiles[family]);
 }
 
 void GridCostToGo::compute(int goal_layer) {
@@ -173,59 +191,63 @@ void GridCostToGo::raise_limit_until_exact() {
   }
 }
 
-void GridCostToGo::begin_with_all(int layer, Workspace& workspace) {
-  forget_joints();
-  begin_layer(layer, workspace);
-  std::fill(workspace.row.begin(), workspace.row.end(), 0.0);
-  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet) {
-    if (!workspace.nodes().alive(sheet)) continue;
-    solve_columns(*workspace.joints, lattice_->family_of(sheet), 0, tile_columns());
-    for (int column = 0; column < tile_columns(); ++column) workspace.tiles.push_back({sheet, column, true});
-  }
-  apply_masks(workspace);
-}
-
 void GridCostToGo::clear_values() {
   verdicts_.pending.clear();
-  tiles_.clear();
+  for (TileTable& tiles : tiles_) tiles.clear();
 }
 
 void GridCostToGo::sweep_once() {
   const TraceSpan span("sweep");
   clear_values();
-  Workspace* next = workspace_[0].get();
-  Workspace* here = workspace_[1].get();
-  begin_with_all(goal_, *next);
-  add_node_costs(*next);
-  prune_above_limit(*next);
-  publish_values(*next);
-  store_tiles(*next);
-  for (int layer = goal_ - 1; layer >= 0 && !next->sheets.empty(); --layer) {
-    if (layer == 0 && lattice_->has_start()) {
-      const double value = relax_one(0, lattice_->start_slot());
-      if (value <= limit_) value_at(0, lattice_->start_slot()) = value;
-      break;
-    }
+  forget_joints();
+  const auto settle = [&](int family, Workspace& here) {
+    prune_above_limit(family, here);
+    publish_values(family, here);
+    store_tiles(family, here);
+  };
+  by_family([&](int family) {
+    begin_with_all(family, goal_, workspace(goal_));
+    add_node_costs(family, workspace(goal_));
+    settle(family, workspace(goal_));
+  });
+  const int last = lattice_->has_start() ? 1 : 0;
+  bool reached = workspace(goal_).reaches_any();
+  for (int layer = goal_ - 1; layer >= last && reached;) {
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
-    solve_ahead(layer, -1, *next);
-    begin_layer(layer, *here);
-    reach_back(layer, *next, *here);
-    relax(layer, *here, *next);
-    apply_masks(*here);
-    add_node_costs(*here);
-    relax_removed(*here);
-    prune_above_limit(*here);
-    publish_values(*here);
-    store_tiles(*here);
-    std::swap(here, next);
+    const bool some_removed = verdicts_.removed_edges(layer) != nullptr;
+    int end = layer - 1;  // of the layers that families go through alone
+    if (!some_removed && !families_meet(layer))
+      while (end >= last && layer - end < kMostAlone && !families_meet(end) && !verdicts_.removed_edges(end)) --end;
+    by_family([&](int family) {
+      for (int at = layer; at > end; --at) {
+        Workspace &here = workspace(at), &next = workspace(at + 1);
+        begin(family, at, here);
+        reach_back(family, at, next, here);
+        relax(family, at, here, next);
+        apply_masks(family, here);
+        add_node_costs(family, here);
+        if (!some_removed) settle(family, here);
+      }
+    });
+    if (some_removed) {
+      relax_removed(layer);
+      for (int family = 0; family < SrsLattice::kFamilies; ++family) settle(family, workspace(layer));
+    }
+    reached = workspace(end + 1).reaches_any();
+    layer = end;
+  }
+  if (reached && goal_ > 0 && lattice_->has_start()) {
+    const double value = relax_one(0, lattice_->start_slot());
+    if (value <= limit_) value_at(0, lattice_->start_slot()) = value;
   }
 }
 
 double GridCostToGo::best() const {
   double best = kUnreachable;
-  for (std::size_t k = 0; k < tile_of_layer(lattice_->sheets(), 0); ++k)
-    if (tiles_.holds(k))
-      for (const double value : tiles_[k]) best = std::min(best, value);
+  for (const TileTable& tiles : tiles_)
+    for (std::size_t k = 0; k < tile_of_layer(half_sheets(), 0); ++k)
+      if (tiles.holds(k))
+        for (const double value : tiles[k]) best = std::min(best, value);
   return best;
 }
 

@@ -51,35 +51,54 @@ struct GridCostToGo::MiddleRanges {
   std::array<JointRange, 2> joint;
 };
 
-/// The joints of one layer, from -window to angles + window around the circle, solved by columns as they are wanted.
-struct GridCostToGo::LayerJoints {
+/// The joints of one family of a layer, from -window to angles + window around the circle, solved by columns as they are wanted.
+struct alignas(64) GridCostToGo::LayerJoints {
   int layer = -1;
   LayerNodes nodes;
-  enum : std::uint8_t { kOpen, kAhead, kWanted };   // kAhead: solved before anyone asked
-  std::array<std::vector<std::uint8_t>, 2> solved;  // [family][column]
+  ColumnSet solved;
   /// Ranges of the joints that tell sheets apart, over what is solved: of each column, and of all.
   std::vector<MiddleRanges> of_tile, of_layer;  // [sheet][column], [sheet]
 };
 
-/// A layer's values, ready to be relaxed against or being relaxed.
+/// A layer's values, ready to be relaxed against or being relaxed. While families do not meet, each goes through the layers by
+/// itself: then its sheets are at another layer than the others.
 struct GridCostToGo::Workspace {
-  int layer = -1;
-  LayerJoints* joints = nullptr;
   std::vector<double> row;    // [sheet][angle], of the tiles
-  std::vector<Tile> tiles;    // to be relaxed or holding values, in order
   std::vector<double> value;  // [sheet][padded angle]: the row once it is settled, infinite elsewhere
-  std::vector<int> sheets;    // with a finite value
   /// The finite values in the window of a column: first and last padded position, none where last < first.
   struct Window {
     int first = 0, last = -1;
-    mutable MiddleRanges ranges;  // filled when asked for
+    mutable std::array<MiddleRanges, 2> ranges;  // filled when asked for: [family that asks]
   };
-  std::vector<Window> windows;       // [sheet][column], of the sheets with a finite value
-  std::array<ColumnSet, 2> reached;  // [family]: columns with any near
-  [[nodiscard]] const LayerNodes& nodes() const { return joints->nodes; }
-  [[nodiscard]] bool find(int sheet, int column) const {
-    return std::binary_search(tiles.begin(), tiles.end(), Tile{sheet, column});
+  std::vector<Window> windows;  // [sheet][column], of the sheets with a finite value
+  /// The sheets of one family. One thread writes to it, and to those sheets' part of the arrays above.
+  struct alignas(64) Half {
+    int layer = -1;
+    LayerJoints* joints = nullptr;  // null where no column is reached
+    std::vector<Tile> tiles;        // to be relaxed or holding values, in order
+    std::vector<int> sheets;   // with a finite value
+    ColumnSet reached;         // columns with any near
+    std::vector<int> columns;  // scratch of reach_back
+    std::int64_t ik_nodes = 0, edges = 0;
+  };
+  std::array<Half, 2> halves;  // [family]
+  [[nodiscard]] Half& half(int family) { return halves[static_cast<std::size_t>(family)]; }
+  [[nodiscard]] const Half& half(int family) const { return halves[static_cast<std::size_t>(family)]; }
+  [[nodiscard]] bool find(const SrsLattice& lattice, int slot) const {
+    const int sheet = lattice.sheet_of(slot);
+    const std::vector<Tile>& tiles = half(lattice.family_of(sheet)).tiles;
+    return std::binary_search(tiles.begin(), tiles.end(), Tile{sheet, lattice.angle_of(slot) / kTileWidth});
   }
+  [[nodiscard]] bool reaches_any() const { return !halves[0].sheets.empty() || !halves[1].sheets.empty(); }
 };
+
+template <class Part>
+void GridCostToGo::by_family(const Part& part) {
+  struct CollectsCounts {
+    GridCostToGo* grid;
+    ~CollectsCounts() { grid->collect_counts(); }
+  } const at_end{this};
+  work_.for_each(SrsLattice::kFamilies, [&part](int family, int) { part(family); });
+}
 
 }  // namespace swivel

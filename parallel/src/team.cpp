@@ -16,6 +16,20 @@ using Clock = std::chrono::steady_clock;
 /// What a plan does between two batches of questions.
 constexpr Clock::duration kStayAwake = std::chrono::milliseconds(2);
 constexpr int kLooks = 16;  // between two looks at the clock
+/// Looks before the core is left to others, some microseconds: the time between two layers of a sweep. To leave it takes one.
+constexpr int kSpins = 256;
+
+/// Waits until `there`, with the core at first.
+template <class There>
+void look_for(const There& there, int yields) {
+  for (int spin = 0; spin < kSpins; ++spin) {
+    if (there()) return;
+#if defined(__x86_64__) || defined(__i386__)
+    __builtin_ia32_pause();
+#endif
+  }
+  for (int look = 0; look < yields && !there(); ++look) std::this_thread::yield();
+}
 
 /// How often work was shared, and indices first ... last - 1, in one word.
 struct Open {
@@ -80,7 +94,8 @@ void Team::share_some(int first, int count, const std::function<void(int, int)>&
   if (asleep_.load() > 0) open_.notify_all();
   while (take_one(0)) {
   }
-  while (done_.load() < count) std::this_thread::yield();
+  const auto all_done = [&] { return done_.load() == count; };
+  while (!all_done()) look_for(all_done, kLooks);
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
@@ -91,7 +106,7 @@ void Team::help(int worker) {
       }
       last = Clock::now();
     }
-    for (int look = 0; look < kLooks && !Open(open_.load()).any(); ++look) std::this_thread::yield();
+    look_for([&] { return Open(open_.load()).any(); }, kLooks);
     if (Clock::now() - last < kStayAwake) continue;
     ++asleep_;
     if (const std::uint64_t word = open_.load(); !Open(word).any() && !ended_.load()) open_.wait(word);

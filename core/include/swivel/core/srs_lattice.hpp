@@ -30,8 +30,8 @@ class LayerNodes {
   [[nodiscard]] bool alive(int sheet) const { return at(sheet).alive; }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(data_.size()) * sizeof(double); }
-  /// Copies `count` entries of every array from one place of the run to another.
-  void repeat(int from, int to, int count);
+  /// Copies `count` entries of every array of an elbow's sheets from one place of the run to another.
+  void repeat(int elbow, int from, int to, int count);
   [[nodiscard]] Config config(int sheet, int k) const {
     Config c;
     for (int j = 0; j < kDof; ++j) c[j] = q(sheet, j)[k];
@@ -58,6 +58,10 @@ class LayerNodes {
   Eigen::ArrayXd data_;
   std::vector<Offsets> offsets_;                  // [sheet]
   std::array<std::array<Offsets, 2>, 2> shared_;  // [elbow][sign of the triples]: what is solved, of the first winding
+  struct Span {
+    std::size_t begin = 0, end = 0;
+  };
+  std::array<std::array<Span, 2>, 2> arrays_;  // [elbow]: into data_; the sheets' own and those of branches with their own
 };
 
 /// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as the range has turns, begun ones
@@ -166,6 +170,10 @@ class SrsLattice final : public Lattice {
   void solve_part(int family, int begin, int end, LayerNodes& out) const;
   /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
   [[nodiscard]] bool alive(int layer) const { return (layer == 0 && start_) || elbow_alive(layer, 0) || elbow_alive(layer, 1); }
+  /// Whether a family has nodes in a layer at all.
+  [[nodiscard]] bool alive(int layer, int family) const {
+    return layer == 0 && start_ ? family_of(sheet_of(start_->slot)) == family : elbow_alive(layer, family);
+  }
   /// False where no edge can lead from a family of `layer` to one of a neighbouring layer; the step's number is `step_layer`.
   [[nodiscard]] bool families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const;
   /// A branch flips only through the zero of a middle joint: these tell sheets apart, the first two those of one family.
