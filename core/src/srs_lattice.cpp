@@ -576,8 +576,9 @@ PoseShift SrsLattice::rows_apart(int layer, int group, const Config& q) const {
                               : row_shift_->between_rows(group, plane(layer).reach, q);
 }
 
-bool SrsLattice::families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const {
+bool SrsLattice::families_meet(int step_layer, int layer, int family, int other_layer, int other) const {
   if (family == other) return true;
+  if (!alive(layer, family) || !alive(other_layer, other)) return false;
   const auto angle = elbow_angle(layer, family), other_angle = elbow_angle(other_layer, other);
   return !angle || !other_angle || std::abs(*angle - *other_angle) <= step_bound(step_layer)[kElbowJoint];
 }

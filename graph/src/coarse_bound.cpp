@@ -49,7 +49,7 @@ struct Summary {
 };
 
 /// One sheet of one layer, from -window to angles + window around the circle, and on to whole runs.
-struct alignas(64) Circle {  // threads write to neighbours
+struct alignas(64) Circle {
   bool alive = false;
   std::vector<float> q[kDof];
   std::vector<float> value;    // bound; kNever where no node is
@@ -81,8 +81,7 @@ class Chords {
         work_(work),
         n_(lattice.angles()),
         window_(std::min(n_ / 2, stride * lattice.window() + 1)),
-        circles_(work.threads > 1 ? kAhead + 1 : 2),
-        nodes_(static_cast<std::size_t>(work.threads)) {
+        nodes_(SrsLattice::kFamilies) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task_.wraps = false;
@@ -106,37 +105,51 @@ class Chords {
   [[nodiscard]] bool fits() const { return fits_; }
   [[nodiscard]] int layers() const { return (lattice_.layers() - 1 + stride_ - 1) / stride_ + 1; }
 
-  /// The bounds of the nodes of layer c, as [slot]; c = 0, 1, ... in turn. False where none is reached.
-  bool advance(int c, float* row) {
+  /// The bounds of the nodes of the layers from c on, as [layer][slot], as many as families go through alone or one; c = 0, then
+  /// what was returned before. The next c; -1 where no node is reached.
+  int advance(int c, float* rows) {
     budget_.tell(Stage::kBounds, layer_at(c), lattice_.layers());
-    if (const int ahead = static_cast<int>(circles_.size()) - 1; c % ahead == 0)
-      work_.for_each(std::min(ahead, layers() - c),
-                     [&](int k, int worker) { load(c + k, nodes_[static_cast<std::size_t>(worker)]); });
-    std::fill_n(row, lattice_.width(), kNever);
-    sheets_.clear();
-    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet)
-      if (circle(c, sheet).alive) sheets_.push_back(sheet);
-    work_.for_each(static_cast<int>(sheets_.size()), [&](int k, int) {
-      const int sheet = sheets_[static_cast<std::size_t>(k)];
-      bound(c, sheet, row + static_cast<std::ptrdiff_t>(sheet) * n_);
+    int end = c + 1;
+    while (!meets(c) && end < layers() && end - c < kMostAlone && !meets(end)) ++end;
+    work_.for_each(SrsLattice::kFamilies, [&](int family, int) {
+      for (int at = c; at < end; ++at) {
+        load(at, family);
+        const bool meets_other = end == c + 1 && meets(at);
+        for (int sheet = first_sheet(family); sheet < first_sheet(family) + lattice_.sheets() / 2; ++sheet) {
+          float* const row = rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(sheet) * n_;
+          if (circle(at, sheet).alive)
+            bound(at, sheet, meets_other, row);
+          else
+            std::fill_n(row, n_, kNever);
+        }
+      }
     });
-    return std::any_of(sheets_.begin(), sheets_.end(), [&](int sheet) { return circle(c, sheet).alive; });
+    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet)
+      if (circle(end - 1, sheet).alive) return end;
+    return -1;
   }
 
  private:
-  static constexpr std::size_t kAhead = 16;  // layers loaded at once where threads share them
+  static constexpr int kMostAlone = 16;  // chords until the next word to the budget
 
+  [[nodiscard]] int first_sheet(int family) const { return family * lattice_.sheets() / 2; }
+  /// Whether any of the steps of the chord before layer c may lead from one family to the other.
+  [[nodiscard]] bool meets(int c) const {
+    for (int step = c > 0 ? layer_at(c - 1) : 0; step < (c > 0 ? layer_at(c) : 0); ++step)
+      if (lattice_.families_meet(step)) return true;
+    return false;
+  }
   [[nodiscard]] int layer_at(int c) const { return std::min(c * stride_, lattice_.layers() - 1); }
   Circle& circle(int c, int sheet) {
     return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(sheet)];
   }
   /// Of a sheet's nodes, from those of layer c - 1; zeros in layer 0.
-  void bound(int c, int sheet, float* best) {
+  void bound(int c, int sheet, bool meets_other, float* best) {
     budget_.poll();
     Circle& here = circle(c, sheet);
     if (c == 0) std::fill_n(best, n_, 0.0F);
     for (int run = 0; c > 0 && run < runs(); ++run) {
-      const Lanes relaxed = relax(c, sheet, run);
+      const Lanes relaxed = relax(c, sheet, meets_other, run);
       std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
     }
     Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
@@ -152,10 +165,12 @@ class Chords {
   }
 
   /// Joints, and value 0 where a node is.
-  void load(int c, LayerNodes& nodes) {
+  void load(int c, int family) {
     budget_.poll();
-    lattice_.solve(layer_at(c), 0, n_, nodes);
-    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet) {
+    LayerNodes& nodes = nodes_[static_cast<std::size_t>(family)];
+    lattice_.lay_out(layer_at(c), 0, n_, nodes);
+    lattice_.solve_part(family, 0, n_, nodes);
+    for (int sheet = first_sheet(family); sheet < first_sheet(family) + lattice_.sheets() / 2; ++sheet) {
       Circle& to = circle(c, sheet);
       to.alive = false;
       if (!nodes.alive(sheet)) continue;
@@ -192,7 +207,7 @@ class Chords {
   }
 
   /// The bounds of a run's nodes before rounding is taken off.
-  Lanes relax(int c, int sheet, int run) {
+  Lanes relax(int c, int sheet, bool meets_other, int run) {
     const Circle& here = circle(c, sheet);
     const int at = window_ + begin(run), count = std::min(kRun, n_);
     Lanes best = Lanes::Constant(kNever);
@@ -201,7 +216,8 @@ class Chords {
     const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
     relax_with(here, begin(run), count, circle(c - 1, sheet), best.data());
     float worst = worst_of_all();
-    for (int other = 0; other < lattice_.sheets(); ++other) {
+    const int family = lattice_.family_of(sheet), first = meets_other ? 0 : first_sheet(family);
+    for (int other = first; other < (meets_other ? lattice_.sheets() : first + lattice_.sheets() / 2); ++other) {
       const Circle& before = circle(c - 1, other);
       if (other == sheet || !before.alive) continue;
       const Summary& near = before.near[static_cast<std::size_t>(run)];
@@ -242,9 +258,8 @@ class Chords {
   RelaxTask<float> task_;
   double lost_ = 0;
   bool fits_ = true;
-  std::vector<std::vector<Circle>> circles_;  // [c % size][sheet]: those loaded and one before
-  std::vector<int> sheets_;                   // of the layer at hand, with nodes
-  std::vector<LayerNodes> nodes_;             // scratch of load(): [worker]
+  std::array<std::vector<Circle>, 2> circles_;  // [c % 2][sheet]
+  std::vector<LayerNodes> nodes_;               // scratch of load(): [family]
 };
 
 }  // namespace
@@ -256,12 +271,14 @@ CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget, const 
   if (!chords.fits()) return;
   const int coarse = chords.layers();
   rows_.resize(static_cast<std::size_t>(coarse) * static_cast<std::size_t>(width_));
-  for (int c = 0; c < coarse; ++c) {
-    ik_nodes_ += width_;
-    if (!chords.advance(c, rows_.data() + static_cast<std::ptrdiff_t>(c) * width_)) {
+  for (int c = 0; c < coarse;) {
+    const int next = chords.advance(c, rows_.data() + static_cast<std::ptrdiff_t>(c) * width_);
+    if (next < 0) {
       best_ = std::numeric_limits<double>::infinity();
       return;
     }
+    ik_nodes_ += static_cast<std::int64_t>(next - c) * width_;
+    c = next;
   }
   best_ = *std::min_element(rows_.end() - width_, rows_.end());
 }

@@ -69,11 +69,10 @@ class GridCostToGo final : public CostToGo {
   }
   [[nodiscard]] int half_sheets() const { return lattice_->sheets() / 2; }
   [[nodiscard]] int first_sheet(int family) const { return family * half_sheets(); }
-  [[nodiscard]] const TileTable& tiles_of(int sheet) const { return tiles_[static_cast<std::size_t>(lattice_->family_of(sheet))]; }
-  [[nodiscard]] TileTable& tiles_of(int sheet) { return tiles_[static_cast<std::size_t>(lattice_->family_of(sheet))]; }
-  /// In the table of its family.
+  [[nodiscard]] const TileTable& tiles_of(int sheet) const { return apart_ && lattice_->family_of(sheet) ? tiles_[1] : tiles_[0]; }
+  [[nodiscard]] TileTable& tiles_of(int sheet) { return apart_ && lattice_->family_of(sheet) ? tiles_[1] : tiles_[0]; }
   [[nodiscard]] std::size_t tile_index(int layer, int sheet, int column) const {
-    return static_cast<std::size_t>(layer) * tile_of_layer(half_sheets(), 0) + tile_of_layer(sheet % half_sheets(), column);
+    return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->sheets(), 0) + tile_of_layer(sheet, column);
   }
   double& value_at(int layer, int slot);  // holds its tile from now on
 
@@ -81,10 +80,6 @@ class GridCostToGo final : public CostToGo {
   // through by itself. Nothing that a part writes is read by the other.
   /// Layers that families go through one after the other or side by side, until the next poll of what else there is to do.
   static constexpr int kMostAlone = 64;
-  /// An edge may lead from a family of `layer` to one of a neighbouring layer.
-  [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
-  /// From one of the two to the other.
-  [[nodiscard]] bool families_meet(int step_layer) const;
   /// part(family) for both, by two threads where work is shared.
   template <class Part>
   void by_family(const Part& part);
@@ -156,10 +151,13 @@ class GridCostToGo final : public CostToGo {
   };
   Reach reach_;
   bool by_reach_ = false;  // nodes are held to the limit by reach_, not by the coarse bound
-  std::array<TileTable, 2> tiles_;  // [family]
+  /// By family where threads share the work, else all in the first: two that grow beside each other take more fresh memory.
+  std::array<TileTable, 2> tiles_;
+  bool apart_ = false;
   struct {
     int goal = 0;
     double limit = kUnreachable;
+    bool apart = false;
     std::array<TileTable::Held, 2> tiles;
   } saved_;
   std::vector<LayerJoints> passing_;                     // [family][layer % 2]: those at hand

@@ -64,15 +64,6 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
   }
 }
 
-bool GridCostToGo::families_meet(int step_layer, int layer, int family, int other_layer, int other) const {
-  return family == other || (lattice_->alive(layer, family) && lattice_->alive(other_layer, other) &&
-                             lattice_->families_may_connect(step_layer, layer, family, other_layer, other));
-}
-
-bool GridCostToGo::families_meet(int step_layer) const {
-  return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) || families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
-}
-
 void GridCostToGo::collect_counts() {
   for (auto& workspace : workspace_)
     for (Workspace::Half& half : workspace->halves) {

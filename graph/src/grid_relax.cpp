@@ -41,7 +41,7 @@ void GridCostToGo::reach_back(int family, int step_layer, const Workspace& to, W
   columns.clear();
   const Workspace::Half& own = to.half(family);
   const Workspace::Half* other =
-      families_meet(step_layer, half.layer, family, to_layer, 1 - family) ? &to.half(1 - family) : nullptr;
+      lattice_->families_meet(step_layer, half.layer, family, to_layer, 1 - family) ? &to.half(1 - family) : nullptr;
   for (int column = 0; column < tile_columns(); ++column) {
     const auto c = static_cast<std::size_t>(column);
     if (own.reached[c] || (other && other->reached[c])) columns.push_back(column);
@@ -120,7 +120,7 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
   }
   std::array<bool, SrsLattice::kFamilies> meets;
   for (int other = 0; other < SrsLattice::kFamilies; ++other)
-    meets[static_cast<std::size_t>(other)] = families_meet(step_layer, here.layer, family, to.half(family).layer, other);
+    meets[static_cast<std::size_t>(other)] = lattice_->families_meet(step_layer, here.layer, family, to.half(family).layer, other);
   for (std::size_t first = 0, last = 0; first < tiles.size(); first = last) {
     budget_.poll();
     const int sheet = tiles[first].sheet;

@@ -27,9 +27,7 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
       lattice_(&lattice),
       bounded_(extent == Extent::kBounded) {
   const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
-  for (std::size_t family = 0; family < tiles_.size(); ++family)
-    tiles_[family] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles / 2,
-                               retired ? std::move(retired->tiles_[family]) : TileTable());
+  tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, retired ? std::move(retired->tiles_[0]) : TileTable());
   if (retired) {
     passing_ = std::move(retired->passing_);
     neighbours_ = std::move(retired->neighbours_);
@@ -120,7 +118,7 @@ bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, ColumnSet
 GridCostToGo::~GridCostToGo() = default;
 
 void GridCostToGo::save() {
-  saved_ = {goal_, limit_, {tiles_[0].held(), tiles_[1].held()}};
+  saved_ = {goal_, limit_, apart_, {tiles_[0].held(), tiles_[1].held()}};
 }
 
 void GridCostToGo::restore() {
@@ -128,7 +126,9 @@ void GridCostToGo::restore() {
   by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
-  for (std::size_t family = 0; family < tiles_.size(); ++family) tiles_[family].restore(saved_.tiles[family]);
+  apart_ = saved_.apart;
+  tiles_[0].restore(saved_.tiles[0]);
+  if (apart_) tiles_[1].restore(saved_.tiles[1]);
 }
 
 void GridCostToGo::compute(int goal_layer) {
@@ -194,6 +194,9 @@ void GridCostToGo::raise_limit_until_exact() {
 void GridCostToGo::clear_values() {
   verdicts_.pending.clear();
   for (TileTable& tiles : tiles_) tiles.clear();
+  apart_ = work_.threads > 1;
+  if (apart_ && tiles_[1].tiles() == 0)
+    tiles_[1] = TileTable(static_cast<std::size_t>(lattice_->layers()) * tile_of_layer(lattice_->sheets(), 0));
 }
 
 void GridCostToGo::sweep_once() {
@@ -216,8 +219,8 @@ void GridCostToGo::sweep_once() {
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
     const bool some_removed = verdicts_.removed_edges(layer) != nullptr;
     int end = layer - 1;  // of the layers that families go through alone
-    if (!some_removed && !families_meet(layer))
-      while (end >= last && layer - end < kMostAlone && !families_meet(end) && !verdicts_.removed_edges(end)) --end;
+    if (!some_removed && !lattice_->families_meet(layer))
+      while (end >= last && layer - end < kMostAlone && !lattice_->families_meet(end) && !verdicts_.removed_edges(end)) --end;
     by_family([&](int family) {
       for (int at = layer; at > end; --at) {
         Workspace &here = workspace(at), &next = workspace(at + 1);
@@ -244,10 +247,9 @@ void GridCostToGo::sweep_once() {
 
 double GridCostToGo::best() const {
   double best = kUnreachable;
-  for (const TileTable& tiles : tiles_)
-    for (std::size_t k = 0; k < tile_of_layer(half_sheets(), 0); ++k)
-      if (tiles.holds(k))
-        for (const double value : tiles[k]) best = std::min(best, value);
+  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+    for (int column = 0; column < tile_columns(); ++column)
+      for (const double value : tiles_of(sheet)[tile_index(0, sheet, column)]) best = std::min(best, value);
   return best;
 }
 

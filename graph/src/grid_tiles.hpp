@@ -98,7 +98,8 @@ void GridCostToGo::by_family(const Part& part) {
     GridCostToGo* grid;
     ~CollectsCounts() { grid->collect_counts(); }
   } const at_end{this};
-  work_.for_each(SrsLattice::kFamilies, [&part](int family, int) { part(family); });
+  if (apart_) return work_.for_each(SrsLattice::kFamilies, [&part](int family, int) { part(family); });
+  for (int family = 0; family < SrsLattice::kFamilies; ++family) part(family);
 }
 
 }  // namespace swivel

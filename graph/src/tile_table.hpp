@@ -36,6 +36,8 @@ class TileTable {
     }
   }
 
+  /// Of the grid: 0 until it is given some.
+  [[nodiscard]] std::size_t tiles() const { return slot_.size(); }
   /// kUnreachable where none are held.
   [[nodiscard]] const Costs& operator[](std::size_t tile) const { return held_.costs[slot_[tile]]; }
   [[nodiscard]] bool holds(std::size_t tile) const { return slot_[tile] != 0; }

@@ -174,8 +174,12 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool alive(int layer, int family) const {
     return layer == 0 && start_ ? family_of(sheet_of(start_->slot)) == family : elbow_alive(layer, family);
   }
-  /// False where no edge can lead from a family of `layer` to one of a neighbouring layer; the step's number is `step_layer`.
-  [[nodiscard]] bool families_may_connect(int step_layer, int layer, int family, int other_layer, int other) const;
+  /// False where no edge leads from a family of `layer` to another of a neighbouring layer; the step's number is `step_layer`.
+  [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
+  /// The same of either family of a step's first layer and the other one of the next.
+  [[nodiscard]] bool families_meet(int step_layer) const {
+    return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) || families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
+  }
   /// A branch flips only through the zero of a middle joint: these tell sheets apart, the first two those of one family.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
   /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings apart.
