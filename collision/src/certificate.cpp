@@ -106,8 +106,7 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
 Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, double d, double margin, int& triangle) {
   const Segment core = core_of(round);
   const double radius = radius_of(round);
-  if (is_round(other))
-    return Range(d, margin, radius + radius_of(other)).of(std::sqrt(squared_distance(core, core_of(other))));
+  if (is_round(other)) return Range(d, margin, radius + radius_of(other)).of(std::sqrt(squared_distance(core, core_of(other))));
   const Segment there = in_frame(core, *other.pose);
   const Range range(d, margin, radius);
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);

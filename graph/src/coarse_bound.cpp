@@ -116,7 +116,8 @@ class Chords {
         load(at, family);
         const bool meets_other = end == c + 1 && meets(at);
         for (int sheet = first_sheet(family); sheet < first_sheet(family) + lattice_.sheets() / 2; ++sheet) {
-          float* const row = rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(sheet) * n_;
+          float* const row =
+              rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(sheet) * n_;
           if (circle(at, sheet).alive)
             bound(at, sheet, meets_other, row);
           else

@@ -94,8 +94,7 @@ class GridCostToGo final : public CostToGo {
   void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace);
   void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
   void relax(int family, int step_layer, Workspace& from, const Workspace& to);
-  void relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
-                 double* best);
+  void relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other, double* best);
   void apply_masks(int family, Workspace& workspace) const;
   void add_node_costs(int family, Workspace& workspace) const;
   void prune_above_limit(int family, Workspace& workspace) const;

@@ -71,7 +71,9 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
   if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)])) return false;
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
-  const auto theirs = [&](int joint) { return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1); };
+  const auto theirs = [&](int joint) {
+    return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1);
+  };
   MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->family_of(sheet))];
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     JointRange& range = ranges.joint[m];

@@ -90,9 +90,7 @@ void GridCostToGo::relax_removed(int layer) {
     if (!here.find(*lattice_, a)) continue;
     double& value = here.row[static_cast<std::size_t>(a)];
     const double own = verdicts_.cost(layer, a);
-    const auto gives_value = [&](const Verdicts::HalfEdge& edge) {
-      return own + (edge.cost + at(layer + 1, edge.other)) == value;
-    };
+    const auto gives_value = [&](const Verdicts::HalfEdge& edge) { return own + (edge.cost + at(layer + 1, edge.other)) == value; };
     if (value != kUnreachable && std::any_of(edges.begin(), edges.end(), gives_value)) value = relax_one(layer, a);
   }
 }
@@ -238,7 +236,8 @@ void GridCostToGo::propagate_removals() {
       for (Front& front : fronts) front.next_layer();
     }
     layer = end;
-    if (!fronts[0].any_after && !fronts[1].any_after) layer = pending.empty() ? -1 : pending.rbegin()->first;  // nothing until there
+    if (!fronts[0].any_after && !fronts[1].any_after)
+      layer = pending.empty() ? -1 : pending.rbegin()->first;  // nothing until there
   }
 }
 

@@ -23,9 +23,7 @@ void each(int count, const F& f) {
 }  // namespace
 
 GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
-    : CostToGo(lattice, budget),
-      lattice_(&lattice),
-      bounded_(extent == Extent::kBounded) {
+    : CostToGo(lattice, budget), lattice_(&lattice), bounded_(extent == Extent::kBounded) {
   const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
   tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, retired ? std::move(retired->tiles_[0]) : TileTable());
   if (retired) {

@@ -76,9 +76,9 @@ struct GridCostToGo::Workspace {
     int layer = -1;
     LayerJoints* joints = nullptr;  // null where no column is reached
     std::vector<Tile> tiles;        // to be relaxed or holding values, in order
-    std::vector<int> sheets;   // with a finite value
-    ColumnSet reached;         // columns with any near
-    std::vector<int> columns;  // scratch of reach_back
+    std::vector<int> sheets;        // with a finite value
+    ColumnSet reached;              // columns with any near
+    std::vector<int> columns;       // scratch of reach_back
     std::int64_t ik_nodes = 0, edges = 0;
   };
   std::array<Half, 2> halves;  // [family]

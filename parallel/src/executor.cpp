@@ -22,9 +22,12 @@ namespace swivel {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Work that is worth waking a thread, and beginning threads. On two cores waking costs some 10 us and beginning 0.5 ms.
+/// Work that is worth waking a thread, and beginning threads: what the caller has done alone since threads last helped counts as
+/// well, since as much is likely to follow. On two cores waking costs some 10 us and beginning 0.5 ms.
 constexpr Clock::duration kWorthWaking = std::chrono::microseconds(40);
 constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(3);
+/// What is left of a call and worth handing over.
+constexpr Clock::duration kWorthSharing = std::chrono::microseconds(10);
 constexpr int kMostHelpers = 7;  // of brief calls, which have few parts
 
 }  // namespace
@@ -32,7 +35,7 @@ constexpr int kMostHelpers = 7;  // of brief calls, which have few parts
 struct Executor::Impl {
   int threads = 1;
   Backend backend = Backend::kTbb;
-  Clock::duration alone{0};  // what the caller has worked in brief calls before threads were begun
+  Clock::duration alone{0};  // what the caller has worked in brief calls since threads last helped
   /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where more are asked for. Not set for
   /// fewer: the least of all controls holds for the whole process.
   std::unique_ptr<tbb::global_control> allowed;
@@ -67,13 +70,14 @@ void Executor::for_each_brief(int count, const std::function<void(int, int)>& bo
   for (int index = 0; index < count; ++index) {
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
-    if (left > std::max(kWorthWaking, impl_->team ? kWorthWaking : kWorthBeginning - impl_->alone)) {
+    if (left > kWorthSharing && impl_->alone + left > (impl_->team ? kWorthWaking : kWorthBeginning)) {
       if (!impl_->team) impl_->team = std::make_unique<detail::Team>(std::min(kMostHelpers, impl_->threads - 1));
+      impl_->alone = Clock::duration(0);
       return impl_->team->share(index, count, body);
     }
     body(index, 0);
   }
-  if (!impl_->team) impl_->alone += Clock::now() - begin;
+  impl_->alone += Clock::now() - begin;
 }
 
 void Executor::share(int count, const std::function<void(int, int)>& body) {

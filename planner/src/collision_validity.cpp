@@ -43,7 +43,9 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int partition = 0; partition < partitions; ++partition) partitions_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
-  if (lattice.has_own_rows()) rows_.assign(static_cast<std::size_t>(executor.threads()), std::vector<Row>(std::min(kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
+  if (lattice.has_own_rows())
+    rows_.assign(static_cast<std::size_t>(executor.threads()),
+                 std::vector<Row>(std::min(kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
 }
 
 std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {

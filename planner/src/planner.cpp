@@ -45,10 +45,14 @@ Certificates certificates_of(const PlanOptions& options) {
   return is_eager(options) ? Certificates::kOff : Certificates::kOn;
 }
 
-/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one.
-int lanes_of(const PlanOptions& options) {
+/// From here on lower bounds and sweeps take long enough to be shared.
+constexpr std::int64_t kManyNodes = 250'000;  // some milliseconds
+
+/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of
+/// distances, which takes a few per cent of a short plan.
+int lanes_of(const PlanOptions& options, const Lattice& lattice) {
   if (options.planner == PlannerKind::kLazy) return 1;
-  return options.planner == PlannerKind::kParallel ? 8 : 0;
+  return options.planner == PlannerKind::kParallel ? (lattice.nodes() < kManyNodes ? 4 : 8) : 0;
 }
 
 SharedWork shared_with(Executor& threads) {
@@ -344,22 +348,21 @@ struct Planner::Impl {
       count(validity);
       return found;
     }
-    constexpr int kFewLayers = 64;               // where chords are too long to bound much
-    constexpr std::int64_t kFewNodes = 250'000;  // some milliseconds, about what the memory takes that threads work ahead in
+    constexpr int kFewLayers = 64;  // where chords are too long to bound much
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
     if (once) cost_to_go->never_restarts();
-    cost_to_go->share(lattice.nodes() < kFewNodes ? SharedWork() : shared_with(threads));
+    cost_to_go->share(lattice.nodes() < kManyNodes ? SharedWork() : shared_with(threads));
     const bool swept = cost_to_go->restart(budget);
     std::optional<World> changed;
     if (remembered) {
       memory.begin(++plans, met, *world, problem.scene);
       if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     }
-    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, lanes_of(options),
-                               budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
+    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads,
+                               lanes_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
     const std::vector<Suspect> asked_before = remembered ? std::exchange(suspects, {}) : std::vector<Suspect>();
     found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : AskedFirst{}, asked_before, options,

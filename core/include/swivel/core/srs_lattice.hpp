@@ -178,7 +178,8 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
   /// The same of either family of a step's first layer and the other one of the next.
   [[nodiscard]] bool families_meet(int step_layer) const {
-    return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) || families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
+    return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) ||
+           families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
   }
   /// A branch flips only through the zero of a middle joint: these tell sheets apart, the first two those of one family.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
