@@ -75,14 +75,16 @@ SharedWork shared_by_threads() {
 TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   Random random(seed("Bounded"));
   Random beyond(seed("Bounded.Deepest"));  // its own, so that the problems are the same however many rounds it has
-  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0;
+  int problems = 0, rounds = 0, changed = 0, ended = 0, bounds = 0, to_deepest = 0, met = 0, apart = 0, longest = 0;
   std::int64_t whole_ik = 0, bounded_ik = 0, compared = 0;
   double tightest = 0;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
-      const Problem problem = random_problem(robot, arm.chain, random, 2 + random.below(30));
+      // Some of more layers than families go through at once.
+      const int waypoints = trial % 8 == 7 ? 66 + random.below(80) : 2 + random.below(30);
+      const Problem problem = random_problem(robot, arm.chain, random, waypoints);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
       GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded), shared(lattice, Extent::kBounded);
@@ -104,6 +106,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       ++problems;
+      for (int step = 0; step + 1 < lattice.layers(); ++step) (lattice.families_meet(step) ? met : apart) += 1;
+      longest = std::max(longest, lattice.layers());
       whole_ik += whole.ik_nodes();
       bounded_ik += bounded.ik_nodes();
 
@@ -197,9 +201,14 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   }
   std::printf(
       "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from paths to the deepest layer; %d "
-      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes; %lld tables by threads the same\n",
+      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes; %lld tables by threads the same; "
+      "families meet at %d steps, not at %d; up to %d layers\n",
       problems, rounds, changed, ended, to_deepest, bounds, tightest,
-      100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik), static_cast<long long>(compared));
+      100.0 * static_cast<double>(bounded_ik) / static_cast<double>(whole_ik), static_cast<long long>(compared), met, apart,
+      longest);
+  EXPECT_GE(met, at_least(20));
+  EXPECT_GE(apart, at_least(200));
+  EXPECT_GT(longest, 64);
   EXPECT_GE(compared, at_least(problems + 1));
   EXPECT_GE(rounds, at_least(3 * problems + 1));
   EXPECT_GE(changed, at_least(problems + 1));
