@@ -158,7 +158,7 @@ void GridCostToGo::propagate_removals() {
     front.any_here = true;
   };
   const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->sheet_of(slot)) == family; };
-  // NodeRun now cost what they cost first, with the layer after as it was; where that changed, too, they are relaxed next.
+  // Nodes that cost more now do so first with the layer after as it was; where that changed, too, they are relaxed next.
   const auto raise = [&](int family, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.raised)
       if (of_family(family, slot))
