@@ -115,7 +115,6 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Workspace& before);
   void relax_removed(int layer);
-  void repair_layer(int family, int layer, Front& front);
   void clear_values();  // everything is unreachable
   void sweep_once();
   void limit_by_reach();
