@@ -80,6 +80,10 @@ class GridCostToGo final : public CostToGo {
   // through by itself. Nothing that a part writes is read by the other.
   /// Layers that families go through one after the other or side by side, until the next poll of what else there is to do.
   static constexpr int kMostAlone = 64;
+  /// Whether they do from a layer to the next. Where an edge is removed there one thread looks at both.
+  [[nodiscard]] bool families_part(int step_layer) const {
+    return !lattice_->families_meet(step_layer) && !verdicts_.removed_edges(step_layer);
+  }
   /// part(family) for both, by two threads where work is shared.
   template <class Part>
   void by_family(const Part& part);

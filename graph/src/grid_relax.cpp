@@ -36,12 +36,11 @@ void GridCostToGo::begin_with_all(int family, int layer, Workspace& workspace) {
 void GridCostToGo::reach_back(int family, int step_layer, const Workspace& to, Workspace& from) {
   Workspace::Half& half = from.half(family);
   if (!lattice_->alive(half.layer, family)) return;
-  const int to_layer = to.half(family).layer;
   std::vector<int>& columns = half.columns;
   columns.clear();
   const Workspace::Half& own = to.half(family);
   const Workspace::Half* other =
-      lattice_->families_meet(step_layer, half.layer, family, to_layer, 1 - family) ? &to.half(1 - family) : nullptr;
+      lattice_->families_meet(step_layer, half.layer, family, own.layer, 1 - family) ? &to.half(1 - family) : nullptr;
   for (int column = 0; column < tile_columns(); ++column) {
     const auto c = static_cast<std::size_t>(column);
     if (own.reached[c] || (other && other->reached[c])) columns.push_back(column);

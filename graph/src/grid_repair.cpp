@@ -185,7 +185,7 @@ void GridCostToGo::propagate_removals() {
   const auto goes_alone = [&](int layer) {
     const auto now = pending.find(layer);
     return (layer > 0 || !lattice_->has_start()) && (now == pending.end() || now->second.tails.empty()) &&
-           !verdicts_.removed_edges(layer) && (layer == goal_ || !lattice_->families_meet(layer));
+           (layer == goal_ || families_part(layer));
   };
   for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
     int end = layer;  // of the layers that families go through alone
@@ -340,9 +340,7 @@ int GridCostToGo::deepest_reachable() {
           }))
         step_one(layer, b);
   };
-  const auto goes_alone = [&](int layer) {
-    return (layer > 1 || !lattice_->has_start()) && !verdicts_.removed_edges(layer - 1) && !lattice_->families_meet(layer - 1);
-  };
+  const auto goes_alone = [&](int layer) { return (layer > 1 || !lattice_->has_start()) && families_part(layer - 1); };
   const auto finish = [&](int family, int layer) {
     publish_values(family, workspace(layer));
     int& last = deepest[static_cast<std::size_t>(family)];

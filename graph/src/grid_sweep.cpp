@@ -217,8 +217,8 @@ void GridCostToGo::sweep_once() {
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
     const bool some_removed = verdicts_.removed_edges(layer) != nullptr;
     int end = layer - 1;  // of the layers that families go through alone
-    if (!some_removed && !lattice_->families_meet(layer))
-      while (end >= last && layer - end < kMostAlone && !lattice_->families_meet(end) && !verdicts_.removed_edges(end)) --end;
+    if (families_part(layer))
+      while (end >= last && layer - end < kMostAlone && families_part(end)) --end;
     by_family([&](int family) {
       for (int at = layer; at > end; --at) {
         Workspace &here = workspace(at), &next = workspace(at + 1);

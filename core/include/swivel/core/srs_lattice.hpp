@@ -169,7 +169,7 @@ class SrsLattice final : public Lattice {
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
   void solve_part(int family, int begin, int end, LayerNodes& out) const;
   /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
-  [[nodiscard]] bool alive(int layer) const { return (layer == 0 && start_) || elbow_alive(layer, 0) || elbow_alive(layer, 1); }
+  [[nodiscard]] bool alive(int layer) const { return alive(layer, 0) || alive(layer, 1); }
   /// Whether a family has nodes in a layer at all.
   [[nodiscard]] bool alive(int layer, int family) const {
     return layer == 0 && start_ ? family_of(sheet_of(start_->slot)) == family : elbow_alive(layer, family);
