@@ -551,10 +551,12 @@ void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& o
   out.clear();
   const int signs =
       (groups & kShoulderLinks ? kShoulderBit : 0) | (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
-  for (int sheet = 0; sheet < sheets(); ++sheet) {
-    if ((sheet / windings_ ^ branch_of(slot)) & signs) continue;
-    const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
-    for (int j = first; j <= last; ++j) out.push_back(sheet * angles_ + j);
+  const int branch = branch_of(slot);
+  const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
+  for (int sheet = 0, other = 0; sheet < sheets(); sheet += windings_, ++other) {
+    if ((other ^ branch) & signs) continue;
+    for (int winding = 0; winding < windings_; ++winding)
+      for (int j = first; j <= last; ++j) out.push_back((sheet + winding) * angles_ + j);
   }
   if (all_angles || moved(layer).empty()) return;
   const double angle = phi(layer, slot);  // cells move sheet by sheet

@@ -217,31 +217,34 @@ class Search {
   }
 
   void grow(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
+    const auto add = [&](int layer, int slot, FailureId failure) {
+      if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown) frontier.push_back({layer, slot, failure});
+    };
     const auto add_neighbours = [&](const Failure& x) {
-      for (const int by : {-1, 1}) {
-        const int slot = x.layer + by <= cost_to_go_.goal_layer() ? lattice_.along(x.layer, x.slot, by) : -1;
-        if (slot >= 0) frontier.push_back({x.layer + by, slot, x.failure});
-      }
+      for (const int by : {-1, 1})
+        if (x.layer + by <= cost_to_go_.goal_layer()) add(x.layer + by, lattice_.along(x.layer, x.slot, by), x.failure);
       for (const int by : {1, -1})
         for (const int slot : {lattice_.beside(x.layer, x.slot, by), lattice_.across(x.layer, x.slot, by)})
-          if (slot >= 0) frontier.push_back({x.layer, slot, x.failure});
+          add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
     std::vector<NodeQuestion> questions;
+    std::vector<std::int64_t> keys;  // of the questions
     for (int& left = left_to_grow_; left > 0 && !frontier.empty();) {
       questions.clear();
+      keys.clear();
       while (!frontier.empty() && questions.size() < std::min(kGrownAtOnce, static_cast<std::size_t>(left))) {
         const auto [layer, slot, failure] = frontier.front();
         frontier.pop_front();
-        const bool again = std::any_of(questions.begin(), questions.end(),
-                                       [&, l = layer, s = slot](const NodeQuestion& x) { return x.layer == l && x.slot == s; });
-        if (again || verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
+        if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
+        if (std::find(keys.begin(), keys.end(), key(layer, slot)) != keys.end()) continue;
         if (cost_to_go_.at(layer, slot) == kUnreachable) {
           beyond_reach_.push_back({layer, slot, failure});
           continue;
         }
         if (const auto known = spared_.find(key(layer, slot)); known != spared_.end() && known->second == failure) continue;
         questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
+        keys.push_back(key(layer, slot));
       }
       left -= static_cast<int>(questions.size());
       for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) add_neighbours(node);
@@ -297,6 +300,7 @@ class Search {
   std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
     asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<Failure> failed;
+    failed.reserve(questions.size());
     answers_.assign(questions.size(), {});
     validity_.nodes(questions, answers_);
     for (std::size_t k = 0; k < questions.size(); ++k) {
@@ -311,7 +315,7 @@ class Search {
           lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
         else
           alike_.assign(1, x.slot);
-        for (const int slot : alike_) verdicts_.remove_node(x.layer, slot);
+        verdicts_.remove_nodes(x.layer, alike_);
         failed.push_back({x.layer, x.slot, answers_[k].failure});
       }
     }

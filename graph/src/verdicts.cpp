@@ -41,13 +41,21 @@ void Verdicts::keep_node(int layer, int slot) {
   known_.push_back(node);
 }
 
-void Verdicts::remove_node(int layer, int slot) {
-  const std::size_t node = index(layer, slot);
-  if (node_[node] == Verdict::kRemoved) return;
-  node_[node] = Verdict::kRemoved;
-  known_.push_back(node);
-  ++removed_;
-  pending[layer].nodes.push_back(slot);
+void Verdicts::remove_nodes(int layer, std::span<const int> slots) {
+  Pending* news = nullptr;
+  for (const int slot : slots) {
+    const std::size_t node = index(layer, slot);
+    if (node_[node] == Verdict::kRemoved) continue;
+    node_[node] = Verdict::kRemoved;
+    known_.push_back(node);
+    ++removed_;
+    if (!news) {
+      constexpr std::size_t kUsual = 32;  // most layers that lose one node lose more
+      news = &pending[layer];
+      if (news->nodes.empty()) news->nodes.reserve(kUsual);
+    }
+    news->nodes.push_back(slot);
+  }
 }
 
 Verdict Verdicts::edge(int layer, int a, int b) const {

@@ -26,7 +26,8 @@ class Verdicts {
   /// Of every node, layer by layer in slot order.
   [[nodiscard]] std::span<const Verdict> nodes() const { return {node_.data(), node_.size()}; }
   void keep_node(int layer, int slot);
-  void remove_node(int layer, int slot);
+  void remove_node(int layer, int slot) { remove_nodes(layer, {&slot, 1}); }
+  void remove_nodes(int layer, std::span<const int> slots);
 
   /// Slot a of `layer`, slot b of the next.
   [[nodiscard]] Verdict edge(int layer, int a, int b) const;
