@@ -175,10 +175,12 @@ double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const Trian
 
 namespace {
 
-Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness,
+                      Expected expected) {
   if (!a.shape->has_triangles() || !b.shape->has_triangles()) return {};
   const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
-  if (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)) return kCollides;
+  if (expected == Expected::kAny && (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)))
+    return kCollides;
   const Proof surface = range.of(surface_distance(a, b, range.low, range.far, witness));
   if (surface.certificate == Certificate::kColliding) return surface;
   const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
@@ -188,7 +190,7 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 
 }  // namespace
 
-Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness) {
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness, Expected expected) {
   if (is_round(a)) return prove_round(a, b, d, margin, witness.b);
   if (is_round(b)) return prove_round(b, a, d, margin, witness.a);
   // Its axis is nearer to a rod's surface than the prism's long triangles make it.
@@ -196,7 +198,7 @@ Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double m
     if (const Proof proof = prove_round(a, b, d, margin, witness.b); proof.certificate == Certificate::kFree) return proof;
   if (is_rod(b))
     if (const Proof proof = prove_round(b, a, d, margin, witness.a); proof.certificate == Certificate::kFree) return proof;
-  return prove_triangles(a, b, d, margin, witness);
+  return prove_triangles(a, b, d, margin, witness, expected);
 }
 
 bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {

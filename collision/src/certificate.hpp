@@ -23,7 +23,10 @@ struct Proof {
   Certificate certificate = Certificate::kNone;
   double bound = 0;
 };
-[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness);
+/// Of triangles that are likely to be free, the search for one well inside the other body is left out: a matter of time alone.
+enum class Expected { kAny, kFree };
+[[nodiscard]] Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness,
+                          Expected expected = Expected::kAny);
 
 /// What the distance of two surfaces of triangles may differ by between triangle_distance() and FCL, m: of meshes and boxes, both
 /// in closed form but for boxes, where FCL's GJK gives 0.05 um.
