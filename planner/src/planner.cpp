@@ -51,8 +51,10 @@ constexpr std::int64_t kManyNodes = 250'000;  // some milliseconds
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of
 /// distances, which takes a few per cent of a short plan.
 int lanes_of(const PlanOptions& options, const Lattice& lattice) {
+  constexpr std::int64_t kNodesOfLane = 50'000, kFewest = 2, kMost = 8;
   if (options.planner == PlannerKind::kLazy) return 1;
-  return options.planner == PlannerKind::kParallel ? (lattice.nodes() < kManyNodes ? 4 : 8) : 0;
+  if (options.planner != PlannerKind::kParallel) return 0;
+  return static_cast<int>(std::clamp(lattice.nodes() / kNodesOfLane, kFewest, kMost));
 }
 
 SharedWork shared_with(Executor& threads) {
