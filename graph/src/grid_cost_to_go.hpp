@@ -63,6 +63,8 @@ class GridCostToGo final : public CostToGo {
     [[nodiscard]] Config config() const { return nodes->config(sheet, place); }
   };
   [[nodiscard]] OneNode one_node(int layer, int slot);
+  /// A column of a family's sheets. Valid until the next call.
+  [[nodiscard]] const LayerNodes& neighbours(int layer, int family, int column);
   [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
   [[nodiscard]] std::size_t tile_of_layer(int sheet, int column) const {
     return static_cast<std::size_t>(sheet) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
@@ -113,7 +115,6 @@ class GridCostToGo final : public CostToGo {
   void store_tiles(int family, const Workspace& workspace);
   /// Whether values differ from those kept, which they replace then; `changed`: of which columns.
   [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, ColumnSet& changed);
-  void solve_window(int layer, int family, const SrsLattice::Run& run);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
@@ -128,7 +129,7 @@ class GridCostToGo final : public CostToGo {
   /// What the nodes of a layer cost from layer 0 on, or less; null where nothing is known of the layer.
   [[nodiscard]] const float* cost_before(int layer) const;
   void begin_reach_rows(int layers);
-  void keep_reach(int family, int layer, int row);
+  void keep_reach(int family, int layer, float* kept);
   [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
   void forget_reach() {
     reach_.known = false;
@@ -164,22 +165,13 @@ class GridCostToGo final : public CostToGo {
   } saved_;
   std::vector<LayerJoints> passing_;                     // [family][layer % 2]: those at hand
   std::array<std::unique_ptr<Workspace>, 2> workspace_;  // [layer % 2]
-  /// As many neighbours as a vector has lanes, for one_node(): nodes are asked about together with others around them. By layer,
-  /// family and column.
+  /// Joints of columns around nodes that were asked about one by one: others around them are asked about as well.
   struct Neighbours {
     std::int64_t of = -1;
     LayerNodes nodes;
   };
   static constexpr std::size_t kNeighbourhoods = 509;
   std::vector<Neighbours> neighbours_;
-  /// The run that each_in_window() solved last: a best path's nodes are asked one after the other, each among the steps of the
-  /// last.
-  struct Window {
-    int layer = -1, family = 0;
-    SrsLattice::Run run;
-    LayerNodes nodes;
-  };
-  Window window_;
 };
 
 }  // namespace swivel

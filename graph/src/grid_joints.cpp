@@ -77,20 +77,24 @@ void GridCostToGo::forget_joints() {
   for (LayerJoints& joints : passing_) joints.layer = -1;
 }
 
-GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
+const LayerNodes& GridCostToGo::neighbours(int layer, int family, int column) {
   constexpr std::int64_t kLayersApart = 67;  // neighbours along the path and along the coordinate must not share a place
-  const int sheet = lattice_->sheet_of(slot), family = lattice_->family_of(sheet), angle = lattice_->angle_of(slot);
-  const int column = angle / kTileWidth, count = std::min(kTileWidth, lattice_->angles());
   if (neighbours_.empty()) neighbours_.resize(kNeighbourhoods);
   const std::int64_t in_layer = family * tile_columns() + column;
   Neighbours& found = neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];
   if (const std::int64_t of = layer * std::int64_t{2} * tile_columns() + in_layer; found.of != of) {
+    const int count = std::min(kTileWidth, lattice_->angles());
     found.of = of;
     ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->sheets() / 2;
     lattice_->lay_out(layer, column * kTileWidth, count, found.nodes);
     lattice_->solve_part(family, 0, count, found.nodes);
   }
-  return {&found.nodes, sheet, angle - column * kTileWidth};
+  return found.nodes;
+}
+
+GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
+  const int sheet = lattice_->sheet_of(slot), angle = lattice_->angle_of(slot), column = angle / kTileWidth;
+  return {&neighbours(layer, lattice_->family_of(sheet), column), sheet, angle - column * kTileWidth};
 }
 
 Config GridCostToGo::config(int layer, int slot) {

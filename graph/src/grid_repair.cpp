@@ -18,37 +18,23 @@ double& GridCostToGo::value_at(int layer, int slot) {
 /// worth a look when its turn comes.
 template <class Worth, class Visit>
 void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit) {
-  const int n = lattice_->angles(), half = lattice_->sheets() / 2;
+  const int n = lattice_->angles();
   const SrsLattice::Run run = lattice_->run_after(layer, slot);
-  for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    bool known = false;
-    for (int sheet = family * half; sheet < (family + 1) * half; ++sheet)
-      for (int k = 0, next = 0; k < run.count; k = next) {
-        const int angle = (run.first + k) % n, column = angle / kTileWidth;
-        next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
-        const std::size_t tile = tile_index(layer + 1, sheet, column);
-        const TileTable& tiles = tiles_of(sheet);
-        if (!tiles.holds(tile)) continue;
-        const double* rest = tiles[tile].data() + angle % kTileWidth;
-        for (int j = k; j < next; ++j, ++rest) {
-          if (!worth(*rest)) continue;
-          if (!known) solve_window(layer + 1, family, run);
-          known = true;
-          visit(sheet * n + (run.first + j) % n, *rest, lattice_->delta(q, window_.nodes.config(sheet, j)));
-        }
+  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+    for (int k = 0, next = 0; k < run.count; k = next) {
+      const int angle = (run.first + k) % n, column = angle / kTileWidth, in_tile = angle % kTileWidth;
+      next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
+      const std::size_t tile = tile_index(layer + 1, sheet, column);
+      const TileTable& tiles = tiles_of(sheet);
+      if (!tiles.holds(tile)) continue;
+      const double* rest = tiles[tile].data() + in_tile;
+      const LayerNodes* nodes = nullptr;
+      for (int j = 0; j < next - k; ++j) {
+        if (!worth(rest[j])) continue;
+        if (!nodes) nodes = &neighbours(layer + 1, lattice_->family_of(sheet), column);
+        visit(sheet * n + angle + j, rest[j], lattice_->delta(q, nodes->config(sheet, in_tile + j)));
       }
-  }
-}
-
-void GridCostToGo::solve_window(int layer, int family, const SrsLattice::Run& run) {
-  int count = run.count;
-  if (lattice_->angles() >= kTileWidth) count = (count + kTileWidth - 1) / kTileWidth * kTileWidth;  // whole vectors are quicker
-  window_.layer = layer;
-  window_.family = family;
-  window_.run = run;
-  ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->sheets() / 2;
-  lattice_->lay_out(layer, run.first, count, window_.nodes);
-  lattice_->solve_part(family, 0, count, window_.nodes);
+    }
 }
 
 double GridCostToGo::relax_one(int layer, int slot) {
@@ -67,10 +53,7 @@ double GridCostToGo::relax_one(int layer, int slot) {
 }
 
 void GridCostToGo::steps(int layer, int slot, double bound, std::vector<Step>& out) {
-  const int n = lattice_->angles(), sheet = lattice_->sheet_of(slot);
-  const int offset = (lattice_->angle_of(slot) - window_.run.first + n) % n;
-  const bool known = window_.layer == layer && window_.family == lattice_->family_of(sheet) && offset < window_.run.count;
-  const Config q = known ? window_.nodes.config(sheet, offset) : config(layer, slot);
+  const Config q = config(layer, slot);
   const double own = verdicts_.cost(layer, slot);
   out.clear();
   each_in_window(
@@ -270,10 +253,10 @@ void GridCostToGo::begin_reach_rows(int layers) {
   reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()), std::numeric_limits<float>::infinity());
 }
 
-void GridCostToGo::keep_reach(int family, int layer, int row) {
+/// `kept`: of all slots.
+void GridCostToGo::keep_reach(int family, int layer, float* kept) {
   constexpr double kMost = 1e30;  // that a float holds
   const int n = lattice_->angles(), width = lattice_->width() / 2;
-  float* const kept = reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
   std::fill_n(kept + family * width, width, std::numeric_limits<float>::infinity());
   const Workspace& here = workspace(layer);
   if (here.half(family).layer != layer) return;  // the family does not come here
@@ -295,7 +278,11 @@ int GridCostToGo::deepest_reachable() {
   });
   if (!workspace(0).reaches_any()) return -1;
   std::array<int, SrsLattice::kFamilies> deepest{0, 0};
-  const auto row_of = [](int layer) { return (layer + Reach::kStride - 1) / Reach::kStride; };
+  std::vector<float> ended(static_cast<std::size_t>(lattice_->width()));  // costs of these
+  const auto row_of = [&](int layer) {
+    const int row = (layer + Reach::kStride - 1) / Reach::kStride;
+    return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
+  };
   const auto keep_every_few = [&](int family, int layer) {
     if (layer % Reach::kStride == 0) keep_reach(family, layer, row_of(layer));
   };
@@ -347,7 +334,7 @@ int GridCostToGo::deepest_reachable() {
     if (!workspace(layer).half(family).sheets.empty())
       last = layer;
     else if (last == layer - 1)
-      keep_reach(family, last, row_of(last));
+      keep_reach(family, last, ended.data());
   };
   begin_reach_rows(0);
   for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any(); layer = end) {
@@ -375,10 +362,14 @@ int GridCostToGo::deepest_reachable() {
   }
   reach_.deepest = std::max(deepest[0], deepest[1]);
   const bool to_the_end = reach_.deepest == lattice_->layers() - 1;
-  for (int family = 0; family < SrsLattice::kFamilies; ++family)
+  float* const row = row_of(reach_.deepest);
+  for (int family = 0; family < SrsLattice::kFamilies; ++family) {
+    const int first = first_sheet(family) * n, width = lattice_->width() / 2;
     if (to_the_end || deepest[static_cast<std::size_t>(family)] < reach_.deepest)
-      keep_reach(family, reach_.deepest, row_of(reach_.deepest));
-  const auto row = reach_.rows.begin() + static_cast<std::ptrdiff_t>(row_of(reach_.deepest)) * lattice_->width();
+      keep_reach(family, reach_.deepest, row);
+    else
+      std::copy_n(ended.begin() + first, width, row + first);
+  }
   reach_.best = *std::min_element(row, row + lattice_->width());
   reach_.known = true;
   reach_.removed = verdicts_.removed();
