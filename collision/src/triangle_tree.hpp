@@ -72,7 +72,8 @@ class TriangleTree {
 template <class Gap, class Proves>
 bool TriangleTree::seek(double enough, const Gap& gap, const Proves& proves, int& first) const {
   if (proves(triangles_[first])) return true;
-  // Of a thousand collisions of an arm's links with boxes 16 prove 910 and 64 prove 990; where there is none, all are looked into.
+  // Looking into 16 proves 910 of a thousand collisions of an arm's links with boxes, into 64 proves 990. Where nothing collides,
+  // none of it helps.
   constexpr int kMostBoxes = 40;
   struct Open {
     int node;

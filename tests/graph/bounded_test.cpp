@@ -203,17 +203,19 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       }
     }
   }
-  const auto share = [](std::int64_t some, std::int64_t all) { return 100.0 * static_cast<double>(some) / static_cast<double>(all); };
+  const auto share = [](std::int64_t some, std::int64_t all) {
+    return 100.0 * static_cast<double>(some) / static_cast<double>(all);
+  };
   std::printf(
       "%d problems, %d rounds, optimum changed %d times, %d ended without a path, %d removed from paths to the deepest layer; %d "
-      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes, those to the deepest layer %.1f %%; %lld tables by threads the same; "
-      "families meet at %d steps, not at %d; up to %d layers\n",
+      "bounds held, up to %.4f of the cost; first sweeps solved %.1f %% of the whole's nodes, those to the deepest layer %.1f %%; "
+      "%lld tables by threads the same; families meet at %d steps, not at %d; up to %d layers\n",
       problems, rounds, changed, ended, to_deepest, bounds, tightest,
       share(bounded_ik, whole_ik), share(bounded_deepest_ik, whole_deepest_ik), static_cast<long long>(compared), met, apart,
       longest);
   EXPECT_GE(met, at_least(20));
   EXPECT_GE(apart, at_least(200));
-  EXPECT_GE(longest, at_least(66));
+  EXPECT_GT(longest, 64);
   if (at_least(1) > 0) {
     EXPECT_LT(share(bounded_deepest_ik, whole_deepest_ik), 65);  // about 80 where the costs of the reach are lost
   }
