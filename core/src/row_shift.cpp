@@ -9,6 +9,7 @@ namespace swivel {
 RowShift::RowShift(const Chain& chain, const SrsArm& arm)
     : upper_(arm.upper),
       fore_(arm.fore),
+      hand_(arm.wrist_in_tool.norm()),
       shoulder_shift_(arm.shoulder.shift),
       wrist_shift_(arm.wrist.shift),
       about_{arm.S, arm.E, arm.W} {
@@ -66,6 +67,18 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
 PoseShift RowShift::from_node(int group, double reach, const Config& q) const {
   const PoseShift row = from_fitted(group, reach, q);
   return {row.about, row.turn + turn_[part_of(group)], row.shift + shift_[part_of(group)]};
+}
+
+double RowShift::jacobian_change(double reach, const Config& q) const {
+  const double tool = from_node(kDof, reach, q).of(hand_);  // from where the layer has it
+  const std::array<double, 3> from_tool{reach + hand_ + tool, fore_ + hand_ + tool, hand_ + tool};
+  double squares = 0;
+  for (int joint = 1; joint <= kDof; ++joint) {  // an axis turns, and its point next to the centre moves
+    const PoseShift moved = from_node(joint, reach, q);
+    const double moment = moved.of(from_tool[part_of(joint)]);
+    squares += moved.turn * moved.turn + moment * moment;
+  }
+  return std::sqrt(squares);
 }
 
 PoseShift RowShift::between_rows(int group, double reach, const Config& q) const {

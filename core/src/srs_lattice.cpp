@@ -564,7 +564,21 @@ void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& o
 }
 
 unsigned SrsLattice::alike_in_manipulability() const {
-  return has_own_rows() ? 0 : kElbowLinks;
+  return kElbowLinks;
+}
+
+bool SrsLattice::all_unmanipulable(int layer, const Config& q) const {
+  constexpr double kBand = 1e-10;  // determinants of lengths of metres, which rounding changes by 1e-12
+  const auto J = chain_->jacobian(q);
+  const Eigen::Matrix<double, 6, 6> G = J * J.transpose();
+  const double found = G.determinant(), allowed = limits().manipulability * limits().manipulability - kBand;
+  if (!row_shift_ || !(found < allowed)) return found < allowed;
+  if (last_joint_ || (layer == 0 && start_) || found < kBand) return false;
+  // The row's singular values are no more than these, and the change of J, so that their product grows by (1 + mean of e / s)^6 at
+  // most; the mean of 1 / s is no more than the root of the mean of 1 / s^2.
+  const double change = row_shift_->jacobian_change(plane(layer).reach, q);
+  const double ratio = 1 + change * std::sqrt(G.inverse().trace() / 6);
+  return found * std::pow(ratio, 12) < allowed;
 }
 
 PoseShift SrsLattice::row_shift(int layer, int group, const Config& q) const {

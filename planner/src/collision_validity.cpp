@@ -15,14 +15,6 @@ constexpr std::size_t kMostRows = 8192, kRowsOfLayer = 8, kSlotsApart = 67;
 /// Beside the pairs of bodies.
 constexpr FailureId kManipulability = -2;
 
-/// Whether a manipulability that is below its bound, `spare` < 0, is that of every node with the same elbow. Its square is a
-/// determinant of lengths of metres, which rounding changes by 1e-12.
-bool is_shared_manipulability(const Lattice& lattice, double spare) {
-  constexpr double kBand = 1e-10;
-  const double least = lattice.limits().manipulability, found = least + spare;
-  return lattice.alike_in_manipulability() != 0 && found * found < least * least - kBand;
-}
-
 }  // namespace
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
@@ -116,11 +108,15 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   };
   if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
     return failure(*likely, lattice_->stand_alike(groups_of(*world_, *likely)));
+  const auto unmanipulable = [&](bool shared) {
+    return NodeAnswer{false, shared, lattice_->alike_in_manipulability(), kManipulability};
+  };
+  const bool before_row = question.likely == kManipulability && !open.only_changed && lattice_->has_own_rows();
+  if (before_row && lattice_->all_unmanipulable(question.layer, question.q)) return unmanipulable(true);
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q) return {};
-  if (!open.only_changed)
-    if (const double spare = lattice_->manipulability_spare(*q); spare < 0)
-      return {false, is_shared_manipulability(*lattice_, spare), lattice_->alike_in_manipulability(), kManipulability};
+  if (!open.only_changed && !lattice_->manipulable(*q))
+    return unmanipulable(!before_row && lattice_->all_unmanipulable(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
                                         : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "inexact_robots.hpp"
 #include "robots.hpp"
 #include "swivel/core/input_error.hpp"
 
@@ -41,13 +42,14 @@ struct Small {
   }
 };
 
-/// Some of every robot. visit(small) may end the test by a fatal failure.
+/// Some of each robot. visit(small) may end the test by a fatal failure.
 template <class Visit>
-void each_small(Random& random, const Visit& visit) {
-  for (const TestRobot& robot : all_robots())
+void each_small(Random& random, const Visit& visit, const std::vector<TestRobot>& robots = all_robots()) {
+  for (const TestRobot& robot : robots)
     for (int trial = 0; trial < trials(20) && !testing::Test::HasFatalFailure(); ++trial) {
       const Config q0 = random_config(arm_of(robot).chain, random), q1 = nearby(q0, 0.2, random);
-      visit(Small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1}));
+      Small small(robot, q0, q1, {.ds = 0.02, .dphi = 0.3, .dalpha = 0.1});
+      visit(small);
     }
 }
 
@@ -121,6 +123,50 @@ TEST(Lattice, NodesWithOneElbowAreAsManipulable) {
   std::printf("%lld pairs of nodes, determinants differ by %.1e at most\n", static_cast<long long>(pairs), most);
   EXPECT_GE(pairs, at_least(20001));
   EXPECT_LT(most, 1e-11);  // a tenth of what a shared verdict needs
+}
+
+/// Of arms that are not exact, rows are asked: a verdict that all alike fail holds for each of them.
+TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
+  Random random(seed("Lattice.Unmanipulable"));
+  std::int64_t rows = 0, too_few = 0, shared = 0, rounded_too_few = 0, rounded_shared = 0;
+  each_small(
+      random,
+      [&](Small& small) {
+        const bool rounded = small.problem.source.find("rounded") != std::string::npos;
+        small.problem.limits.manipulability = random.uniform(0.005, 0.1);
+        small.rebuild();
+        const SrsLattice& lattice = *small.lattice;
+        ASSERT_TRUE(lattice.has_own_rows());
+        std::vector<int> alike;
+        for (int layer = 0; layer < lattice.layers(); ++layer)
+          for (int slot = 0; slot < lattice.width(); ++slot) {
+            const auto q = lattice.node(layer, slot);
+            const auto row = q ? lattice.row(layer, slot, *q) : std::nullopt;
+            if (!row) continue;
+            ++rows;
+            too_few += !lattice.manipulable(*row);
+            rounded_too_few += rounded && !lattice.manipulable(*row);
+            if (!lattice.all_unmanipulable(layer, *q)) continue;
+            ++shared;
+            rounded_shared += rounded;
+            lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
+            for (const int other : alike) {
+              const auto node = lattice.node(layer, other);
+              const auto there = node ? lattice.row(layer, other, *node) : std::nullopt;
+              ASSERT_FALSE(there && lattice.manipulable(*there)) << small.problem.source << " layer " << layer << " slot " << other;
+            }
+          }
+      },
+      inexact_robots(random));
+  std::printf(
+      "%lld rows, %lld of too little manipulability, %lld of them proved at their nodes for all that are alike; of the rounded "
+      "file's %lld %lld\n",
+      static_cast<long long>(rows), static_cast<long long>(too_few), static_cast<long long>(shared),
+      static_cast<long long>(rounded_too_few), static_cast<long long>(rounded_shared));
+  EXPECT_GE(rows, at_least(20001));
+  EXPECT_LE(shared, too_few);
+  EXPECT_GE(rounded_too_few, at_least(2001));
+  EXPECT_GE(rounded_shared, rounded_too_few / 2);
 }
 
 TEST(Lattice, WindingsAreAllImagesInsideTheLimits) {

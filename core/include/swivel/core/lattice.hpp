@@ -122,9 +122,15 @@ class Lattice {
   [[nodiscard]] virtual bool stand_alike(unsigned groups) const = 0;
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
-  /// Groups such that rows of nodes at which their bodies stand alike have the same manipulability but for rounding; 0 where there
-  /// are none.
+  /// Groups such that rows of nodes at which their bodies stand alike have the same manipulability, but for rounding and for how
+  /// far rows are from their nodes; 0 where there are none.
   [[nodiscard]] virtual unsigned alike_in_manipulability() const { return 0; }
+  /// Whether the row of a node with joints q has too little manipulability, and that of every node alike in it, where they have
+  /// one: true only where that is sure.
+  [[nodiscard]] virtual bool all_unmanipulable(int layer, const Config& q) const {
+    static_cast<void>(layer), static_cast<void>(q);
+    return false;
+  }
   /// How far the row of a node, where it has one, may place the bodies that move with joint `group` of 1..7 from where the joints
   /// of a node place them, itself or one at which they stand alike. `q`: the joints of either node.
   [[nodiscard]] virtual PoseShift row_shift(int layer, int group, const Config& q) const {

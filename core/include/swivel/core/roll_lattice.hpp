@@ -93,6 +93,9 @@ class RollLattice final : public Lattice {
   [[nodiscard]] bool stand_alike(unsigned) const override { return !has_own_rows(); }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] unsigned alike_in_manipulability() const override { return at_roll(0).alike_in_manipulability(); }
+  [[nodiscard]] bool all_unmanipulable(int layer, const Config& q) const override {
+    return !has_own_rows() && at_roll(0).all_unmanipulable(layer, q);
+  }
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;

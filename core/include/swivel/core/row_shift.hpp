@@ -16,6 +16,10 @@ class RowShift {
   [[nodiscard]] PoseShift from_node(int group, double reach, const Config& q) const;
   /// The same, Lattice::rows_apart().
   [[nodiscard]] PoseShift between_rows(int group, double reach, const Config& q) const;
+  /// A bound on the Frobenius norm by which the exact chain's Jacobian at such a node's joints differs, but for the signs of
+  /// columns, from that at its row, or at the row of a node with the same elbow; both about the point where the exact chain has the
+  /// tool at the node's joints. Infinite where a shift is not known.
+  [[nodiscard]] double jacobian_change(double reach, const Config& q) const;
   /// What the shifts of a group are about.
   [[nodiscard]] const Vector3d& about(int group) const { return about_[part_of(group)]; }
 
@@ -26,7 +30,7 @@ class RowShift {
   /// Of a row from where the fitted arm has the body at its node.
   [[nodiscard]] PoseShift from_fitted(int group, double reach, const Config& q) const;
 
-  double upper_, fore_;                  // m
+  double upper_, fore_, hand_;           // m; hand_: wrist centre to tool
   double shoulder_shift_, wrist_shift_;  // rad, EulerTriple::shift
   std::array<Vector3d, 3> about_;
   std::array<double, 3> shift_{}, turn_{};  // by how much exact and fitted chain place links 3, 4 and 7 apart at the same joints

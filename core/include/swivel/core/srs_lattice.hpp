@@ -135,6 +135,7 @@ class SrsLattice final : public Lattice {
   /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or turn it round, which turns a
   /// column of J round and leaves J J^T as it is.
   [[nodiscard]] unsigned alike_in_manipulability() const override;
+  [[nodiscard]] bool all_unmanipulable(int layer, const Config& q) const override;
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
