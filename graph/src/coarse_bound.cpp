@@ -19,7 +19,7 @@ constexpr int kRun = 16;  // angles relaxed at once
 /// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the coordinate may
 /// turn.
 int stride_of(const SrsLattice& lattice) {
-  constexpr double kTurn = 0.8;
+  constexpr double kTurn = 0.6;
   const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
   return turn_per_layer > 0 ? static_cast<int>(std::clamp(std::round(kTurn / turn_per_layer), 4.0, 32.0)) : 4;
 }

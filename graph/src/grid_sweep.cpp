@@ -172,7 +172,7 @@ bool GridCostToGo::raise_limit() {
   if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
     const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
     const double passed = limit_ == kUnreachable ? -1 : limit_;
-    for (const double share : {0.01, 0.2, 1.5}) {  // most problems stop at the first: 1 to 5 % of the lattice
+    for (const double share : {0.03, 0.25, 1.5}) {  // most problems stop at the first: 2 to 10 % of the lattice
       limit_ = least * (1 + share);
       if (limit_ > passed && (found == kUnreachable || found <= limit_)) return true;
     }
