@@ -120,8 +120,8 @@ std::optional<Config> Lattice::row(int layer, int slot) const {
   return q ? row(layer, slot, *q) : std::nullopt;
 }
 
-double Lattice::manipulability_spare(const Config& q) const {
-  return asks_manipulability() ? chain_->manipulability(q) - limits_.manipulability : 0;
+bool Lattice::manipulable(const Config& q) const {
+  return !asks_manipulability() || chain_->manipulability(q) >= limits_.manipulability;
 }
 
 Config Lattice::delta(const Config& q0, const Config& q1) const {

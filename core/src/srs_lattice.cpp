@@ -573,9 +573,10 @@ bool SrsLattice::all_unmanipulable(int layer, const Config& q) const {
   const Eigen::Matrix<double, 6, 6> G = J * J.transpose();
   const double found = G.determinant(), allowed = limits().manipulability * limits().manipulability - kBand;
   if (!row_shift_ || !(found < allowed)) return found < allowed;
-  if (last_joint_ || (layer == 0 && start_) || found < kBand) return false;
-  // The row's singular values are no more than these, and the change of J, so that their product grows by (1 + mean of e / s)^6 at
-  // most; the mean of 1 / s is no more than the root of the mean of 1 / s^2.
+  if (last_joint_ || (layer == 0 && start_) || found < kBand) return false;  // not known, or G's inverse is all rounding
+  // No singular value s of J grows by more than `change` to the row, so their product, the manipulability, grows by at most
+  // (1 + change * mean of 1 / s)^6. That mean is at most the root of the mean of 1 / s^2, which are the eigenvalues of G's inverse.
+  // docs/theory.md, Lemma 6.
   const double change = row_shift_->jacobian_change(plane(layer).reach, q);
   const double ratio = 1 + change * std::sqrt(G.inverse().trace() / 6);
   return found * std::pow(ratio, 12) < allowed;

@@ -111,12 +111,12 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   const auto unmanipulable = [&](bool shared) {
     return NodeAnswer{false, shared, lattice_->alike_in_manipulability(), kManipulability};
   };
-  const bool before_row = question.likely == kManipulability && !open.only_changed && lattice_->has_own_rows();
-  if (before_row && lattice_->all_unmanipulable(question.layer, question.q)) return unmanipulable(true);
+  const bool likely_so = question.likely == kManipulability && !open.only_changed;
+  if (likely_so && lattice_->all_unmanipulable(question.layer, question.q)) return unmanipulable(true);
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q) return {};
   if (!open.only_changed && !lattice_->manipulable(*q))
-    return unmanipulable(!before_row && lattice_->all_unmanipulable(question.layer, question.q));
+    return unmanipulable(!likely_so && lattice_->all_unmanipulable(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
                                         : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);

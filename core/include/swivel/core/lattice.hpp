@@ -67,9 +67,7 @@ class Lattice {
   /// Replaces `out` by all nodes of a layer that exist, in the order of slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
   /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and row().
-  [[nodiscard]] bool manipulable(const Config& q) const { return manipulability_spare(q) >= 0; }
-  /// By how much more than the bound a row's manipulability is; 0 where none is asked for.
-  [[nodiscard]] double manipulability_spare(const Config& q) const;
+  [[nodiscard]] bool manipulable(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
   /// Why a node, or its row, is missing: what it fails first, and for limits which joints.
   struct NodeFault {
