@@ -429,9 +429,9 @@ struct World::Query::Impl {
     if (!k) return false;
     place_body(p.a);
     place_body(p.b);
-    const bool below = proves_below(placed(p.a), placed(p.b), world->required(*k, level), witness[*k]);
-    own.certified_colliding += below;
-    return below;
+    last_certified = proves_below(placed(p.a), placed(p.b), world->required(*k, level), witness[*k]);
+    own.certified_colliding += last_certified;
+    return last_certified;
   }
   bool is_below(const BodyPair& p, double d, Certificate certificate) {
     last_certified = certificate != Certificate::kNone;
@@ -581,6 +581,16 @@ bool World::Query::pair_below(const Config& q, const BodyPair& pair, const Level
 bool World::Query::surely_below(const Config& q, const BodyPair& pair, const Level& level) {
   impl_->move_to(q);
   return impl_->surely_below(pair, level);
+}
+
+bool World::Query::proves_soon(const BodyPair& pair) const {
+  constexpr std::size_t kHeavy = 500;  // triangles; a search of fewer is short anyway, and their corners lie far apart
+  const FclShape &a = impl_->world->body(pair.a).shape, &b = impl_->world->body(pair.b).shape;
+  const auto held_against = [](const FclShape& body, const FclShape& solid) {
+    const auto* mesh = std::get_if<MeshPtr>(&body.shape);
+    return mesh && (*mesh)->triangles.size() >= kHeavy && solid.kind == FclShape::Kind::kSolid;
+  };
+  return impl_->certificates != Certificates::kOff && (held_against(a, b) || held_against(b, a));
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {

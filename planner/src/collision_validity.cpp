@@ -118,13 +118,20 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   if (!open.only_changed && !lattice_->manipulable(*q))
     return unmanipulable(!likely_so && lattice_->all_unmanipulable(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
+  const auto shared = [&](const BodyPair& pair) {
+    return is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, pair);
+  };
+  if (question.only_scene && likely && query.proves_soon(*likely)) {
+    if (!query.surely_below(*q, *likely, Keep::kNode)) return {.valid = true};
+    return failure(*likely, shared(*likely));
+  }
   const auto pair = question.only_scene ? query.next_below_of_scene(*q, Keep::kNode, likely)
                                         : query.next_below(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
   if (!pair) {
     if (open.only_changed) open.spare = query.spare(Keep::kNode);
     return {.valid = true};
   }
-  return failure(*pair, is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, *pair));
+  return failure(*pair, shared(*pair));
 }
 
 /// A row takes seven equations. Where the bodies are too near by more than it can move them, the node fails whether it has one or

@@ -129,6 +129,47 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
 }
 INSTANTIATE_TEST_SUITE_P(Robots, Kept, ::testing::Range(0, 5));
 
+/// What surely_below() says is so, and it misses little where proves_soon().
+TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
+  const std::uint64_t base = test::seed("ProvesSoon");
+  Random random(base);
+  const test::TestRobot robot = test::all_robots()[0];
+  const ArmModel arm = test::arm_of(robot);
+  Problem problem = test::problem_for(robot);
+  problem.attached.push_back({"block", Box{Vector3d(0.08, 0.06, 0.1)}, Pose(Eigen::Translation3d(0, 0, 0.1)), robot.tip_link});
+  problem.attached.push_back({"rod", Cylinder{0.03, 0.1}, Pose(Eigen::Translation3d(0, 0, 0.2)), robot.tip_link});
+  const MeshPtr fine = testing::as_mesh(testing::panel_mesh(0.6, 0.4, 0.04, 30), "fine panel");
+  const MeshPtr coarse = testing::as_mesh(testing::panel_mesh(0.6, 0.4, 0.04, 2), "coarse panel");
+  int below = 0, proved = 0, soon = 0;
+  for (int scene = 0; scene < test::trials(30); ++scene) {
+    const Config start = test::random_config(arm.chain, random);
+    const Pose near = arm.chain.tool(start) * test::random_pose(random, Vector3d(0, 0, 0.15), 0.1);
+    problem.scene = {{"fine", fine, near, {}}, {"coarse", coarse, near, {}}};
+    const World world(*robot.model, arm, problem);
+    World::Query query(world, Certificates::kOn), fcl(world);
+    for (int k = 0; k < 50; ++k) {
+      Config q = start;
+      for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
+      const double d = random.uniform(0, 0.03);
+      for (const BodyPair& pair : world.pairs()) {
+        const bool too_near = fcl.pair_below(q, pair, d), certain = query.surely_below(q, pair, d);
+        if (certain) {
+          ASSERT_TRUE(too_near && query.certified()) << "SWIVEL_TEST_SEED=" << base << " scene " << scene << " posture " << k;
+        }
+        if (!query.proves_soon(pair)) continue;
+        ASSERT_EQ(world.names(pair)[1], "fine");
+        ASSERT_TRUE(world.names(pair)[0] == "block" || world.names(pair)[0] == "rod");
+        ++soon;
+        below += too_near;
+        proved += certain;
+      }
+    }
+  }
+  std::printf("%d questions, %d too near, %d of them proved soon\n", soon, below, proved);
+  EXPECT_GT(below, test::at_least(300));
+  EXPECT_GE(proved, below * 3 / 4);
+}
+
 /// No point of a box moves further than the bound says, and for a turn about the box's own z axis a rod on it does not move at all.
 TEST(Motion, BoundsEveryPoint) {
   Random random(test::seed("Motion"));

@@ -18,8 +18,8 @@ struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
   FailureId likely = kNoFailure;
-  /// Nothing is asked but whether the node fails by `likely` or by what stands around the robot; where it does not, the answer is
-  /// valid and says no more than that.
+  /// Nothing is asked but whether the node fails by `likely` or by what stands around the robot, as far as that is soon seen. An
+  /// answer of valid says nothing.
   bool only_scene = false;
 };
 struct EdgeQuestion {
