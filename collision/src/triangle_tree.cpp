@@ -42,8 +42,9 @@ Single in_single(const Vector3d& v) {
 }
 
 /// Least squared distances of boxes from boxes of a tree that stands at a pose, by the gaps along the axes of both. In single
-/// precision, one vector for three numbers. What that loses is taken off each gap: a few dozen roundings, of 2^-24 each, of lengths
-/// that are at most how far the boxes lie from both frames' origins (`reach`) and these from each other.
+/// precision, one vector for three numbers, or for one number of four boxes. What that loses is taken off each gap: a few dozen
+/// roundings, of 2^-24 each, of lengths that are at most how far the boxes lie from both frames' origins (`reach`) and these from
+/// each other.
 class BoxPairBound {
  public:
   BoxPairBound(const Pose& pose, double reach)
@@ -63,6 +64,36 @@ class BoxPairBound {
     const float along_box = squared(offset.abs() - box.half - product(spread_, other.half));
     if (along_box >= limit) return along_box;
     return std::max(along_box, squared(product(back_, offset).abs() - other.half - product(back_spread_, box.half)));
+  }
+  /// Four upright boxes, each from one.
+  template <class Four, class Box>
+  [[nodiscard]] Single squared_of_four(const Four& boxes, const Box& other) const {
+    const Single center = at_ + product(turn_, other.center), reach = product(spread_, other.half);
+    Three offset;
+    Single along_boxes = Single::Zero(), along_other = Single::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      offset[k] = center[axis] - boxes.center[k];
+      along_boxes += over_gap(offset[k].abs() - boxes.half[k] - reach[axis]);
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      along_other += over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] - dot(spread_[k], boxes.half));
+    return along_boxes.max(along_other);
+  }
+  /// One from each of four.
+  template <class Box, class Four>
+  [[nodiscard]] Single squared_from_four(const Box& box, const Four& others) const {
+    const Single reach = product(back_spread_, box.half);
+    Three offset;
+    Single along_box = Single::Zero(), along_others = Single::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      offset[k] = at_[axis] - box.center[axis] + dot(back_[k], others.center);
+      along_box += over_gap(offset[k].abs() - box.half[axis] - dot(back_spread_[k], others.half));
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+      along_others += over_gap(dot(turn_[k], offset).abs() - others.half[k] - reach[static_cast<Eigen::Index>(k)]);
+    return along_box.max(along_others);
   }
   /// Whether boxes with axes of their own are apart by `limit`, squared.
   template <class Box>
@@ -86,6 +117,11 @@ class BoxPairBound {
     return columns[0] * v[0] + columns[1] * v[1] + columns[2] * v[2];
   }
   [[nodiscard]] float squared(const Single& gaps) const { return (gaps - lost_).max(0).matrix().squaredNorm(); }
+  using Three = std::array<Single, 3>;  // coordinates of four
+  static Single dot(const Single& axis, const Three& of_four) {
+    return axis[0] * of_four[0] + axis[1] * of_four[1] + axis[2] * of_four[2];
+  }
+  [[nodiscard]] Single over_gap(const Single& gaps) const { return (gaps - lost_).max(0).square(); }
 
   std::array<Single, 3> turn_, back_, spread_, back_spread_;  // columns
   Single at_;
@@ -118,11 +154,36 @@ TriangleTree::TriangleTree(std::vector<Triangle> triangles) : triangles_(std::mo
   single_.reserve(nodes_.size());
   for (Node& node : nodes_) {
     single_.push_back({in_single(node.center), in_single(node.half)});
-    if (node.right != 0) continue;
-    node.leaf = static_cast<int>(leaves_.size());
-    leaves_.push_back(oriented_box(node));
+    node.place = static_cast<int>(node.right == 0 ? leaves_.size() : below_.size());
+    if (node.right == 0)
+      leaves_.push_back(oriented_box(node));
+    else
+      below_.push_back(boxes_below(static_cast<int>(&node - nodes_.data())));
   }
   reach_ = nodes_[0].center.norm() + nodes_[0].half.norm();
+}
+
+TriangleTree::FourBoxes TriangleTree::boxes_below(int node) const {
+  FourBoxes boxes;
+  const auto add = [&](int below) {
+    const auto place = static_cast<Eigen::Index>(boxes.count);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      boxes.center[k][place] = static_cast<float>(nodes_[below].center[axis]);
+      boxes.half[k][place] = static_cast<float>(nodes_[below].half[axis]);
+    }
+    boxes.node[static_cast<std::size_t>(boxes.count++)] = below;
+  };
+  for (auto& coordinates : {&boxes.center, &boxes.half}) coordinates->fill(Eigen::Array4f::Zero());
+  for (const int child : {node + 1, nodes_[node].right}) {
+    if (nodes_[child].right == 0) {
+      add(child);
+      continue;
+    }
+    add(child + 1);
+    add(nodes_[child].right);
+  }
+  return boxes;
 }
 
 /// Along the patch's mean normal and its longest edge.
@@ -232,11 +293,10 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     int a, b;
     float bound;
   };
-  std::array<Open, 2 * kDeepest> stack;
+  std::array<Open, 4 * kDeepest> stack;  // three more for each two levels of either tree
   std::size_t open = 0;
   double least = limit * limit;
   const double squared_enough = enough > 0 ? enough * enough : 0;
-  const auto squared_bound = [&](int a, int b) { return bound.squared(single_[a], other.single_[b], static_cast<float>(least)); };
   const auto meet = [&](int own, int others, const Triangle& moved) {
     const double found = squared_distance(triangles_[own], moved, least);
     if (found < least) {
@@ -246,13 +306,13 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     return least < squared_enough;
   };
   if (meet(first.a, first.b, other.triangles_[first.b].moved(pose))) return std::sqrt(least);
-  stack[open++] = {0, 0, squared_bound(0, 0)};
+  stack[open++] = {0, 0, bound.squared(single_[0], other.single_[0], static_cast<float>(least))};
   while (open > 0) {
     const Open here = stack[--open];
     if (here.bound >= least) continue;
     const Node &m = nodes_[here.a], &n = other.nodes_[here.b];
     if (m.right == 0 && n.right == 0) {
-      if (bound.further(leaves_[m.leaf], other.leaves_[n.leaf], static_cast<float>(least))) continue;
+      if (bound.further(leaves_[m.place], other.leaves_[n.place], static_cast<float>(least))) continue;
       const Vector3d there = back * (m.center - pose.translation()), half_there = back.cwiseAbs() * m.half;  // around m's box
       for (int j = n.begin; j < n.end; ++j) {
         if (squared_gap(other.triangles_[j], there, half_there) >= least) continue;
@@ -263,15 +323,20 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
       }
       continue;
     }
-    // The larger box is halved.
-    const bool halve_a = n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
-    Open near = halve_a ? Open{here.a + 1, here.b, 0} : Open{here.a, here.b + 1, 0};
-    Open far = halve_a ? Open{m.right, here.b, 0} : Open{here.a, n.right, 0};
-    near.bound = squared_bound(near.a, near.b);
-    far.bound = squared_bound(far.a, far.b);
-    if (far.bound < near.bound) std::swap(near, far);
-    if (far.bound < least) stack[open++] = far;
-    if (near.bound < least) stack[open++] = near;
+    // The larger box is quartered.
+    const bool part_a = n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
+    const FourBoxes& parts = part_a ? below_[m.place] : other.below_[n.place];
+    const Single bounds =
+        part_a ? bound.squared_of_four(parts, other.single_[here.b]) : bound.squared_from_four(single_[here.a], parts);
+    const std::size_t before = open;
+    for (int k = 0; k < parts.count; ++k) {
+      const int node = parts.node[static_cast<std::size_t>(k)];
+      const Open part{part_a ? node : here.a, part_a ? here.b : node, bounds[k]};
+      if (part.bound >= least) continue;
+      std::size_t place = open++;  // nearest last
+      for (; place > before && stack[place - 1].bound < part.bound; --place) stack[place] = stack[place - 1];
+      stack[place] = part;
+    }
   }
   return std::sqrt(least);
 }
@@ -292,7 +357,7 @@ std::array<std::vector<int>, 2> TriangleTree::nearer(const TriangleTree& other, 
     const Node &m = nodes_[a], &n = other.nodes_[b];
     if (bound.squared(single_[a], other.single_[b], squared_limit) >= squared_limit) continue;
     if (m.right == 0 && n.right == 0) {
-      if (bound.further(leaves_[m.leaf], other.leaves_[n.leaf], squared_limit)) continue;
+      if (bound.further(leaves_[m.place], other.leaves_[n.place], squared_limit)) continue;
       for (int j = n.begin; j < n.end; ++j) {
         const Triangle moved = other.triangles_[j].moved(pose);
         for (int k = m.begin; k < m.end; ++k) {

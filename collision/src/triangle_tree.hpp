@@ -41,11 +41,17 @@ class TriangleTree {
     Vector3d center, half;   ///< of the box
     int begin = 0, end = 0;  ///< its triangles
     int right = 0;           ///< second child; the first is the next node; 0: a leaf
-    int leaf = 0;            ///< of leaves: its place in `leaves_`
+    int place = 0;           ///< in `leaves_` or, of other nodes, in `below_`
   };
   /// A node's box once more, in single precision; the fourth numbers are zero.
   struct SingleBox {
     Eigen::Array4f center, half;
+  };
+  /// The two to four boxes of a node's children's children, or of a child that is a leaf: one vector for each coordinate.
+  struct FourBoxes {
+    std::array<Eigen::Array4f, 3> center, half;
+    std::array<int, 4> node{};
+    int count = 0;
   };
   /// A box along the axes of what it holds: a leaf is a patch of a surface, and thin.
   struct OrientedBox {
@@ -58,6 +64,7 @@ class TriangleTree {
   };
   Eigen::AlignedBox3d build(std::vector<Item>& items, int begin, int end);
   [[nodiscard]] OrientedBox oriented_box(const Node& leaf) const;
+  [[nodiscard]] FourBoxes boxes_below(int node) const;
 
   static constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
 
@@ -65,6 +72,7 @@ class TriangleTree {
   std::vector<int> places_;  // of triangles_ in the list given
   std::vector<Node> nodes_;
   std::vector<SingleBox> single_;  // of nodes_
+  std::vector<FourBoxes> below_;
   std::vector<OrientedBox> leaves_;
   double reach_ = 0;  // no point is further from the frame's origin, m
 };
