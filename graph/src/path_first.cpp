@@ -150,8 +150,8 @@ class Search {
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     asked_ = 0;
     left_to_grow_ = most_grown();
-    // Where paths cost more than the first, obstacles bar the cheap ones, and each would find a little more of the same.
-    if (!beyond_reach_.empty() && cost_to_go_.best() > first_cost_) {
+    // Where paths cost that much more than the first, obstacles bar most of them, and each would find a little more of the same.
+    if (!beyond_reach_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
       grow_on();
       for (int i = 0; i < layers; ++i)
         if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
@@ -355,6 +355,7 @@ class Search {
   int left_to_grow_ = 0;    // questions about neighbours, in this round
   static constexpr std::size_t kGrownAtOnce = 32;
   std::unordered_map<std::int64_t, FailureId> spared_;  // by key(): what grow() asked about last, of nodes that no obstacle barred
+  static constexpr double kMuchDearer = 1.2;
   double first_cost_ = 0;              // of the first path
   std::vector<Failure> beyond_reach_;  // where regions ended
   FailFirst fail_first_;

@@ -60,6 +60,10 @@ void Executor::for_each(int count, const std::function<void(int, int)>& body) {
   for (int index = 0; index < count; ++index) body(index, 0);
 }
 
+void Executor::begin_brief() {
+  if (impl_->threads > 1 && !impl_->team) impl_->team = std::make_unique<detail::Team>(std::min(kMostHelpers, impl_->threads - 1));
+}
+
 void Executor::for_each_brief(int count, const std::function<void(int, int)>& body) {
   if (impl_->threads == 1 || count <= 1) {
     for (int index = 0; index < count; ++index) body(index, 0);
@@ -71,7 +75,7 @@ void Executor::for_each_brief(int count, const std::function<void(int, int)>& bo
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
     if (left > kWorthSharing && impl_->alone + left > (impl_->team ? kWorthWaking : kWorthBeginning)) {
-      if (!impl_->team) impl_->team = std::make_unique<detail::Team>(std::min(kMostHelpers, impl_->threads - 1));
+      begin_brief();
       impl_->alone = Clock::duration(0);
       return impl_->team->share(index, count, body);
     }

@@ -356,7 +356,9 @@ struct Planner::Impl {
       cost_to_go =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
     if (once) cost_to_go->never_restarts();
-    cost_to_go->share(lattice.nodes() < kManyNodes ? SharedWork() : shared_with(threads));
+    const bool shares = lattice.nodes() >= kManyNodes;
+    if (shares) threads.begin_brief();
+    cost_to_go->share(shares ? shared_with(threads) : SharedWork());
     const bool swept = cost_to_go->restart(budget);
     std::optional<World> changed;
     if (remembered) {
