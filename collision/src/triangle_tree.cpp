@@ -65,9 +65,14 @@ class BoxPairBound {
     if (along_box >= limit) return along_box;
     return std::max(along_box, squared(product(back_, offset).abs() - other.half - product(back_spread_, box.half)));
   }
+  /// Squared, of four boxes.
+  struct FourGaps {
+    Single bound;    ///< least distance
+    Single between;  ///< of the centres
+  };
   /// Four upright boxes, each from one.
   template <class Four, class Box>
-  [[nodiscard]] Single squared_of_four(const Four& boxes, const Box& other) const {
+  [[nodiscard]] FourGaps squared_of_four(const Four& boxes, const Box& other) const {
     const Single center = at_ + product(turn_, other.center), reach = product(spread_, other.half);
     Three offset;
     Single along_boxes = Single::Zero(), along_other = Single::Zero();
@@ -78,11 +83,11 @@ class BoxPairBound {
     }
     for (std::size_t k = 0; k < 3; ++k)
       along_other += over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] - dot(spread_[k], boxes.half));
-    return along_boxes.max(along_other);
+    return {along_boxes.max(along_other), squared_norm(offset)};
   }
   /// One from each of four.
   template <class Box, class Four>
-  [[nodiscard]] Single squared_from_four(const Box& box, const Four& others) const {
+  [[nodiscard]] FourGaps squared_from_four(const Box& box, const Four& others) const {
     const Single reach = product(back_spread_, box.half);
     Three offset;
     Single along_box = Single::Zero(), along_others = Single::Zero();
@@ -93,7 +98,7 @@ class BoxPairBound {
     }
     for (std::size_t k = 0; k < 3; ++k)
       along_others += over_gap(dot(turn_[k], offset).abs() - others.half[k] - reach[static_cast<Eigen::Index>(k)]);
-    return along_box.max(along_others);
+    return {along_box.max(along_others), squared_norm(offset)};
   }
   /// Whether boxes with axes of their own are apart by `limit`, squared.
   template <class Box>
@@ -121,6 +126,7 @@ class BoxPairBound {
   static Single dot(const Single& axis, const Three& of_four) {
     return axis[0] * of_four[0] + axis[1] * of_four[1] + axis[2] * of_four[2];
   }
+  static Single squared_norm(const Three& of_four) { return of_four[0].square() + of_four[1].square() + of_four[2].square(); }
   [[nodiscard]] Single over_gap(const Single& gaps) const { return (gaps - lost_).max(0).square(); }
 
   std::array<Single, 3> turn_, back_, spread_, back_spread_;  // columns
@@ -291,7 +297,11 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   const Matrix3d back = pose.linear().transpose();
   struct Open {
     int a, b;
-    float bound;
+    float bound, between;
+    /// Boxes that overlap are all at 0: those whose centres are nearest are the likeliest to hold triangles that touch.
+    [[nodiscard]] bool before(const Open& other) const {
+      return bound < other.bound || (bound == other.bound && between < other.between);
+    }
   };
   std::array<Open, 4 * kDeepest> stack;  // three more for each two levels of either tree
   std::size_t open = 0;
@@ -306,7 +316,7 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     return least < squared_enough;
   };
   if (meet(first.a, first.b, other.triangles_[first.b].moved(pose))) return std::sqrt(least);
-  stack[open++] = {0, 0, bound.squared(single_[0], other.single_[0], static_cast<float>(least))};
+  stack[open++] = {0, 0, bound.squared(single_[0], other.single_[0], static_cast<float>(least)), 0};
   while (open > 0) {
     const Open here = stack[--open];
     if (here.bound >= least) continue;
@@ -326,15 +336,15 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     // The larger box is quartered.
     const bool part_a = n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
     const FourBoxes& parts = part_a ? below_[m.place] : other.below_[n.place];
-    const Single bounds =
+    const BoxPairBound::FourGaps gaps =
         part_a ? bound.squared_of_four(parts, other.single_[here.b]) : bound.squared_from_four(single_[here.a], parts);
     const std::size_t before = open;
     for (int k = 0; k < parts.count; ++k) {
       const int node = parts.node[static_cast<std::size_t>(k)];
-      const Open part{part_a ? node : here.a, part_a ? here.b : node, bounds[k]};
+      const Open part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k], gaps.between[k]};
       if (part.bound >= least) continue;
-      std::size_t place = open++;  // nearest last
-      for (; place > before && stack[place - 1].bound < part.bound; --place) stack[place] = stack[place - 1];
+      std::size_t place = open++;  // the first to look into last
+      for (; place > before && !part.before(stack[place - 1]); --place) stack[place] = stack[place - 1];
       stack[place] = part;
     }
   }

@@ -5,8 +5,10 @@
 #include <deque>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 
 #include "swivel/core/timeline.hpp"
 
@@ -67,6 +69,7 @@ class Search {
       fail_first_.next_round();
       const std::int64_t removed = verdicts_.removed();
       if (valid(path)) return {path, cost_to_go_.best()};
+      if (bars_a_layer()) return {};
       if (verdicts_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
       cost_to_go_.repair();
     }
@@ -149,6 +152,7 @@ class Search {
     };
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     asked_ = 0;
+    failed_on_path_.clear();
     left_to_grow_ = most_grown();
     // Where paths cost that much more than the first, obstacles bar most of them, and each would find a little more of the same.
     if (!beyond_reach_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
@@ -191,9 +195,49 @@ class Search {
       for (const auto& x : failed) fail_first_.failed(x.layer);
       if (failed.empty()) continue;
       all = false;
+      if constexpr (std::is_same_v<Question, NodeQuestion>)
+        failed_on_path_.insert(failed_on_path_.end(), failed.begin(), failed.end());
       grow(failed);
     }
     return all;
+  }
+
+  /// Whether all nodes of a layer fail at which the path did, the first of these first: so least is left to reach. Asked of layers
+  /// of which no path within the limit of the sweep has a node left: a sweep with a higher limit takes longer than questions about
+  /// the others, which end at the first that is valid.
+  bool bars_a_layer() {
+    std::sort(failed_on_path_.begin(), failed_on_path_.end(), [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
+    int slots_left = 100'000;  // to look at, so that wide layers do not take longer than the next round
+    for (int last = -1; const Failure& x : failed_on_path_)
+      if (std::exchange(last, x.layer) != x.layer && slots_left > 0 && !any_left(x.layer, slots_left) && all_fail(x)) return true;
+    return false;
+  }
+  [[nodiscard]] bool any_left(int layer, int& slots_left) const {
+    for (int slot = 0; slot < lattice_.slots(layer); ++slot, --slots_left)
+      if (cost_to_go_.at(layer, slot) != kUnreachable && verdicts_.node(layer, slot) != Verdict::kRemoved) return true;
+    return false;
+  }
+  /// Of the layer's nodes, as this one did. A few that lie apart are asked first, then the others in order, since what is asked
+  /// about neighbours takes less.
+  bool all_fail(const Failure& like) {
+    constexpr int kApart = 16;
+    const int slots = lattice_.slots(like.layer);
+    std::vector<NodeQuestion> questions;
+    const auto ask_from = [&](int first, int step) {
+      for (int slot = first; slot < slots;) {
+        questions.clear();
+        for (; slot < slots && questions.size() < kGrownAtOnce; slot += step) {
+          const Verdict known = verdicts_.node(like.layer, slot);
+          if (known == Verdict::kValid) return false;
+          if (known == Verdict::kRemoved) continue;
+          if (const auto q = cost_to_go_.node(like.layer, slot)) questions.push_back({like.layer, slot, *q, like.failure});
+        }
+        if (ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return false;
+      }
+      return true;
+    };
+    const int step = std::max(1, slots / kApart);
+    return ask_from(step / 2, step) && ask_from(0, 1);
   }
 
   /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
@@ -351,8 +395,9 @@ class Search {
   int cost_reach_ = 0;  // neighbours on either side that costs_more() asks about
   /// Questions that cost about as much as a repair and the path after it.
   static constexpr std::int64_t kWorthARound = 64;
-  std::int64_t asked_ = 0;  // in this round
-  int left_to_grow_ = 0;    // questions about neighbours, in this round
+  std::int64_t asked_ = 0;               // in this round
+  std::vector<Failure> failed_on_path_;  // in this round
+  int left_to_grow_ = 0;                 // questions about neighbours, in this round
   static constexpr std::size_t kGrownAtOnce = 32;
   std::unordered_map<std::int64_t, FailureId> spared_;  // by key(): what grow() asked about last, of nodes that no obstacle barred
   static constexpr double kMuchDearer = 1.2;

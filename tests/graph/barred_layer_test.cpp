@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Layers that are barred, or all but barred: the search says what a whole sweep without their nodes says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "robots.hpp"
+#include "swivel/core/srs_lattice.hpp"
+#include "swivel/graph/path_first.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// Nodes fail by a table.
+class Table final : public Validity {
+ public:
+  explicit Table(const Lattice& lattice) : lattice_(&lattice), fails_(static_cast<std::size_t>(lattice.nodes())) {}
+  [[nodiscard]] std::uint8_t& fails(int layer, int slot) {
+    return fails_[static_cast<std::size_t>(layer) * static_cast<std::size_t>(lattice_->slots(0)) + static_cast<std::size_t>(slot)];
+  }
+  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
+    for (std::size_t k = 0; k < questions.size(); ++k) answers[k].valid = !fails(questions[k].layer, questions[k].slot);
+    asked += questions.size();
+  }
+  void edges(std::span<const EdgeQuestion>, std::span<std::uint8_t>) override {}
+  [[nodiscard]] bool asks_edges() const override { return false; }
+
+  std::size_t asked = 0;
+
+ private:
+  const Lattice* lattice_;
+  std::vector<std::uint8_t> fails_;
+};
+
+TEST(PathFirst, SeesThatALayerIsBarred) {
+  const std::uint64_t base = seed("PathFirst.BarredLayer");
+  int barred = 0, gaps = 0, solved = 0;
+  std::int64_t rounds_of_barred = 0;
+  for (const TestRobot& robot : all_robots()) {
+    const ArmModel arm = arm_of(robot);
+    const SrsArm srs = fit_srs(arm.chain, robot.name);
+    for (int trial = 0; trial < trials(20); ++trial) {
+      Random random(base + static_cast<std::uint64_t>(trial));
+      Problem problem = problem_for(robot);
+      const Config q0 = random_config(arm.chain, random);
+      Config q1 = q0;
+      for (int j = 0; j < kDof; ++j) q1[j] += random.uniform(-0.3, 0.3);
+      problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q1))};
+      const double length = (problem.waypoints[0].position - problem.waypoints[1].position).norm();
+      problem.resolution = {.ds = length / (70 + random.below(30)), .dphi = robot.name == "windings" ? 0.4 : 0.15, .dalpha = 10};
+      const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+      const SrsLattice lattice(arm.chain, srs, path, problem);
+      const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial);
+
+      // A layer but for at most a few of its nodes, and one node in fifty of the others.
+      const int layer = random.below(lattice.layers()), left = random.coin() ? 0 : 1 + random.below(3);
+      Table table(lattice);
+      for (int k = 0; k < lattice.layers(); ++k)
+        for (int slot = 0; slot < lattice.slots(k); ++slot) table.fails(k, slot) = k == layer || random.coin(0.02);
+      std::vector<Lattice::Node> nodes;
+      lattice.layer_nodes(layer, nodes);
+      for (int k = 0; k < left && !nodes.empty(); ++k)
+        table.fails(layer, nodes[static_cast<std::size_t>(random.below(static_cast<int>(nodes.size())))].slot) = 0;
+
+      const auto truth = make_cost_to_go(lattice);
+      for (int k = 0; k < lattice.layers(); ++k)
+        for (int slot = 0; slot < lattice.slots(k); ++slot)
+          if (table.fails(k, slot)) truth->verdicts().remove_node(k, slot);
+      truth->sweep(lattice.layers() - 1);
+      std::int64_t expansions = 0;
+      const SlotPath expected = best_path(*truth, expansions);
+      const auto unbarred = make_cost_to_go(lattice);
+      unbarred->sweep(lattice.layers() - 1);
+      const bool only_by_table = unbarred->best() != kUnreachable;
+
+      for (const int batch : {1, 32}) {
+        const auto cost_to_go = make_cost_to_go(lattice, Extent::kBounded);
+        cost_to_go->sweep(lattice.layers() - 1);
+        SearchCounters counters;
+        const SearchOutcome found = path_first(*cost_to_go, table, {.batch = batch}, counters);
+        const std::int64_t rounds = counters.iterations;
+        ASSERT_EQ(found.path, expected) << what;
+        if (expected.empty()) {
+          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, {.batch = batch}, counters), truth->deepest_reachable()) << what;
+        } else {
+          ASSERT_EQ(found.cost, truth->best()) << what;
+        }
+        if (!only_by_table) continue;
+        (left == 0 ? barred : gaps) += 1;
+        solved += !expected.empty();
+        if (left == 0) rounds_of_barred += rounds;
+      }
+    }
+  }
+  std::printf("%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved\n", barred,
+              static_cast<long long>(rounds_of_barred), gaps, solved);
+  EXPECT_GE(barred, at_least(40));
+  EXPECT_GE(solved, at_least(10));
+  EXPECT_LE(rounds_of_barred, 20 * barred);  // 30 where nobody asks about the rest of a layer
+}
+
+}  // namespace
+}  // namespace swivel
