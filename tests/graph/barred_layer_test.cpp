@@ -98,7 +98,9 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
               static_cast<long long>(rounds_of_barred), gaps, solved);
   EXPECT_GE(barred, at_least(40));
   EXPECT_GE(solved, at_least(10));
-  EXPECT_LE(rounds_of_barred, 20 * barred);  // 30 where nobody asks about the rest of a layer
+  if (at_least(1) > 0) {
+    EXPECT_LE(rounds_of_barred, 20 * barred);  // 30 where nobody asks about the rest of a layer
+  }
 }
 
 }  // namespace
