@@ -47,8 +47,9 @@ struct Suspect {
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
 /// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
-/// least-cost path, and the smallest in slot order among equals; when none is left, the removed cut proves that none exists.
-/// They are asked about first, all at once: which there are changes the work, never the answer. Throws Stopped.
+/// least-cost path, and the smallest in slot order among equals; when none is left, or a layer has no node left, what is removed
+/// proves that none exists. Then the cost-to-go may not have followed yet. `first` is asked about before the first path, all at
+/// once: what it holds changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                        SearchCounters& counters, const AskedFirst& first = {});
 
