@@ -202,12 +202,12 @@ class Search {
     return all;
   }
 
-  /// Whether all nodes of a layer fail at which the path did, the first of these first: so least is left to reach. Asked of layers
-  /// of which no path within the limit of the sweep has a node left: a sweep with a higher limit takes longer than questions about
-  /// the others, which end at the first that is valid.
+  /// Whether all nodes fail in one of the layers at which the path failed; the first layers first, since less is left to reach
+  /// before them. A layer is asked about only where no path within the limit of the sweep has a node left in it: questions about
+  /// its other nodes take less than a sweep with a higher limit, and end at the first node that is valid.
   bool bars_a_layer() {
     std::sort(failed_on_path_.begin(), failed_on_path_.end(), [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
-    int slots_left = 100'000;  // to look at, so that wide layers do not take longer than the next round
+    int slots_left = 100'000;  // so that to look through wide layers does not take longer than the next round
     for (int last = -1; const Failure& x : failed_on_path_)
       if (std::exchange(last, x.layer) != x.layer && slots_left > 0 && !any_left(x.layer, slots_left) && all_fail(x)) return true;
     return false;
