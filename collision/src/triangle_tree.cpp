@@ -85,21 +85,6 @@ class BoxPairBound {
       along_other += over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] - dot(spread_[k], boxes.half));
     return {along_boxes.max(along_other), squared_norm(offset)};
   }
-  /// One from each of four.
-  template <class Box, class Four>
-  [[nodiscard]] FourGaps squared_from_four(const Box& box, const Four& others) const {
-    const Single reach = product(back_spread_, box.half);
-    Three offset;
-    Single along_box = Single::Zero(), along_others = Single::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      offset[k] = at_[axis] - box.center[axis] + dot(back_[k], others.center);
-      along_box += over_gap(offset[k].abs() - box.half[axis] - dot(back_spread_[k], others.half));
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-      along_others += over_gap(dot(turn_[k], offset).abs() - others.half[k] - reach[static_cast<Eigen::Index>(k)]);
-    return {along_box.max(along_others), squared_norm(offset)};
-  }
   /// Whether boxes with axes of their own are apart by `limit`, squared.
   template <class Box>
   [[nodiscard]] bool further(const Box& box, const Box& other, float limit) const {
@@ -293,7 +278,7 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     first = {swapped.b, swapped.a};
     return found;
   }
-  const BoxPairBound bound(pose, reach_ + other.reach_);
+  const BoxPairBound bound(pose, reach_ + other.reach_), bound_from_other(pose.inverse(Eigen::Isometry), reach_ + other.reach_);
   const Matrix3d back = pose.linear().transpose();
   struct Open {
     int a, b;
@@ -337,14 +322,14 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
     const bool part_a = n.right == 0 || (m.right != 0 && m.half.squaredNorm() >= n.half.squaredNorm());
     const FourBoxes& parts = part_a ? below_[m.place] : other.below_[n.place];
     const BoxPairBound::FourGaps gaps =
-        part_a ? bound.squared_of_four(parts, other.single_[here.b]) : bound.squared_from_four(single_[here.a], parts);
-    const std::size_t before = open;
+        part_a ? bound.squared_of_four(parts, other.single_[here.b]) : bound_from_other.squared_of_four(parts, single_[here.a]);
+    const std::size_t others = open;
     for (int k = 0; k < parts.count; ++k) {
       const int node = parts.node[static_cast<std::size_t>(k)];
       const Open part{part_a ? node : here.a, part_a ? here.b : node, gaps.bound[k], gaps.between[k]};
       if (part.bound >= least) continue;
       std::size_t place = open++;  // the first to look into last
-      for (; place > before && !part.before(stack[place - 1]); --place) stack[place] = stack[place - 1];
+      for (; place > others && !part.before(stack[place - 1]); --place) stack[place] = stack[place - 1];
       stack[place] = part;
     }
   }

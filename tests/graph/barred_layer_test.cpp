@@ -22,12 +22,9 @@ class Table final : public Validity {
   }
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
     for (std::size_t k = 0; k < questions.size(); ++k) answers[k].valid = !fails(questions[k].layer, questions[k].slot);
-    asked += questions.size();
   }
   void edges(std::span<const EdgeQuestion>, std::span<std::uint8_t>) override {}
   [[nodiscard]] bool asks_edges() const override { return false; }
-
-  std::size_t asked = 0;
 
  private:
   const Lattice* lattice_;
