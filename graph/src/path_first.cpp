@@ -186,7 +186,7 @@ class Search {
     const auto known = layers - static_cast<std::int64_t>(questions.size());
     bool all = true;
     std::vector<Question> some;
-    for (std::size_t next = 0; next < questions.size() && (all || asked_ < kWorthARound);) {
+    for (std::size_t next = 0; next < questions.size() && (all || asked_ < options_.worth_a_round);) {
       cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
       some.clear();
       for (; next < questions.size() && some.size() < batch(); ++next)
@@ -392,9 +392,7 @@ class Search {
   PathFirstOptions options_;
   bool asks_costs_;
   static constexpr int kMostReach = 1 << 20;
-  int cost_reach_ = 0;  // neighbours on either side that costs_more() asks about
-  /// Questions that cost about as much as a repair and the path after it.
-  static constexpr std::int64_t kWorthARound = 64;
+  int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
   std::int64_t asked_ = 0;               // in this round
   std::vector<Failure> failed_on_path_;  // in this round
   int left_to_grow_ = 0;                 // questions about neighbours, in this round

@@ -45,10 +45,12 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   Stopwatch watch;
   Found found;
   SearchCounters searched;
-  // A fixed batch, so that what is asked (and counted) does not depend on the number of threads. A check of the caller's is asked
-  // about as many at once, since calling it may cost more than its answers.
-  const bool in_batches = options.planner == PlannerKind::kParallel || options.hooks.check;
-  const PathFirstOptions path_first_options{.batch = in_batches ? 32 : 8};
+  // Fixed, so that what is asked (and counted) does not depend on the number of threads. Threads share questions, and hardly
+  // anything of what comes between two paths. A check of the caller's is asked about many at once, since calling it may cost more
+  // than its answers.
+  PathFirstOptions path_first_options{.batch = 8};
+  if (options.planner == PlannerKind::kParallel) path_first_options = {.batch = 16, .worth_a_round = 256};
+  if (options.hooks.check) path_first_options.batch = 32;
   try {
     if (!swept) {
       ask_suspects(cost_to_go, validity, suspects);

@@ -22,7 +22,8 @@ struct SearchOutcome {
 };
 
 struct PathFirstOptions {
-  int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
+  int batch = 1;           ///< questions asked at once; the answers, not their timing, decide what follows
+  int worth_a_round = 64;  ///< questions that take about as long as a repair and the path after it
   /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
   /// obstacle blocks more nodes of a finer lattice, and a round costs more.
   int grow = 64, grow_one_in = 64;
