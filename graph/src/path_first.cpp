@@ -260,6 +260,18 @@ class Search {
     grow({}, frontier);
   }
 
+  /// Neighbours of a region that are asked about at once.
+  struct Wave {
+    std::vector<NodeQuestion> questions;
+    std::vector<NodeAnswer> answers;
+    std::vector<std::int64_t> keys;  // of the questions
+    void clear() {
+      questions.clear();
+      answers.clear();
+      keys.clear();
+    }
+    [[nodiscard]] bool has(std::int64_t key) const { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
+  };
   void grow(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
     const auto add = [&](int layer, int slot, FailureId failure) {
       if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown) frontier.push_back({layer, slot, failure});
@@ -272,26 +284,47 @@ class Search {
           add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
-    std::vector<NodeQuestion> questions;
-    std::vector<std::int64_t> keys;  // of the questions
-    for (int& left = left_to_grow_; left > 0 && !frontier.empty();) {
-      questions.clear();
-      keys.clear();
-      while (!frontier.empty() && questions.size() < std::min(kGrownAtOnce, static_cast<std::size_t>(left))) {
+    // Half of the frontier at most where two waves are under way: else nothing would be left to ask about beside the first.
+    const auto most = [&] {
+      constexpr std::size_t kFewest = 16;
+      const std::size_t at_once = options_.grow_beside ? std::max(kFewest, frontier.size() / 2) : kGrownAtOnce;
+      return std::min({at_once, kGrownAtOnce, static_cast<std::size_t>(std::max(0, left_to_grow_))});
+    };
+    const auto fill = [&](Wave& wave, const Wave& asked) {
+      for (const std::size_t enough = most(); !frontier.empty() && wave.questions.size() < enough;) {
         const auto [layer, slot, failure] = frontier.front();
         frontier.pop_front();
         if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
-        if (std::find(keys.begin(), keys.end(), key(layer, slot)) != keys.end()) continue;
+        if (wave.has(key(layer, slot)) || asked.has(key(layer, slot))) continue;
         if (cost_to_go_.at(layer, slot) == kUnreachable) {
           beyond_reach_.push_back({layer, slot, failure});
           continue;
         }
         if (const auto known = spared_.find(key(layer, slot)); known != spared_.end() && known->second == failure) continue;
-        questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
-        keys.push_back(key(layer, slot));
+        wave.questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
+        wave.keys.push_back(key(layer, slot));
       }
-      left -= static_cast<int>(questions.size());
-      for (const Failure& node : ask(std::span<const NodeQuestion>(questions))) add_neighbours(node);
+      left_to_grow_ -= static_cast<int>(wave.questions.size());
+      wave.answers.assign(wave.questions.size(), {});
+    };
+    const auto take_wave = [&](Wave& wave) {
+      for (const Failure& node : take(wave.questions, wave.answers)) add_neighbours(node);
+      wave.clear();
+    };
+    Wave before, now, next;
+    for (fill(now, before); !now.questions.empty();) {
+      if (options_.grow_beside)
+        validity_.nodes_beside(now.questions, now.answers, [&] {
+          take_wave(before);
+          fill(next, now);
+        });
+      else
+        validity_.nodes(now.questions, now.answers);
+      std::swap(before, now);
+      std::swap(now, next);
+      if (!now.questions.empty()) continue;
+      take_wave(before);
+      fill(now, before);
     }
   }
 
@@ -340,30 +373,35 @@ class Search {
     return options_.grow + static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
   }
 
-  /// Asks about nodes, keeps or removes them, returns those that failed.
-  std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
+  /// Keeps or removes nodes as they were answered, returns those that failed.
+  std::vector<Failure> take(std::span<const NodeQuestion> questions, std::span<const NodeAnswer> answers) {
     asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<Failure> failed;
     failed.reserve(questions.size());
-    answers_.assign(questions.size(), {});
-    validity_.nodes(questions, answers_);
     for (std::size_t k = 0; k < questions.size(); ++k) {
       const NodeQuestion& x = questions[k];
-      if (answers_[k].valid) {
+      if (answers[k].valid) {
         if (x.only_scene)
           spared_[key(x.layer, x.slot)] = x.likely;
         else
           verdicts_.keep_node(x.layer, x.slot);
       } else {
-        if (answers_[k].shared)
-          lattice_.alike(x.layer, x.slot, answers_[k].groups, alike_);
+        if (answers[k].shared)
+          lattice_.alike(x.layer, x.slot, answers[k].groups, alike_);
         else
           alike_.assign(1, x.slot);
         verdicts_.remove_nodes(x.layer, alike_);
-        failed.push_back({x.layer, x.slot, answers_[k].failure});
+        failed.push_back({x.layer, x.slot, answers[k].failure});
       }
     }
     return failed;
+  }
+
+  /// The same of nodes that are asked about now.
+  std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
+    answers_.assign(questions.size(), {});
+    validity_.nodes(questions, answers_);
+    return take(questions, answers_);
   }
 
   std::vector<EdgeQuestion> ask(std::span<const EdgeQuestion> questions) {

@@ -64,6 +64,12 @@ void Executor::begin_brief() {
   if (impl_->threads > 1 && !impl_->team) impl_->team = std::make_unique<detail::Team>(std::min(kMostHelpers, impl_->threads - 1));
 }
 
+void Executor::for_each_beside(int count, const std::function<void(int, int)>& body, const std::function<void()>& work) {
+  if (count > 0 && impl_->team && impl_->team->awake()) return impl_->team->share(0, count, body, &work);
+  work();
+  for_each_brief(count, body);
+}
+
 void Executor::for_each_brief(int count, const std::function<void(int, int)>& body) {
   if (impl_->threads == 1 || count <= 1) {
     for (int index = 0; index < count; ++index) body(index, 0);

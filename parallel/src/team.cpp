@@ -78,11 +78,12 @@ bool Team::take_one(int worker) {
   }
 }
 
-void Team::share(int first, int count, const std::function<void(int, int)>& body) {
-  for (; first < count; first += Open::kMost) share_some(first, std::min(Open::kMost, count - first), body);
+void Team::share(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work) {
+  for (; first < count; first += Open::kMost)
+    share_some(first, std::min(Open::kMost, count - first), body, std::exchange(work, nullptr));
 }
 
-void Team::share_some(int first, int count, const std::function<void(int, int)>& body) {
+void Team::share_some(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work) {
   first_ = first;
   body_ = &body;
   done_ = 0;
@@ -92,10 +93,20 @@ void Team::share_some(int first, int count, const std::function<void(int, int)>&
   open.last = static_cast<std::uint64_t>(count);
   open_ = open.word();
   if (asleep_.load() > 0) open_.notify_all();
+  std::exception_ptr failure;
+  try {
+    if (work) (*work)();
+  } catch (...) {
+    failure = std::current_exception();
+  }
   while (take_one(0)) {
   }
   const auto all_done = [&] { return done_.load() == count; };
   while (!all_done()) look_for(all_done, kLooks);
+  if (failure) {
+    failure_ = nullptr;
+    std::rethrow_exception(failure);
+  }
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 

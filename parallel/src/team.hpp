@@ -26,11 +26,12 @@ class Team {
   [[nodiscard]] bool awake() const { return asleep_.load() < static_cast<int>(helpers_.size()); }
   /// Calls body(index, worker) for index = first ... count - 1; the caller is worker 0. Rethrows what body threw first. Not from
   /// within body.
-  void share(int first, int count, const std::function<void(int index, int worker)>& body);
+  void share(int first, int count, const std::function<void(int index, int worker)>& body,
+             const std::function<void()>* work = nullptr);
 
  private:
   void help(int worker);
-  void share_some(int first, int count, const std::function<void(int, int)>& body);
+  void share_some(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work);
   bool take_one(int worker);
 
   pid_t process_;

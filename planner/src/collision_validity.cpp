@@ -57,19 +57,34 @@ CollisionValidity::Queries CollisionValidity::make_queries() const {
 }
 
 template <class Ask>
-void CollisionValidity::ask_open(const Ask& ask) {
+void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* work) {
   const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(partitions_.size()));
   const auto at = [&](int index, int worker, Queries& queries) { ask(open_[static_cast<std::size_t>(index)], worker, queries); };
+  if (partitions_.empty() && work) (*work)();
   if (partitions_.empty())
     return executor_->for_each(count,
                                [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
-  executor_->for_each_brief(runs, [&](int partition, int worker) {
+  const auto ask_run = [&](int partition, int worker) {
     for (int index = count * partition / runs; index < count * (partition + 1) / runs; ++index)
       at(index, worker, partitions_[static_cast<std::size_t>(partition)]);
-  });
+  };
+  if (work)
+    executor_->for_each_beside(runs, ask_run, *work);
+  else
+    executor_->for_each_brief(runs, ask_run);
 }
 
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
+  nodes(questions, answers, nullptr);
+}
+
+void CollisionValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                     const std::function<void()>& work) {
+  nodes(questions, answers, &work);
+}
+
+void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                              const std::function<void()>* work) {
   TraceSpan batch("nodes asked");
   open_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k) {
@@ -90,7 +105,8 @@ void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span
   batch.count("nodes", static_cast<std::int64_t>(open_.size()));
   nodes_checked_ += static_cast<std::int64_t>(open_.size());
   ask_open(
-      [&](Open& open, int worker, Queries& queries) { answers[open.index] = node(questions[open.index], open, worker, queries); });
+      [&](Open& open, int worker, Queries& queries) { answers[open.index] = node(questions[open.index], open, worker, queries); },
+      work);
   if (memory_)
     for (const Open& open : open_)
       if (const NodeQuestion& x = questions[open.index]; !x.only_scene || !answers[open.index].valid)

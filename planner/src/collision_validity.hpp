@@ -26,6 +26,8 @@ class CollisionValidity final : public Validity {
                     const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
+  void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                    const std::function<void()>& work) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
 
@@ -48,9 +50,10 @@ class CollisionValidity final : public Validity {
     double spare = -1;                         ///< of ClearanceMemory::Finding
   };
   [[nodiscard]] Queries make_queries() const;
-  /// ask(open, worker, queries) for what is open, on the executor's threads.
+  /// ask(open, worker, queries) for what is open, on the executor's threads; beside `work`, unless it is null.
   template <class Ask>
-  void ask_open(const Ask& ask);
+  void ask_open(const Ask& ask, const std::function<void()>* work = nullptr);
+  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers, const std::function<void()>* work);
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
   /// Whether the pair is too near in the node's row, wherever that is.
   [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;

@@ -20,6 +20,13 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
     if (open(k)) answers[k].valid = *allowed++;
 }
 
+void HookedValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                  const std::function<void()>& work) {
+  if (!check_) return first_->nodes_beside(questions, answers, work);
+  nodes(questions, answers);
+  work();
+}
+
 void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
   if (first_->asks_edges())
     first_->edges(questions, answers);

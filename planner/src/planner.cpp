@@ -45,9 +45,6 @@ Certificates certificates_of(const PlanOptions& options) {
   return is_eager(options) ? Certificates::kOff : Certificates::kOn;
 }
 
-/// From here on lower bounds and sweeps take long enough to be shared.
-constexpr std::int64_t kManyNodes = 150'000;  // some milliseconds
-
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of
 /// distances, which takes a few per cent of a short plan.
 int lanes_of(const PlanOptions& options, const Lattice& lattice) {

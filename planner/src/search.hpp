@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
@@ -11,6 +12,9 @@
 #include "swivel/planner/plan_options.hpp"
 
 namespace swivel {
+
+/// Of a lattice: from here on lower bounds, sweeps and what comes between two questions take long enough to be shared.
+inline constexpr std::int64_t kManyNodes = 150'000;  // some milliseconds
 
 /// What a search found, by whichever planner.
 struct Found {

@@ -51,11 +51,17 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       const SrsLattice lattice(arm.chain, srs, path, problem);
       const std::string what = "SWIVEL_TEST_SEED=" + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial);
 
-      // A layer but for at most a few of its nodes, and one node in fifty of the others.
+      // A layer but for at most a few of its nodes, one node in fifty of the others, and in every other problem a block of them.
       const int layer = random.below(lattice.layers()), left = random.coin() ? 0 : 1 + random.below(3);
       Table table(lattice);
+      const int angles = random.coin() ? lattice.angles() / 3 : 0, angle = random.below(lattice.angles());
+      const int first = random.below(lattice.layers()), last = first + lattice.layers() / 4;
+      const auto blocked = [&](int k, int slot) {
+        return k >= first && k <= last && (lattice.angle_of(slot) - angle + lattice.angles()) % lattice.angles() < angles;
+      };
       for (int k = 0; k < lattice.layers(); ++k)
-        for (int slot = 0; slot < lattice.slots(k); ++slot) table.fails(k, slot) = k == layer || random.coin(0.02);
+        for (int slot = 0; slot < lattice.slots(k); ++slot)
+          table.fails(k, slot) = k == layer || blocked(k, slot) || random.coin(0.02);
       std::vector<Lattice::Node> nodes;
       lattice.layer_nodes(layer, nodes);
       for (int k = 0; k < left && !nodes.empty(); ++k)
@@ -72,15 +78,15 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       unbarred->sweep(lattice.layers() - 1);
       const bool only_by_table = unbarred->best() != kUnreachable;
 
-      for (const int batch : {1, 32}) {
+      for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1}, {.batch = 32}, {.batch = 32, .grow_beside = true}}) {
         const auto cost_to_go = make_cost_to_go(lattice, Extent::kBounded);
         cost_to_go->sweep(lattice.layers() - 1);
         SearchCounters counters;
-        const SearchOutcome found = path_first(*cost_to_go, table, {.batch = batch}, counters);
+        const SearchOutcome found = path_first(*cost_to_go, table, options, counters);
         const std::int64_t rounds = counters.iterations;
         ASSERT_EQ(found.path, expected) << what;
         if (expected.empty()) {
-          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, {.batch = batch}, counters), truth->deepest_reachable()) << what;
+          ASSERT_EQ(deepest_valid_layer(*cost_to_go, table, options, counters), truth->deepest_reachable()) << what;
         } else {
           ASSERT_EQ(found.cost, truth->best()) << what;
         }

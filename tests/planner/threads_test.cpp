@@ -73,14 +73,26 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
         ++visits[static_cast<std::size_t>(index)];
         if (index == failing) throw std::runtime_error("x");
       };
-      if (failing < 0) {
-        executor.for_each_brief(count, body);
+      const bool beside = random.coin(), work_fails = random.below(16) == 0;
+      int worked = 0;
+      const auto work = [&] {
+        keep_busy(steps / 2);
+        ++worked;
+        if (work_fails) throw std::invalid_argument("y");
+      };
+      const auto call_it = [&] { beside ? executor.for_each_beside(count, body, work) : executor.for_each_brief(count, body); };
+      if (beside && work_fails) {
+        ASSERT_THROW(call_it(), std::invalid_argument);
+        ++thrown;
+      } else if (failing < 0) {
+        call_it();
         for (const int visit : visits) ASSERT_EQ(visit, 1);
         visited += count;
       } else {
-        ASSERT_THROW(executor.for_each_brief(count, body), std::runtime_error);
+        ASSERT_THROW(call_it(), std::runtime_error);
         ++thrown;
       }
+      ASSERT_EQ(worked, beside ? 1 : 0);
       if (random.below(50) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(random.below(5)));
     }
   }
@@ -185,6 +197,43 @@ TEST_P(Backends, KeptClearancesCountTheSame) {
   std::printf("%d plans compared, %d poses with failures\n", compared, repaired);
   EXPECT_EQ(compared, 24);
   EXPECT_GT(repaired, 2);
+}
+
+/// Of lattices so large that neighbours of failed nodes are asked about while those before them are dealt with.
+TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
+  Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
+  base.resolution.ds = 0.003;
+  base.resolution.dphi = 0.04;
+  const PreparedRobot robot(base);
+  int compared = 0, grown = 0, solved = 0;
+  for (int episode = 0; episode < trials(20); ++episode) {
+    const Problem problem = episode_problem(base, 1, episode);
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    const PlanResult lazy = plan(robot, problem, options);
+    ASSERT_GE(lazy.lattice.nodes, 150'000);
+    options.planner = PlannerKind::kParallel;
+    std::optional<PlanResult> first;
+    for (const int threads : {1, 2, 3, 8}) {
+      options.threads = threads;
+      const PlanResult result = plan(robot, problem, options);
+      if (!first) first = result;
+      expect_same(result, *first);
+      ASSERT_EQ(result.status, lazy.status);
+      ASSERT_EQ(result.cost, lazy.cost);
+      ASSERT_EQ(result.diagnosis.reached_layer, lazy.diagnosis.reached_layer);
+      ASSERT_EQ(result.trajectory.size(), lazy.trajectory.size());
+      for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, lazy.trajectory[i].q);
+      ASSERT_FALSE(HasFailure());
+      ++compared;
+    }
+    grown += first->counters.nodes_checked > 1000;
+    solved += first->status == PlanStatus::kSolved;
+  }
+  std::printf("%d plans compared, %d episodes with regions of hundreds of nodes, %d solved\n", compared, grown, solved);
+  EXPECT_EQ(compared, 4 * trials(20));
+  EXPECT_GE(grown, at_least(5));
+  EXPECT_GE(solved, at_least(5));
 }
 
 INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),

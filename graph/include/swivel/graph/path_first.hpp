@@ -27,6 +27,8 @@ struct PathFirstOptions {
   /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
   /// obstacle blocks more nodes of a finer lattice, and a round costs more.
   int grow = 64, grow_one_in = 64;
+  /// Neighbours are asked about on other threads while the caller takes the answers about those before them.
+  bool grow_beside = false;
 };
 
 struct SearchCounters {

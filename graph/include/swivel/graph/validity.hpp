@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 
 #include "swivel/core/types.hpp"
@@ -46,6 +47,12 @@ class Validity {
   virtual ~Validity() = default;
   /// Spans of equal size.
   virtual void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) = 0;
+  /// The same on other threads, where there are any, while the caller does `work`, which asks nothing.
+  virtual void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                            const std::function<void()>& work) {
+    nodes(questions, answers);
+    work();
+  }
   /// answers[k] = 1 where questions[k] is valid.
   virtual void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) = 0;
   /// False when every edge is valid as it stands, so that none need be asked.

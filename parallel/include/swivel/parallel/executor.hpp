@@ -25,6 +25,9 @@ class Executor {
   /// shares out what is left once that would keep it for long, or at once with threads that are still awake. Until then no thread
   /// is begun. By threads of its own, whatever the backend; not from within body.
   void for_each_brief(int count, const std::function<void(int index, int worker)>& body);
+  /// The same beside `work`, which the caller does first and which shares nothing itself. Exceptions of `work` come before those of
+  /// `body`.
+  void for_each_beside(int count, const std::function<void(int index, int worker)>& body, const std::function<void()>& work);
   /// Begins those threads now, for a caller who knows that there will be enough to share.
   void begin_brief();
 
