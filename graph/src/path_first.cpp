@@ -284,11 +284,11 @@ class Search {
           add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
-    // Half of the frontier at most where two waves are under way: else nothing would be left to ask about beside the first.
+    // Where one wave is asked about while the next is made, it takes about half of the frontier: there mostly is another then.
     const auto most = [&] {
       constexpr std::size_t kFewest = 16;
       const std::size_t at_once = options_.grow_beside ? std::max(kFewest, frontier.size() / 2) : kGrownAtOnce;
-      return std::min({at_once, kGrownAtOnce, static_cast<std::size_t>(std::max(0, left_to_grow_))});
+      return std::min({at_once, kGrownAtOnce, static_cast<std::size_t>(left_to_grow_)});
     };
     const auto fill = [&](Wave& wave, const Wave& asked) {
       for (const std::size_t enough = most(); !frontier.empty() && wave.questions.size() < enough;) {
@@ -315,13 +315,14 @@ class Search {
     for (fill(now, before); !now.questions.empty();) {
       if (options_.grow_beside)
         validity_.nodes_beside(now.questions, now.answers, [&] {
+          const TraceSpan span("neighbours");
           take_wave(before);
           fill(next, now);
         });
       else
         validity_.nodes(now.questions, now.answers);
       std::swap(before, now);
-      std::swap(now, next);
+      std::swap(now, next);  // which leaves it empty
       if (!now.questions.empty()) continue;
       take_wave(before);
       fill(now, before);

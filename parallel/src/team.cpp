@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -79,6 +80,12 @@ bool Team::take_one(int worker) {
 }
 
 void Team::share(int first, int count, const std::function<void(int, int)>& body, const std::function<void()>* work) {
+  if (sharing_) throw std::logic_error("work is shared from within shared work");
+  struct Shares {
+    bool& now;
+    explicit Shares(bool& sharing) : now(sharing) { now = true; }
+    ~Shares() { now = false; }
+  } const shares(sharing_);
   for (; first < count; first += Open::kMost)
     share_some(first, std::min(Open::kMost, count - first), body, std::exchange(work, nullptr));
 }

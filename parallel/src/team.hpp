@@ -24,8 +24,8 @@ class Team {
 
   /// A helper looks for work.
   [[nodiscard]] bool awake() const { return asleep_.load() < static_cast<int>(helpers_.size()); }
-  /// Calls body(index, worker) for index = first ... count - 1; the caller is worker 0. Rethrows what body threw first. Not from
-  /// within body.
+  /// Calls body(index, worker) for index = first ... count - 1; the caller is worker 0, and does `work` first, unless it is null.
+  /// Every index is called whatever throws; rethrows what `work` threw, else what body threw first. Not from within body or work.
   void share(int first, int count, const std::function<void(int index, int worker)>& body,
              const std::function<void()>* work = nullptr);
 
@@ -44,6 +44,7 @@ class Team {
   std::atomic<int> done_{0};
   std::atomic<int> asleep_{0};
   std::atomic<bool> ended_{false};
+  bool sharing_ = false;
   std::mutex failure_mutex_;
   std::exception_ptr failure_;
 };

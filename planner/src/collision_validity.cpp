@@ -60,10 +60,11 @@ template <class Ask>
 void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* work) {
   const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(partitions_.size()));
   const auto at = [&](int index, int worker, Queries& queries) { ask(open_[static_cast<std::size_t>(index)], worker, queries); };
-  if (partitions_.empty() && work) (*work)();
-  if (partitions_.empty())
+  if (partitions_.empty()) {
+    if (work) (*work)();
     return executor_->for_each(count,
                                [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
+  }
   const auto ask_run = [&](int partition, int worker) {
     for (int index = count * partition / runs; index < count * (partition + 1) / runs; ++index)
       at(index, worker, partitions_[static_cast<std::size_t>(partition)]);
@@ -75,16 +76,16 @@ void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* wo
 }
 
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
-  nodes(questions, answers, nullptr);
+  ask_nodes(questions, answers, nullptr);
 }
 
 void CollisionValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
                                      const std::function<void()>& work) {
-  nodes(questions, answers, &work);
+  ask_nodes(questions, answers, &work);
 }
 
-void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                              const std::function<void()>* work) {
+void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                  const std::function<void()>* work) {
   TraceSpan batch("nodes asked");
   open_.clear();
   for (std::size_t k = 0; k < questions.size(); ++k) {

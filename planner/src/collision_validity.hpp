@@ -53,7 +53,7 @@ class CollisionValidity final : public Validity {
   /// ask(open, worker, queries) for what is open, on the executor's threads; beside `work`, unless it is null.
   template <class Ask>
   void ask_open(const Ask& ask, const std::function<void()>* work = nullptr);
-  void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers, const std::function<void()>* work);
+  void ask_nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers, const std::function<void()>* work);
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
   /// Whether the pair is too near in the node's row, wherever that is.
   [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;

@@ -23,8 +23,8 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
 void HookedValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
                                   const std::function<void()>& work) {
   if (!check_) return first_->nodes_beside(questions, answers, work);
-  nodes(questions, answers);
   work();
+  nodes(questions, answers);
 }
 
 void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

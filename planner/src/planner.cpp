@@ -353,7 +353,7 @@ struct Planner::Impl {
       cost_to_go =
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
     if (once) cost_to_go->never_restarts();
-    const bool shares = lattice.nodes() >= kManyNodes;
+    const bool shares = shares_work(lattice);
     if (shares) threads.begin_brief();
     cost_to_go->share(shares ? shared_with(threads) : SharedWork());
     const bool swept = cost_to_go->restart(budget);

@@ -49,9 +49,10 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   // anything of what comes between two paths. A check of the caller's is asked about many at once, since calling it may cost more
   // than its answers.
   PathFirstOptions path_first_options{.batch = 8};
-  if (options.planner == PlannerKind::kParallel)
-    path_first_options = {.batch = 16, .worth_a_round = 128, .grow_beside = cost_to_go.lattice().nodes() >= kManyNodes};
-  if (options.hooks.check) path_first_options.batch = 32;
+  if (options.hooks.check)
+    path_first_options.batch = 32;
+  else if (options.planner == PlannerKind::kParallel)
+    path_first_options = {.batch = 16, .worth_a_round = 128, .grow_beside = shares_work(cost_to_go.lattice())};
   try {
     if (!swept) {
       ask_suspects(cost_to_go, validity, suspects);

@@ -13,8 +13,10 @@
 
 namespace swivel {
 
-/// Of a lattice: from here on lower bounds, sweeps and what comes between two questions take long enough to be shared.
-inline constexpr std::int64_t kManyNodes = 150'000;  // some milliseconds
+/// Whether lower bounds, sweeps and what comes between two questions take long enough to be shared.
+[[nodiscard]] inline bool shares_work(const Lattice& lattice) {
+  return lattice.nodes() >= 150'000;  // some milliseconds
+}
 
 /// What a search found, by whichever planner.
 struct Found {

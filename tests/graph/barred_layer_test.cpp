@@ -23,18 +23,35 @@ class Table final : public Validity {
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override {
     for (std::size_t k = 0; k < questions.size(); ++k) answers[k].valid = !fails(questions[k].layer, questions[k].slot);
   }
+  /// As other threads may answer: from the questions as they were, before `work` or after.
+  void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                    const std::function<void()>& work) override {
+    const std::vector<NodeQuestion> asked(questions.begin(), questions.end());
+    const bool before = ++waves_ % 2 == 0;
+    if (before) nodes(asked, answers);
+    work();
+    if (!before) nodes(asked, answers);
+    const auto was_asked = [&](const NodeQuestion& x) {
+      return std::any_of(wave_.begin(), wave_.end(), [&](const NodeQuestion& y) { return x.layer == y.layer && x.slot == y.slot; });
+    };
+    EXPECT_TRUE(std::none_of(asked.begin(), asked.end(), was_asked));
+    wave_ = asked;
+  }
+  [[nodiscard]] std::int64_t waves() const { return waves_; }
   void edges(std::span<const EdgeQuestion>, std::span<std::uint8_t>) override {}
   [[nodiscard]] bool asks_edges() const override { return false; }
 
  private:
   const Lattice* lattice_;
   std::vector<std::uint8_t> fails_;
+  std::vector<NodeQuestion> wave_;  // asked about last
+  std::int64_t waves_ = 0;
 };
 
 TEST(PathFirst, SeesThatALayerIsBarred) {
   const std::uint64_t base = seed("PathFirst.BarredLayer");
   int barred = 0, gaps = 0, solved = 0;
-  std::int64_t rounds_of_barred = 0;
+  std::int64_t rounds_of_barred = 0, waves = 0;
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
@@ -95,10 +112,12 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
         solved += !expected.empty();
         if (left == 0) rounds_of_barred += rounds;
       }
+      waves += table.waves();
     }
   }
-  std::printf("%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved\n", barred,
-              static_cast<long long>(rounds_of_barred), gaps, solved);
+  std::printf("%d searches of a barred layer in %lld rounds, %d of one with gaps, %d solved, %lld waves beside work\n", barred,
+              static_cast<long long>(rounds_of_barred), gaps, solved, static_cast<long long>(waves));
+  EXPECT_GE(waves, at_least(1000));
   EXPECT_GE(barred, at_least(40));
   EXPECT_GE(solved, at_least(10));
   if (at_least(1) > 0) {

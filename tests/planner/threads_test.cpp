@@ -50,11 +50,19 @@ TEST_P(Backends, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
     }
 }
 
+TEST(Executor, WorkBesideACallMayNotShareItself) {
+  Executor executor(2);
+  executor.begin_brief();
+  const auto nothing = [](int, int) {};
+  EXPECT_THROW(executor.for_each_beside(4, nothing, [&] { executor.for_each_brief(4, nothing); }), std::logic_error);
+  executor.for_each_brief(4, nothing);
+}
+
 /// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and some that throw.
 TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
   Random random(seed("Executor.BriefCalls"));
   std::int64_t visited = 0, thrown = 0;
-  for (const int threads : {2, 3, 8}) {
+  for (const int threads : {1, 2, 3, 8}) {
     Executor executor(threads);
     const auto keep_busy = [](int steps) {
       for (std::atomic<int> step{0}; step < steps;) ++step;
@@ -65,7 +73,8 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
       executor.for_each_brief(40, [&](int, int) { keep_busy(1'000'000); });  // begins threads, too
     std::vector<int> visits;
     for (int call = 0; call < trials(2000); ++call) {
-      const int count = 1 + random.below(20), steps = random.below(2000), failing = random.below(8) == 0 ? random.below(count) : -1;
+      const int count = random.below(20), steps = random.below(2000);
+      const int failing = count > 0 && random.below(8) == 0 ? random.below(count) : -1;
       visits.assign(static_cast<std::size_t>(count), 0);
       const auto body = [&](int index, int worker) {
         if (worker < 0 || worker >= threads) throw std::logic_error("no such worker");
@@ -217,13 +226,16 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
     for (const int threads : {1, 2, 3, 8}) {
       options.threads = threads;
       const PlanResult result = plan(robot, problem, options);
-      if (!first) first = result;
-      expect_same(result, *first);
       ASSERT_EQ(result.status, lazy.status);
       ASSERT_EQ(result.cost, lazy.cost);
       ASSERT_EQ(result.diagnosis.reached_layer, lazy.diagnosis.reached_layer);
       ASSERT_EQ(result.trajectory.size(), lazy.trajectory.size());
       for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, lazy.trajectory[i].q);
+      if (!first) {
+        first = result;
+        continue;
+      }
+      expect_same(result, *first);
       ASSERT_FALSE(HasFailure());
       ++compared;
     }
@@ -231,7 +243,7 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
     solved += first->status == PlanStatus::kSolved;
   }
   std::printf("%d plans compared, %d episodes with regions of hundreds of nodes, %d solved\n", compared, grown, solved);
-  EXPECT_EQ(compared, 4 * trials(20));
+  EXPECT_EQ(compared, 3 * trials(20));
   EXPECT_GE(grown, at_least(5));
   EXPECT_GE(solved, at_least(5));
 }

@@ -22,8 +22,10 @@ struct SearchOutcome {
 };
 
 struct PathFirstOptions {
-  int batch = 1;           ///< questions asked at once; the answers, not their timing, decide what follows
-  int worth_a_round = 64;  ///< questions that take about as long as a repair and the path after it
+  int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
+  /// A path that has failed is asked about further until the round has asked so many questions: they take about as long as a
+  /// repair and the next path.
+  int worth_a_round = 64;
   /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
   /// obstacle blocks more nodes of a finer lattice, and a round costs more.
   int grow = 64, grow_one_in = 64;

@@ -47,11 +47,12 @@ class Validity {
   virtual ~Validity() = default;
   /// Spans of equal size.
   virtual void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) = 0;
-  /// The same on other threads, where there are any, while the caller does `work`, which asks nothing.
+  /// The same on other threads, where there are any, while the caller does `work`; `work` first, where there are none. It asks
+  /// nothing and touches neither span. Where it throws, so does this, and the answers may be missing.
   virtual void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
                             const std::function<void()>& work) {
-    nodes(questions, answers);
     work();
+    nodes(questions, answers);
   }
   /// answers[k] = 1 where questions[k] is valid.
   virtual void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) = 0;
