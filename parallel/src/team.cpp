@@ -100,20 +100,16 @@ void Team::share_some(int first, int count, const std::function<void(int, int)>&
   open.last = static_cast<std::uint64_t>(count);
   open_ = open.word();
   if (asleep_.load() > 0) open_.notify_all();
-  std::exception_ptr failure;
   try {
     if (work) (*work)();
   } catch (...) {
-    failure = std::current_exception();
+    const std::lock_guard lock(failure_mutex_);
+    failure_ = std::current_exception();  // before what body may have thrown
   }
   while (take_one(0)) {
   }
   const auto all_done = [&] { return done_.load() == count; };
   while (!all_done()) look_for(all_done, kLooks);
-  if (failure) {
-    failure_ = nullptr;
-    std::rethrow_exception(failure);
-  }
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 

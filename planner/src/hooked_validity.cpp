@@ -22,9 +22,7 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
 
 void HookedValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
                                   const std::function<void()>& work) {
-  if (!check_) return first_->nodes_beside(questions, answers, work);
-  work();
-  nodes(questions, answers);
+  check_ ? Validity::nodes_beside(questions, answers, work) : first_->nodes_beside(questions, answers, work);
 }
 
 void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

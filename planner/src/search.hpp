@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/plan_options.hpp"

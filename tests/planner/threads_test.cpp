@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cstdio>
 #include <functional>
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <vector>
@@ -138,9 +140,16 @@ TEST(Executor, AProcessThatForksNeedNotWaitForHelpers) {
 }
 #endif
 
-void expect_same(const PlanResult& result, const PlanResult& first) {
+void expect_same_answer(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.status, first.status);
   EXPECT_EQ(result.cost, first.cost);
+  EXPECT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer);
+  ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
+  for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
+}
+
+void expect_same(const PlanResult& result, const PlanResult& first) {
+  expect_same_answer(result, first);
   EXPECT_EQ(result.counters.ik_nodes, first.counters.ik_nodes);
   EXPECT_EQ(result.counters.edges, first.counters.edges);
   EXPECT_EQ(result.counters.fcl_calls, first.counters.fcl_calls);
@@ -149,9 +158,23 @@ void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.counters.nodes_checked, first.counters.nodes_checked);
   EXPECT_EQ(result.counters.edges_checked, first.counters.edges_checked);
   EXPECT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause));
-  EXPECT_EQ(result.diagnosis.reached_layer, first.diagnosis.reached_layer);
-  ASSERT_EQ(result.trajectory.size(), first.trajectory.size());
-  for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, first.trajectory[i].q);
+}
+
+/// The result of plan_with(threads) at the first of these thread counts; those at the others are held against it.
+template <class PlanWith>
+PlanResult compared_at(std::initializer_list<int> thread_counts, const PlanWith& plan_with, int& compared) {
+  std::optional<PlanResult> first;
+  for (const int threads : thread_counts) {
+    const PlanResult result = plan_with(threads);
+    if (!first) {
+      first = result;
+      continue;
+    }
+    expect_same(result, *first);
+    if (testing::Test::HasFailure()) break;
+    ++compared;
+  }
+  return *first;
 }
 
 TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
@@ -161,20 +184,14 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
   for (int trial = 0; trial < trials(20); ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
-    std::optional<PlanResult> first;
-    for (const int threads : {1, 2, 3, 8}) {
+    const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
       options.backend = GetParam();
-      const PlanResult result = plan(problem, options);
-      if (!first) {
-        first = result;
-        continue;
-      }
-      expect_same(result, *first);
-      ASSERT_FALSE(HasFailure());
-      ++compared;
-    }
+      return plan(problem, options);
+    };
+    static_cast<void>(compared_at({1, 2, 3, 8}, plan_with, compared));
+    ASSERT_FALSE(HasFailure());
   }
   EXPECT_EQ(compared, 3 * trials(20));
 }
@@ -187,21 +204,14 @@ TEST_P(Backends, KeptClearancesCountTheSame) {
   int compared = 0, repaired = 0;
   for (int episode = 0; episode < 12; ++episode) {
     const Problem problem = episode_problem(base, 1, episode);
-    std::optional<PlanResult> first;
-    for (const int threads : {1, 2, 4}) {
+    const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
       options.backend = GetParam();
-      const PlanResult result = plan(robot, problem, options);
-      if (!first) {
-        first = result;
-        repaired += result.counters.iterations > 1;
-        continue;
-      }
-      expect_same(result, *first);
-      ASSERT_FALSE(HasFailure());
-      ++compared;
-    }
+      return plan(robot, problem, options);
+    };
+    repaired += compared_at({1, 2, 4}, plan_with, compared).counters.iterations > 1;
+    ASSERT_FALSE(HasFailure());
   }
   std::printf("%d plans compared, %d poses with failures\n", compared, repaired);
   EXPECT_EQ(compared, 24);
@@ -222,25 +232,15 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
     const PlanResult lazy = plan(robot, problem, options);
     ASSERT_GE(lazy.lattice.nodes, 150'000);
     options.planner = PlannerKind::kParallel;
-    std::optional<PlanResult> first;
-    for (const int threads : {1, 2, 3, 8}) {
+    const auto plan_with = [&](int threads) {
       options.threads = threads;
-      const PlanResult result = plan(robot, problem, options);
-      ASSERT_EQ(result.status, lazy.status);
-      ASSERT_EQ(result.cost, lazy.cost);
-      ASSERT_EQ(result.diagnosis.reached_layer, lazy.diagnosis.reached_layer);
-      ASSERT_EQ(result.trajectory.size(), lazy.trajectory.size());
-      for (std::size_t i = 0; i < result.trajectory.size(); ++i) ASSERT_EQ(result.trajectory[i].q, lazy.trajectory[i].q);
-      if (!first) {
-        first = result;
-        continue;
-      }
-      expect_same(result, *first);
-      ASSERT_FALSE(HasFailure());
-      ++compared;
-    }
-    grown += first->counters.nodes_checked > 1000;
-    solved += first->status == PlanStatus::kSolved;
+      return plan(robot, problem, options);
+    };
+    const PlanResult result = compared_at({1, 2, 3, 8}, plan_with, compared);
+    expect_same_answer(result, lazy);
+    ASSERT_FALSE(HasFailure());
+    grown += result.counters.nodes_checked > 1000;
+    solved += result.status == PlanStatus::kSolved;
   }
   std::printf("%d plans compared, %d episodes with regions of hundreds of nodes, %d solved\n", compared, grown, solved);
   EXPECT_EQ(compared, 3 * trials(20));
