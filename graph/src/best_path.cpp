@@ -69,24 +69,55 @@ struct Field {
 };
 
 struct Found {
-  Vertex goal;
+  Vertex last;
+  const SlotPath* then;  // how it goes on; null at the goal
 };
 
 struct Visitor : boost::default_astar_visitor {
-  int goal_layer;
+  EarlierPaths* earlier;
   std::int64_t* expansions;
-  const Budget* budget;
-  Visitor(int goal, std::int64_t* count, const Budget* b) : goal_layer(goal), expansions(count), budget(b) {}
+  Visitor(EarlierPaths* paths, std::int64_t* count) : earlier(paths), expansions(count) {}
   void examine_vertex(Vertex v, const ImplicitLattice& g) const {
     if (v == g.root()) return;
-    if (++*expansions % 16 == 0) budget->poll();
-    if (g.layer_of(v) == goal_layer) throw Found{v};  // the one way out of a Boost.Graph search
+    const CostToGo& values = g.values();
+    if (++*expansions % 16 == 0) values.budget().poll();
+    // An exception is the one way out of a Boost.Graph search.
+    if (g.layer_of(v) == values.goal_layer()) throw Found{v, nullptr};
+    if (const SlotPath* path = earlier ? earlier->from(g.layer_of(v), g.slot_of(v), values) : nullptr) throw Found{v, path};
   }
 };
 
 }  // namespace
 
-SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
+void EarlierPaths::add(const SlotPath& path, const CostToGo& cost_to_go) {
+  if (earlier_.size() == kMost) earlier_.pop_back();
+  Earlier& added = earlier_.emplace_front(Earlier{path, {}});
+  added.values.reserve(path.size());
+  for (int layer = 0; layer < static_cast<int>(path.size()); ++layer)
+    added.values.push_back(cost_to_go.at(layer, path[static_cast<std::size_t>(layer)]));
+}
+
+const SlotPath* EarlierPaths::from(int layer, int slot, const CostToGo& cost_to_go) {
+  for (Earlier& earlier : earlier_)
+    if (earlier.path[static_cast<std::size_t>(layer)] == slot && holds_from(layer, earlier, cost_to_go)) return &earlier.path;
+  return nullptr;
+}
+
+bool EarlierPaths::holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go) {
+  if (layer <= earlier.broken) return false;
+  const auto at = [](int k) { return static_cast<std::size_t>(k); };
+  for (const auto goal = static_cast<int>(earlier.path.size()) - 1; layer <= goal; ++layer) {
+    const int slot = earlier.path[at(layer)];
+    if (cost_to_go.at(layer, slot) != earlier.values[at(layer)] ||
+        (layer < goal && cost_to_go.verdicts().edge(layer, slot, earlier.path[at(layer) + 1]) == Verdict::kRemoved)) {
+      earlier.broken = layer;
+      return false;
+    }
+  }
+  return true;
+}
+
+SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier) {
   const TraceSpan span("best path");
   if (cost_to_go.best() == kUnreachable) return {};
   const ImplicitLattice graph(cost_to_go);
@@ -101,15 +132,16 @@ SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions) {
   record(records, root).distance = 0;
   record(records, root).rank = {cost_to_go.best(), 0};
   try {
-    boost::astar_search_no_init(graph, root, heuristic, Visitor(cost_to_go.goal_layer(), &expansions, &cost_to_go.budget()),
+    boost::astar_search_no_init(graph, root, heuristic, Visitor(earlier, &expansions),
                                 Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
                                 Field<double, &Record::distance>{&records}, ImplicitCostMap{},
                                 Field<boost::default_color_type, &Record::color>{&records},
                                 Field<std::size_t, &Record::index>{&records}, Compare{}, Combine{}, Rank{}, Rank{0, 0});
   } catch (const Found& found) {
     SlotPath path;
-    for (Vertex v = found.goal; v != root; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));
+    for (Vertex v = found.last; v != root; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));
     std::reverse(path.begin(), path.end());
+    if (found.then) path.insert(path.end(), found.then->begin() + static_cast<std::ptrdiff_t>(path.size()), found.then->end());
     return path;
   }
   throw std::logic_error("the cost-to-go knows a path that the search does not find");

@@ -57,8 +57,9 @@ class Search {
     const std::int64_t first_iteration = counters.iterations;
     for (;;) {
       cost_to_go_.budget().poll();
-      const SlotPath path = best_path(cost_to_go_, counters.expansions);
+      const SlotPath path = best_path(cost_to_go_, counters.expansions, &earlier_);
       if (path.empty()) return {};
+      earlier_.add(path, cost_to_go_);
       if (counters.iterations == first_iteration) first_cost_ = cost_to_go_.best();
       counters.candidate = path;
       ++counters.iterations;
@@ -430,6 +431,7 @@ class Search {
   Validity& validity_;
   PathFirstOptions options_;
   bool asks_costs_;
+  EarlierPaths earlier_;
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
   std::int64_t asked_ = 0;               // in this round

@@ -66,8 +66,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
     if (found.outcome.path.empty()) {
       cost_to_go.budget().tell(Stage::kReach);
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
-      std::int64_t expansions = 0;  // no part of the search
-      if (*found.deepest >= 0) found.valid_path = best_path(cost_to_go, expansions);
+      if (*found.deepest >= 0) found.valid_path = searched.candidate;  // which was tried last, and found valid
       time_ms["reach"] = watch.lap();
     }
   } catch (const Stopped&) {

@@ -69,7 +69,7 @@ struct PlainLattice {
 TEST(BestPath, IsThatOfAPlainDescent) {
   const std::uint64_t base = seed("BestPath");
   const auto robots = all_robots();
-  int found = 0, none = 0, ties = 0, changed = 0;
+  int found = 0, none = 0, ties = 0, changed = 0, followed = 0;
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + trial);
@@ -93,7 +93,8 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     const SrsLattice lattice(arm.chain, srs, path, problem);
     const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
     cost_to_go->sweep(lattice.layers() - 1);
-    for (int round = 0; round < 4; ++round) {
+    EarlierPaths earlier;
+    for (int round = 0; round < 8; ++round) {
       const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
                                robot.name + " round " + std::to_string(round);
       const SlotPath wanted = PlainLattice(lattice, cost_to_go->verdicts()).descend(ties);
@@ -102,6 +103,11 @@ TEST(BestPath, IsThatOfAPlainDescent) {
       ++(wanted.empty() ? none : found);
       if (wanted.empty()) break;
       ASSERT_EQ(expansions, lattice.layers()) << what;  // no vertex beside the path
+      std::int64_t fewer = 0;
+      ASSERT_EQ(best_path(*cost_to_go, fewer, &earlier), wanted) << what;
+      ASSERT_LE(fewer, expansions) << what;
+      followed += fewer < expansions;
+      earlier.add(wanted, *cost_to_go);
       const double before = cost_to_go->best();
       const int layer = random.below(lattice.layers() - 1);
       if (random.coin())
@@ -112,10 +118,12 @@ TEST(BestPath, IsThatOfAPlainDescent) {
       changed += cost_to_go->best() != before;
     }
   }
-  std::printf("%d paths, %d lattices without one; %d ties, %d removals changed the optimum\n", found, none, ties, changed);
+  std::printf("%d paths, %d lattices without one; %d ties, %d removals changed the optimum, %d paths went on as an earlier one\n",
+              found, none, ties, changed, followed);
   EXPECT_GE(found, 2 * count);
   EXPECT_GE(ties, at_least(count + 1));
   EXPECT_GE(changed, at_least(count / 4 + 1));
+  EXPECT_GE(followed, at_least(count / 4 + 1));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -12,9 +13,30 @@ namespace swivel {
 /// One slot in each layer 0 ... goal.
 using SlotPath = std::vector<int>;
 
+/// Best paths to one goal, found before more was removed or came to cost something. From a node that one of them went through, and
+/// whose cost-to-go is what it was then, the best path goes on as that one did, as long as that still costs as little: removals
+/// leave fewer ways to keep a cost, so the first of them in slot order stays the first.
+class EarlierPaths {
+ public:
+  void add(const SlotPath& path, const CostToGo& cost_to_go);
+  /// The one that the best path follows from a node of it on; null where none does.
+  [[nodiscard]] const SlotPath* from(int layer, int slot, const CostToGo& cost_to_go);
+
+ private:
+  struct Earlier {
+    SlotPath path;
+    std::vector<double> values;  // cost-to-go of its nodes
+    int broken = -1;             // the deepest layer known to cost more, or to be cut off from the next: for good
+  };
+  [[nodiscard]] static bool holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
+  static constexpr std::size_t kMost = 4;
+  std::deque<Earlier> earlier_;  // the last one first
+};
+
 /// Least-cost path from layer 0 to the goal layer over what CostToGo has not removed, smallest slots first among equals:
-/// Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer. Empty when there is none.
-[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions);
+/// Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer, until it follows an earlier path, where some are
+/// given. Empty when there is none.
+[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier = nullptr);
 
 struct SearchOutcome {
   SlotPath path;  ///< empty: no path exists
