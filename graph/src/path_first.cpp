@@ -28,11 +28,10 @@ class FailFirst {
   void next_round() {
     for (double& score : score_) score *= 0.8;
   }
-  template <class Question>
-  void order(std::vector<Question>& questions) const {
-    std::stable_sort(questions.begin(), questions.end(), [&](const Question& a, const Question& b) {
-      return score_[static_cast<std::size_t>(a.layer)] > score_[static_cast<std::size_t>(b.layer)];
-    });
+  void order(std::vector<int>& layers) const {
+    const auto score = [&](int layer) { return score_[static_cast<std::size_t>(layer)]; };
+    const auto others = std::stable_partition(layers.begin(), layers.end(), [&](int layer) { return score(layer) > 0; });
+    std::stable_sort(layers.begin(), others, [&](int a, int b) { return score(a) > score(b); });
   }
 
  private:
@@ -148,9 +147,6 @@ class Search {
       if (!q) q = cost_to_go_.config(layer, path[static_cast<std::size_t>(layer)]);
       return *q;
     };
-    const auto poll_at = [&](int layer) {
-      if (layer % 64 == 0) cost_to_go_.budget().poll();
-    };
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     asked_ = 0;
     failed_on_path_.clear();
@@ -161,37 +157,32 @@ class Search {
       for (int i = 0; i < layers; ++i)
         if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
     }
-    std::vector<NodeQuestion> nodes;
-    for (int i = 0; i < layers; ++i) {
-      poll_at(i);
-      if (verdicts_.node(i, path[at(i)]) == Verdict::kUnknown) nodes.push_back({i, path[at(i)], joints(i)});
-    }
-    const auto node_unknown = [&](const NodeQuestion& x) { return verdicts_.node(x.layer, x.slot) == Verdict::kUnknown; };
-    if (!all_valid(nodes, node_unknown, layers)) return false;
+    const auto node_unknown = [&](int i) { return verdicts_.node(i, path[at(i)]) == Verdict::kUnknown; };
+    const auto node = [&](int i) { return NodeQuestion{i, path[at(i)], joints(i)}; };
+    if (!all_valid<NodeQuestion>(layers, layers, node_unknown, node)) return false;
     if (!validity_.asks_edges()) return true;
-    std::vector<EdgeQuestion> edges;
-    for (int i = 0; i + 1 < layers; ++i) {
-      poll_at(i);
-      if (verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown)
-        edges.push_back({i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)});
-    }
-    const auto edge_unknown = [&](const EdgeQuestion& x) { return verdicts_.edge(x.layer, x.a, x.b) == Verdict::kUnknown; };
-    return all_valid(edges, edge_unknown, layers);
+    const auto edge_unknown = [&](int i) { return verdicts_.edge(i, path[at(i)], path[at(i + 1)]) == Verdict::kUnknown; };
+    const auto edge = [&](int i) { return EdgeQuestion{i, path[at(i)], path[at(i + 1)], joints(i), joints(i + 1)}; };
+    return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge);
   }
 
-  /// Asks about a path's nodes or edges, and the regions around those that fail. Where some do, the others are asked about all the
-  /// same as long as that costs less than the next round will: many rounds would each find one of them.
-  template <class Question, class Unknown>
-  bool all_valid(std::vector<Question>& questions, const Unknown& unknown, int layers) {
-    fail_first_.order(questions);
-    const auto known = layers - static_cast<std::int64_t>(questions.size());
+  /// Asks about a path's nodes or edges, from layers 0 ... count - 1, and the regions around those that fail. Where some do, the
+  /// others are asked about all the same as long as that costs less than the next round will: many rounds would each find one of
+  /// them.
+  template <class Question, class Unknown, class Make>
+  bool all_valid(int count, int layers, const Unknown& unknown, const Make& question) {
+    std::vector<int> open;
+    for (int i = 0; i < count; ++i)
+      if (unknown(i)) open.push_back(i);
+    fail_first_.order(open);
+    const auto known = layers - static_cast<std::int64_t>(open.size());
     bool all = true;
     std::vector<Question> some;
-    for (std::size_t next = 0; next < questions.size() && (all || asked_ < options_.worth_a_round);) {
+    for (std::size_t next = 0; next < open.size() && (all || asked_ < options_.worth_a_round);) {
       cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
       some.clear();
-      for (; next < questions.size() && some.size() < batch(); ++next)
-        if (unknown(questions[next])) some.push_back(questions[next]);
+      for (; next < open.size() && some.size() < batch(); ++next)
+        if (unknown(open[next])) some.push_back(question(open[next]));
       const auto failed = ask(std::span<const Question>(some));
       for (const auto& x : failed) fail_first_.failed(x.layer);
       if (failed.empty()) continue;
