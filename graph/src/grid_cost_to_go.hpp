@@ -53,7 +53,8 @@ class GridCostToGo final : public CostToGo {
   struct MiddleRanges;
   struct Workspace;
   struct Front;
-  using ColumnSet = std::vector<std::uint8_t>;  // [column]
+  using ColumnSet = std::vector<std::uint8_t>;  // [column], 0: not in it
+  using AngleSet = ColumnSet;                   // the same of angles: bit k of a column is its k-th
 
   /// Joints of one node.
   struct OneNode {
@@ -110,11 +111,14 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
                                  int other) const;
-  /// Columns of the circle that lie in the windows of these.
-  [[nodiscard]] ColumnSet widened(const ColumnSet& columns) const;
+  /// Angles that lie in the windows of these, and of those between two of a column.
+  void widen(const AngleSet& angles, AngleSet& result) const;
   void store_tiles(int family, const Workspace& workspace);
-  /// Whether values differ from those kept, which they replace then; `changed`: of which columns.
-  [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, ColumnSet& changed);
+  /// Takes out of `angles` the columns whose windows hold no value of the layer after, and makes what they held unreachable: nobody
+  /// needs their joints. Whether that changed anything, and where.
+  [[nodiscard]] bool cut_off(int family, int layer, const Workspace& after, AngleSet& angles, AngleSet& changed);
+  /// Whether values of these angles differ from those kept, which they replace then; `changed`: where.
+  [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be

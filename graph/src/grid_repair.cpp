@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What remains of the lattice after removals: values made exact again, and how far layer 0 still reaches.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -94,25 +95,56 @@ void GridCostToGo::compute_removals() {
   raise_limit_until_exact();
 }
 
-GridCostToGo::ColumnSet GridCostToGo::widened(const ColumnSet& columns) const {
+void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
+  static_assert(kTileWidth == 8);
   const int n = lattice_->angles(), window = lattice_->window();
-  ColumnSet result(columns.size(), 0);
-  for (int c = 0; c < tile_columns(); ++c) {
-    if (!columns[static_cast<std::size_t>(c)]) continue;
-    const int first = c * kTileWidth - window, last = std::min(n, (c + 1) * kTileWidth) - 1 + window;
-    if (last - first + 1 >= n) return ColumnSet(columns.size(), 1);
-    for (int j = first, next = 0; j <= last; j += next) {
-      const int angle = j < 0 ? j + n : j >= n ? j - n : j, column = angle / kTileWidth;
-      result[static_cast<std::size_t>(column)] = 1;
-      next = std::min(n, (column + 1) * kTileWidth) - angle;
+  result.assign(angles.size(), 0);
+  const auto add = [&](int first, int last) {
+    for (int column = first / kTileWidth; column <= last / kTileWidth; ++column) {
+      const int low = std::max(0, first - column * kTileWidth), high = std::min(kTileWidth - 1, last - column * kTileWidth);
+      result[static_cast<std::size_t>(column)] |= static_cast<std::uint8_t>(0xff << low & 0xff >> (kTileWidth - 1 - high));
     }
+  };
+  for (int column = 0; column < tile_columns(); ++column) {
+    const std::uint8_t bits = angles[static_cast<std::size_t>(column)];
+    if (bits == 0) continue;
+    const int first = column * kTileWidth + std::countr_zero(bits) - window;
+    const int last = column * kTileWidth + std::bit_width(bits) - 1 + window;
+    if (last - first + 1 >= n) {
+      add(0, n - 1);
+      break;
+    }
+    if (first < 0) add(first + n, n - 1);
+    add(std::max(0, first), std::min(n - 1, last));
+    if (last >= n) add(0, last - n);
   }
-  return result;
 }
 
-/// What of a family's values has changed on the way down: columns of the layer after, of any sheet, and of this one.
+bool GridCostToGo::cut_off(int family, int layer, const Workspace& after, AngleSet& angles, AngleSet& changed) {
+  bool any = false;
+  for (int column = 0; column < tile_columns(); ++column) {
+    const auto c = static_cast<std::size_t>(column);
+    if (angles[c] == 0 || after.half(family).reached[c]) continue;
+    for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet) {
+      const std::size_t tile = tile_index(layer, sheet, column);
+      if (!tiles_of(sheet).holds(tile)) continue;
+      TileTable::Costs& costs = tiles_of(sheet).hold(tile);
+      for (unsigned k = 0; k < kTileWidth; ++k) {
+        if (!(angles[c] >> k & 1) || costs[k] == kUnreachable) continue;
+        costs[k] = kUnreachable;
+        changed[c] = static_cast<std::uint8_t>(changed[c] | 1u << k);
+        any = true;
+      }
+    }
+    angles[c] = 0;
+  }
+  return any;
+}
+
+/// What of a family's values has changed on the way down: angles of the layer after, of any sheet, and of this one.
 struct alignas(64) GridCostToGo::Front {
-  ColumnSet after, here;
+  AngleSet after, here;
+  AngleSet dependent, needed;  // angles of this layer that may change for it, and of the layer after that decide these
   bool any_after = false, any_here = false;
   void next_layer() {
     after.swap(here);
@@ -132,12 +164,13 @@ void GridCostToGo::propagate_removals() {
   auto& pending = verdicts_.pending;
   while (!pending.empty() && pending.rbegin()->first > goal_) pending.erase(std::prev(pending.end()));
   std::array<Front, SrsLattice::kFamilies> fronts;
-  for (Front& front : fronts) front.after = front.here = ColumnSet(static_cast<std::size_t>(tile_columns()), 0);
+  for (Front& front : fronts) front.after = front.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
   const auto set = [&](int layer, int slot, double value) {
     if (at(layer, slot) == value) return;
     value_at(layer, slot) = value;
     Front& front = fronts[static_cast<std::size_t>(lattice_->family_of(lattice_->sheet_of(slot)))];
-    front.here[static_cast<std::size_t>(lattice_->angle_of(slot) / kTileWidth)] = 1;
+    const int angle = lattice_->angle_of(slot);
+    front.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
     front.any_here = true;
   };
   const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->sheet_of(slot)) == family; };
@@ -151,10 +184,12 @@ void GridCostToGo::propagate_removals() {
     for (const int slot : now.nodes)
       if (of_family(family, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
   };
-  const auto load = [&](int family, int layer, const ColumnSet& dependent) {
-    load_tiles(family, layer + 1, widened(dependent), workspace(layer + 1));
+  // Finds what depends on the changes of the layer after, and what of that layer it depends on.
+  const auto load_after = [&](int family, int layer, Front& front) {
+    widen(front.after, front.dependent);
+    widen(front.dependent, front.needed);
+    load_tiles(family, layer + 1, front.needed, workspace(layer + 1));
     publish_values(family, workspace(layer + 1));
-    load_tiles(family, layer, dependent, workspace(layer));
   };
   const auto relax_loaded = [&](int family, int layer) {
     relax(family, layer, workspace(layer), workspace(layer + 1));
@@ -163,7 +198,7 @@ void GridCostToGo::propagate_removals() {
   };
   const auto settle = [&](int family, int layer, Front& front) {
     prune_above_limit(family, workspace(layer));
-    if (renew_tiles(family, workspace(layer), front.here)) front.any_here = true;
+    if (renew_tiles(family, workspace(layer), front.dependent, front.here)) front.any_here = true;
   };
   const auto goes_alone = [&](int layer) {
     const auto now = pending.find(layer);
@@ -181,7 +216,9 @@ void GridCostToGo::propagate_removals() {
           const auto now = pending.find(here);
           if (now != pending.end()) raise(family, here, now->second);
           if (front.any_after) {
-            load(family, here, widened(front.after));
+            load_after(family, here, front);
+            if (cut_off(family, here, workspace(here + 1), front.dependent, front.here)) front.any_here = true;
+            load_tiles(family, here, front.dependent, workspace(here));
             relax_loaded(family, here);
             settle(family, here, front);
           }
@@ -201,8 +238,11 @@ void GridCostToGo::propagate_removals() {
         const int slot = lattice_->start_slot();
         if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
       } else if (any) {
-        const ColumnSet dependent = widened(fronts[0].after);
-        by_family([&](int family) { load(family, layer, dependent); });
+        by_family([&](int family) {
+          Front& front = fronts[static_cast<std::size_t>(family)];
+          load_after(family, layer, front);
+          load_tiles(family, layer, front.dependent, workspace(layer));
+        });
         by_family([&](int family) { relax_loaded(family, layer); });
         relax_removed(layer);
         for (int family = 0; family < SrsLattice::kFamilies; ++family)

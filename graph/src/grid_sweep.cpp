@@ -98,17 +98,21 @@ void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, W
     }
 }
 
-bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, ColumnSet& changed) {
+bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed) {
   const int n = lattice_->angles();
   bool any = false;
   for (const Tile& tile : workspace.half(family).tiles) {
+    const auto column = static_cast<std::size_t>(tile.column);
     const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n + tile.begin();
     TileTable::Costs& known = tiles_of(tile.sheet).hold(tile_index(workspace.half(family).layer, tile.sheet, tile.column));
-    const auto count = static_cast<std::size_t>(tile.end(n) - tile.begin());
-    if (std::equal(values, values + count, known.begin())) continue;
-    std::copy_n(values, count, known.begin());
-    changed[static_cast<std::size_t>(tile.column)] = 1;
-    any = true;
+    unsigned differ = 0;
+    for (unsigned k = 0; k < static_cast<unsigned>(tile.end(n) - tile.begin()); ++k) {
+      if (!(angles[column] >> k & 1) || values[k] == known[k]) continue;
+      known[k] = values[k];
+      differ |= 1u << k;
+    }
+    changed[column] = static_cast<std::uint8_t>(changed[column] | differ);
+    any = any || differ != 0;
   }
   return any;
 }
