@@ -3,7 +3,8 @@
 // a backward dynamic program over all layers, repaired after every removal, so what it says of a node is the cost of the best path
 // that is left from there, and not just a lower bound. With an exact heuristic, distance + heuristic is the same at every vertex of
 // a best path, and larger at all others, which ImplicitLattice does not even list. So A* walks straight to the goal and expands one
-// vertex a layer. Costs are multiples of one unit and their sums exact, so that equal costs compare equal.
+// vertex a layer, until it comes to where an earlier path holds (EarlierPaths). Costs are multiples of one unit and their sums
+// exact, so that equal costs compare equal.
 #include <algorithm>
 #include <boost/graph/astar_search.hpp>
 #include <stdexcept>
@@ -90,6 +91,7 @@ struct Visitor : boost::default_astar_visitor {
 }  // namespace
 
 void EarlierPaths::add(const SlotPath& path, const CostToGo& cost_to_go) {
+  if (path.empty()) return;
   if (earlier_.size() == kMost) earlier_.pop_back();
   Earlier& added = earlier_.emplace_front(Earlier{path, {}});
   added.values.reserve(path.size());
@@ -98,15 +100,18 @@ void EarlierPaths::add(const SlotPath& path, const CostToGo& cost_to_go) {
 }
 
 const SlotPath* EarlierPaths::from(int layer, int slot, const CostToGo& cost_to_go) {
-  for (Earlier& earlier : earlier_)
-    if (earlier.path[static_cast<std::size_t>(layer)] == slot && holds_from(layer, earlier, cost_to_go)) return &earlier.path;
+  for (Earlier& earlier : earlier_) {
+    const bool of_goal = static_cast<int>(earlier.path.size()) == cost_to_go.goal_layer() + 1;
+    if (of_goal && earlier.path[static_cast<std::size_t>(layer)] == slot && holds_from(layer, earlier, cost_to_go))
+      return &earlier.path;
+  }
   return nullptr;
 }
 
 bool EarlierPaths::holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go) {
   if (layer <= earlier.broken) return false;
   const auto at = [](int k) { return static_cast<std::size_t>(k); };
-  for (const auto goal = static_cast<int>(earlier.path.size()) - 1; layer <= goal; ++layer) {
+  for (const int goal = cost_to_go.goal_layer(); layer <= goal; ++layer) {
     const int slot = earlier.path[at(layer)];
     if (cost_to_go.at(layer, slot) != earlier.values[at(layer)] ||
         (layer < goal && cost_to_go.verdicts().edge(layer, slot, earlier.path[at(layer) + 1]) == Verdict::kRemoved)) {
@@ -120,6 +125,7 @@ bool EarlierPaths::holds_from(int layer, Earlier& earlier, const CostToGo& cost_
 SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier) {
   const TraceSpan span("best path");
   if (cost_to_go.best() == kUnreachable) return {};
+  if (cost_to_go.best() >= EarlierPaths::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
   const ImplicitLattice graph(cost_to_go);
   Records records;
   records.reserve(static_cast<std::size_t>(4 * cost_to_go.goal_layer() + 64));

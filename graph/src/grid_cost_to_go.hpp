@@ -54,7 +54,8 @@ class GridCostToGo final : public CostToGo {
   struct Workspace;
   struct Front;
   using ColumnSet = std::vector<std::uint8_t>;  // [column], 0: not in it
-  using AngleSet = ColumnSet;                   // the same of angles: bit k of a column is its k-th
+  /// Bit k of a column is its k-th angle. It serves as the set of columns that hold any, too.
+  using AngleSet = ColumnSet;
 
   /// Joints of one node.
   struct OneNode {
@@ -111,13 +112,14 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
                                  int other) const;
-  /// Angles that lie in the windows of these, and of those between two of a column.
+  /// Angles that lie in the windows of these; gaps between two of a column are filled, so it may be some more.
   void widen(const AngleSet& angles, AngleSet& result) const;
   void store_tiles(int family, const Workspace& workspace);
   /// Takes out of `angles` the columns whose windows hold no value of the layer after, and makes what they held unreachable: nobody
-  /// needs their joints. Whether that changed anything, and where.
+  /// needs their joints. Only where the family goes alone, once `after` is published. Whether that changed anything, and where.
   [[nodiscard]] bool cut_off(int family, int layer, const Workspace& after, AngleSet& angles, AngleSet& changed);
-  /// Whether values of these angles differ from those kept, which they replace then; `changed`: where.
+  /// Whether values of these angles differ from those kept, which they replace then; `changed`: where. What the workspace holds of
+  /// other angles of their columns may be too much, since not all of their windows were loaded.
   [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);

@@ -102,7 +102,7 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
   const auto add = [&](int first, int last) {
     for (int column = first / kTileWidth; column <= last / kTileWidth; ++column) {
       const int low = std::max(0, first - column * kTileWidth), high = std::min(kTileWidth - 1, last - column * kTileWidth);
-      result[static_cast<std::size_t>(column)] |= static_cast<std::uint8_t>(0xff << low & 0xff >> (kTileWidth - 1 - high));
+      result[static_cast<std::size_t>(column)] |= static_cast<std::uint8_t>((0xff << low) & (0xff >> (kTileWidth - 1 - high)));
     }
   };
   for (int column = 0; column < tile_columns(); ++column) {

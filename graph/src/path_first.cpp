@@ -30,6 +30,7 @@ class FailFirst {
   }
   void order(std::vector<int>& layers) const {
     const auto score = [&](int layer) { return score_[static_cast<std::size_t>(layer)]; };
+    // Most layers never failed.
     const auto others = std::stable_partition(layers.begin(), layers.end(), [&](int layer) { return score(layer) > 0; });
     std::stable_sort(layers.begin(), others, [&](int a, int b) { return score(a) > score(b); });
   }
@@ -141,7 +142,7 @@ class Search {
   bool valid(const SlotPath& path) {
     const TraceSpan span("candidate path");
     const int layers = static_cast<int>(path.size());
-    std::vector<std::optional<Config>> solved(path.size());  // where anything is unknown
+    std::vector<std::optional<Config>> solved(path.size());  // of layers that are asked about
     const auto joints = [&](int layer) -> const Config& {
       auto& q = solved[static_cast<std::size_t>(layer)];
       if (!q) q = cost_to_go_.config(layer, path[static_cast<std::size_t>(layer)]);
@@ -179,7 +180,7 @@ class Search {
     bool all = true;
     std::vector<Question> some;
     for (std::size_t next = 0; next < open.size() && (all || asked_ < options_.worth_a_round);) {
-      cost_to_go_.budget().tell(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
+      cost_to_go_.budget().poll(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
       some.clear();
       for (; next < open.size() && some.size() < batch(); ++next)
         if (unknown(open[next])) some.push_back(question(open[next]));

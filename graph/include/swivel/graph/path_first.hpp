@@ -13,20 +13,24 @@ namespace swivel {
 /// One slot in each layer 0 ... goal.
 using SlotPath = std::vector<int>;
 
-/// Best paths to one goal, found before more was removed or came to cost something. From a node that one of them went through, and
-/// whose cost-to-go is what it was then, the best path goes on as that one did, as long as that still costs as little: removals
-/// leave fewer ways to keep a cost, so the first of them in slot order stays the first.
+/// Best paths found before in one cost-to-go, between sweeps to a goal, while ever more was removed or came to cost something. From
+/// a node that one of them went through, and whose cost-to-go is what it was then, the best path goes on as that one did, as long
+/// as that still costs as little: removals leave fewer ways to keep a cost, so the first of them in slot order stays the first.
+/// That takes sums of costs that are exact: paths of kExact units (Lattice::cost_unit) and more are not followed.
 class EarlierPaths {
  public:
+  static constexpr double kExact = 0x1p13;  // costs are multiples of 2^-40 of a unit, and a double has 53 bits
+
+  /// Of a cost-to-go that is not being repaired; empty paths are left out.
   void add(const SlotPath& path, const CostToGo& cost_to_go);
-  /// The one that the best path follows from a node of it on; null where none does.
+  /// The earlier path that the best path follows from this node on, until the next add(); null where there is none.
   [[nodiscard]] const SlotPath* from(int layer, int slot, const CostToGo& cost_to_go);
 
  private:
   struct Earlier {
     SlotPath path;
     std::vector<double> values;  // cost-to-go of its nodes
-    int broken = -1;             // the deepest layer known to cost more, or to be cut off from the next: for good
+    int broken = -1;  // the deepest layer found to cost more, or to be cut off from the next: up to there it is not followed
   };
   [[nodiscard]] static bool holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
   static constexpr std::size_t kMost = 4;
