@@ -126,5 +126,34 @@ TEST(BestPath, IsThatOfAPlainDescent) {
   EXPECT_GE(followed, at_least(count / 4 + 1));
 }
 
+TEST(BestPath, FollowsNoEarlierOneWhereSumsAreRounded) {
+  const TestRobot robot = all_robots().front();
+  const ArmModel arm = arm_of(robot);
+  const SrsArm srs = fit_srs(arm.chain, robot.name);
+  Random random(seed("BestPath.Rounded"));
+  const Config q0 = random_config(arm.chain, random);
+  Problem problem = problem_for(robot);
+  problem.waypoints = {waypoint_of(arm.chain.tool(q0)), waypoint_of(arm.chain.tool(q0))};
+  problem.waypoints[1].position.x() += 0.02;
+  problem.resolution = {.ds = 0.001, .dphi = 0.2, .dalpha = 10};
+  problem.limits.arm_slope = 2 * problem.resolution.dphi / problem.resolution.ds;
+  const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
+  const SrsLattice lattice(arm.chain, srs, path, problem);
+  ASSERT_GT(lattice.layers(), 9);
+  for (const double units : {1.0, 1000.0}) {  // of each node; in sum some 20, or more than kExact
+    const auto cost_to_go = make_cost_to_go(lattice);
+    for (int layer = 0; layer < lattice.layers(); ++layer)
+      for (int slot = 0; slot < lattice.width(); ++slot) cost_to_go->verdicts().set_cost(layer, slot, units * lattice.cost_unit());
+    cost_to_go->sweep(lattice.layers() - 1);
+    EarlierPaths earlier;
+    std::int64_t first = 0, again = 0;
+    const SlotPath best = best_path(*cost_to_go, first, &earlier);
+    ASSERT_EQ(first, lattice.layers());
+    earlier.add(best, *cost_to_go);
+    EXPECT_EQ(best_path(*cost_to_go, again, &earlier), best);
+    EXPECT_EQ(again, units < 2 ? 1 : lattice.layers());
+  }
+}
+
 }  // namespace
 }  // namespace swivel
