@@ -99,7 +99,9 @@ class GridCostToGo final : public CostToGo {
   void find_ranges(LayerJoints& joints, int family, int column) const;
   void begin(int family, int layer, Workspace& workspace) const;
   void begin_with_all(int family, int layer, Workspace& workspace);  // every node at cost 0
-  void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace);
+  /// Values of columns, and their joints. Columns that are not among those reached, where these are given, come to no value and
+  /// need no joints.
+  void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
   void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
   void relax(int family, int step_layer, Workspace& from, const Workspace& to);
   void relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other, double* best);
@@ -115,9 +117,6 @@ class GridCostToGo final : public CostToGo {
   /// Angles that lie in the windows of these; gaps between two of a column are filled, so it may be some more.
   void widen(const AngleSet& angles, AngleSet& result) const;
   void store_tiles(int family, const Workspace& workspace);
-  /// Takes out of `angles` the columns whose windows hold no value of the layer after, and makes what they held unreachable: nobody
-  /// needs their joints. Only where the family goes alone, once `after` is published. Whether that changed anything, and where.
-  [[nodiscard]] bool cut_off(int family, int layer, const Workspace& after, AngleSet& angles, AngleSet& changed);
   /// Whether values of these angles differ from those kept, which they replace then; `changed`: where. What the workspace holds of
   /// other angles of their columns may be too much, since not all of their windows were loaded.
   [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);

@@ -119,6 +119,7 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
     double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
     std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
   }
+  if (!here.joints) return;  // no column is reached
   std::array<bool, SrsLattice::kFamilies> meets;
   for (int other = 0; other < SrsLattice::kFamilies; ++other)
     meets[static_cast<std::size_t>(other)] = lattice_->families_meet(step_layer, here.layer, family, to.half(family).layer, other);

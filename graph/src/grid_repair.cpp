@@ -120,27 +120,6 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
   }
 }
 
-bool GridCostToGo::cut_off(int family, int layer, const Workspace& after, AngleSet& angles, AngleSet& changed) {
-  bool any = false;
-  for (int column = 0; column < tile_columns(); ++column) {
-    const auto c = static_cast<std::size_t>(column);
-    if (angles[c] == 0 || after.half(family).reached[c]) continue;
-    for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet) {
-      const std::size_t tile = tile_index(layer, sheet, column);
-      if (!tiles_of(sheet).holds(tile)) continue;
-      TileTable::Costs& costs = tiles_of(sheet).hold(tile);
-      for (unsigned k = 0; k < kTileWidth; ++k) {
-        if (!(angles[c] >> k & 1) || costs[k] == kUnreachable) continue;
-        costs[k] = kUnreachable;
-        changed[c] = static_cast<std::uint8_t>(changed[c] | 1u << k);
-        any = true;
-      }
-    }
-    angles[c] = 0;
-  }
-  return any;
-}
-
 /// What of a family's values has changed on the way down: angles of the layer after, of any sheet, and of this one.
 struct alignas(64) GridCostToGo::Front {
   AngleSet after, here;
@@ -217,8 +196,7 @@ void GridCostToGo::propagate_removals() {
           if (now != pending.end()) raise(family, here, now->second);
           if (front.any_after) {
             load_after(family, here, front);
-            if (cut_off(family, here, workspace(here + 1), front.dependent, front.here)) front.any_here = true;
-            load_tiles(family, here, front.dependent, workspace(here));
+            load_tiles(family, here, front.dependent, workspace(here), &workspace(here + 1).half(family).reached);
             relax_loaded(family, here);
             settle(family, here, front);
           }

@@ -82,7 +82,7 @@ void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
   }
 }
 
-void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace) {
+void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached) {
   begin(family, layer, workspace);
   const int n = lattice_->angles();
   for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
@@ -91,8 +91,10 @@ void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, W
       if (!columns[static_cast<std::size_t>(column)] || !tiles_of(sheet).holds(held)) continue;
       const TileTable::Costs& costs = tiles_of(sheet)[held];
       if (*std::min_element(costs.begin(), costs.end()) == kUnreachable) continue;
+      const bool live = !reached || (*reached)[static_cast<std::size_t>(column)];
+      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{sheet, column, live});
+      if (!live) continue;
       solve_columns(workspace, family, column, column + 1);
-      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{sheet, column, true});
       std::copy_n(costs.begin(), tile.end(n) - tile.begin(),
                   workspace.row.begin() + static_cast<std::ptrdiff_t>(sheet) * n + tile.begin());
     }

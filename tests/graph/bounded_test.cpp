@@ -132,13 +132,16 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
                                  std::to_string(static_cast<int>(problem.cost.metric));
         ++rounds;
         ASSERT_EQ(bounded.best(), whole.best()) << what;
-        std::int64_t expansions = 0, fewer = 0, as_few = 0;
+        std::int64_t expansions = 0, same_expansions = 0, fewer = 0, as_few = 0;
         const SlotPath best = best_path(whole, expansions);
+        ASSERT_EQ(best_path(bounded, same_expansions), best) << what;
+        ASSERT_EQ(expansions, same_expansions) << what;
         ASSERT_EQ(best_path(bounded, fewer, &of_bounded), best) << what;
         ASSERT_LE(fewer, expansions) << what;
         followed += fewer < expansions;
         of_bounded.add(best, bounded);
         if (shares) {
+          ASSERT_EQ(best_path(shared, same_expansions), best);
           ASSERT_EQ(best_path(shared, as_few, &of_shared), best);
           ASSERT_EQ(as_few, fewer) << what;
           of_shared.add(best, shared);

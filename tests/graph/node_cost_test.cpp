@@ -143,8 +143,10 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         std::int64_t expansions = 0, fewer = 0;
         ASSERT_EQ(best_path(whole, expansions), best) << what;
         ASSERT_EQ(best_path(bounded, fewer, &earlier), best) << what;
+        ASSERT_LE(fewer, expansions) << what;
         followed += fewer < expansions;
         earlier.add(best, bounded);
+        ASSERT_EQ(best_path(bounded, expansions), best) << what;
         if (open) {
           ++listed_rounds;
           SlotPath there = best_path(*listed, expansions);
