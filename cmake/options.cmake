@@ -4,6 +4,7 @@ option(SWIVEL_BENCH "Build the benchmarks" OFF)
 option(SWIVEL_WERROR "Treat warnings as errors" OFF)
 option(SWIVEL_DEB "Make Debian packages by CPack: needs dpkg-dev and help2man" OFF)
 option(SWIVEL_FRAME_POINTERS "Keep frame pointers, for profilers" OFF)
+option(SWIVEL_PRECOMPILE "Precompile the headers that most sources include" ON)
 set(SWIVEL_SANITIZE "" CACHE STRING "Sanitizers, e.g. address,undefined or thread")
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -40,10 +41,22 @@ if(SWIVEL_SANITIZE)
   target_link_options(swivel_settings INTERFACE -fsanitize=${SWIVEL_SANITIZE})
 endif()
 
-# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PKG_CONFIG -lflag ...): one library, one include root, one layer,
-# installed. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
+# Headers of the standard library and of Eigen that nearly every source includes.
+set(SWIVEL_COMMON_HEADERS <Eigen/Geometry> <Eigen/LU> <algorithm> <array> <atomic> <cmath> <cstdint> <cstdio> <filesystem> <functional> <map>
+  <memory> <mutex> <numeric> <optional> <span> <sstream> <stdexcept> <string> <string_view> <thread> <unordered_map> <utility> <variant> <vector>)
+
+# swivel_precompile(TARGET <header> ...): compiles these headers once for all sources of the target. Sources still include what they use:
+# SWIVEL_PRECOMPILE=OFF builds without.
+function(swivel_precompile target)
+  if(SWIVEL_PRECOMPILE AND ARGN)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PRECOMPILE <header> ... PKG_CONFIG -lflag ...): one library, one
+# include root, one layer, installed. PRECOMPILE: headers to compile once. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)
-  cmake_parse_arguments(arg "" "HEADERS" "SOURCES;PUBLIC;PRIVATE;PKG_CONFIG" ${ARGN})
+  cmake_parse_arguments(arg "" "HEADERS" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PKG_CONFIG" ${ARGN})
   set(library swivel_${name})
   if(NOT arg_HEADERS)
     set(arg_HEADERS include)
@@ -51,6 +64,7 @@ function(swivel_component name)
   if(arg_SOURCES)
     set(scope PUBLIC)
     add_library(${library} ${arg_SOURCES})
+    swivel_precompile(${library} ${arg_PRECOMPILE})
     target_link_libraries(${library} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
     # Position-independent, so that plugins and modules of other languages may hold static libraries. What a library calls of its own is
     # its own, never a namesake of the program's, which other compiler options may have given other bits.
@@ -113,6 +127,8 @@ endfunction()
 function(swivel_isa_kernels name prefix)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     target_sources(swivel_${name} PRIVATE ${prefix}_avx2.cpp ${prefix}_avx512.cpp)
+    # Headers that were compiled for another instruction set do not serve here.
+    set_source_files_properties(${prefix}_avx2.cpp ${prefix}_avx512.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
     set_source_files_properties(${prefix}_avx2.cpp PROPERTIES COMPILE_OPTIONS "-O3;-mavx2")
     set_source_files_properties(${prefix}_avx512.cpp PROPERTIES COMPILE_OPTIONS "-O3;-mavx512f;-mavx512dq;-mavx512vl;-mprefer-vector-width=512")
     target_compile_definitions(swivel_${name} PRIVATE SWIVEL_X86_KERNELS)
