@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
@@ -107,22 +108,6 @@ struct Options {
   std::uint64_t count = 20, seed = 1, rounds = 3;
   std::vector<std::string> files;
 };
-Options options_of(int argc, char** argv) {
-  Options options;
-  for (int k = 1; k < argc; ++k) {
-    const std::string word = argv[k];
-    if ((word == "--count" || word == "--seed" || word == "--rounds") && k + 1 < argc)
-      (word == "--count"  ? options.count
-       : word == "--seed" ? options.seed
-                          : options.rounds) = std::strtoull(argv[++k], nullptr, 10);
-    else if (word[0] != '-')
-      options.files.push_back(word);
-    else
-      throw InputError("arc_benchmark: " + word + ": allowed are --count N, --seed N, --rounds N and problems");
-  }
-  if (options.files.empty()) throw InputError("arc_benchmark [--count N] [--seed N] [--rounds N] PROBLEM.yaml...");
-  return options;
-}
 
 void run(const Options& options, const std::string& file) {
   constexpr std::uint64_t kMostTries = 1000;  // of each path asked for
@@ -164,8 +149,21 @@ void run(const Options& options, const std::string& file) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("Where the time of a plan goes on arms without an arm angle: random straight paths without obstacles.",
+               "arc_benchmark");
+  app.add_option("problems", options.files, "problem files, for robot, roll, limits and cost")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--count", options.count, "paths that are solved, of each problem")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--seed", options.seed, "of the random paths")->capture_default_str();
+  app.add_option("--rounds", options.rounds, "plans of each path, of which the fastest counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
-    const Options options = options_of(argc, argv);
     for (const std::string& file : options.files) run(options, file);
     return 0;
   } catch (const std::exception& error) {

@@ -9,11 +9,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "basin_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
@@ -30,35 +32,6 @@ struct Options {
   std::optional<CostMetric> metric;
   bench::BasinLattice::Rules rules;
 };
-
-CostMetric metric_of(const std::string& name) {
-  if (name == "l2") return CostMetric::kL2;
-  if (name == "max") return CostMetric::kMax;
-  if (name == "time") return CostMetric::kTime;
-  throw InputError("basin_benchmark: --metric " + name + ": allowed are l2, max, time");
-}
-
-Options options_of(int argc, char** argv) {
-  Options options;
-  for (int k = 1; k < argc; ++k) {
-    const std::string word = argv[k];
-    if (word == "--about")
-      options.rules.about_path = true;
-    else if (word == "--margins")
-      options.rules.margins = true;
-    else if ((word == "--episodes" || word == "--first") && k + 1 < argc)
-      (word == "--first" ? options.first : options.episodes) = std::strtoull(argv[++k], nullptr, 10);
-    else if (word == "--metric" && k + 1 < argc)
-      options.metric = metric_of(argv[++k]);
-    else if (options.file.empty() && word[0] != '-')
-      options.file = word;
-    else
-      throw InputError("basin_benchmark: " + word + ": allowed are a problem, --episodes, --first, --metric, --about, --margins");
-  }
-  if (options.file.empty())
-    throw InputError("basin_benchmark PROBLEM.yaml [--episodes N] [--first N] [--metric l2|max|time] [--about] [--margins]");
-  return options;
-}
 
 double percentile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -99,8 +72,19 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Options options;
+  const std::map<std::string, CostMetric> metrics{{"l2", CostMetric::kL2}, {"max", CostMetric::kMax}, {"time", CostMetric::kTime}};
+  CLI::App app("How near refined paths come to the optimum of their basin: their cost over that of a fine lattice about them.",
+               "basin_benchmark");
+  app.add_option("problem", options.file, "problem file; without `vary` it is planned once")->required()->check(CLI::ExistingFile);
+  app.add_option("--episodes", options.episodes, "poses of seed 1")->check(CLI::PositiveNumber)->capture_default_str();
+  app.add_option("--first", options.first, "number of the first pose")->capture_default_str();
+  app.add_option("--metric", options.metric, "in place of the problem's")->transform(CLI::CheckedTransformer(metrics));
+  app.add_flag("--about", options.rules.about_path, "lattices that have the refined path in them");
+  app.add_flag("--margins", options.rules.margins, "nodes keep what refinement keeps besides");
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
-    run(options_of(argc, argv));
+    run(options);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

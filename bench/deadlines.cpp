@@ -7,6 +7,7 @@
 #include <ctime>
 #include <vector>
 
+#include "arguments.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -23,7 +24,10 @@ double cpu_ms() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int times = argc > 1 ? std::atoi(argv[1]) : 100;
+  int times = 100;
+  CLI::App app("How late a plan ends whose time is over, in time of its thread's processor.", "deadlines");
+  app.add_option("times", times, "plans of each size and deadline")->check(CLI::PositiveNumber)->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   struct Size {
     double ds, dphi;
   };

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
@@ -151,24 +152,6 @@ struct Options {
   std::uint64_t count = 500, first = 0, seed = 1, rounds = 3;
   std::vector<std::string> files;
 };
-Options options_of(int argc, char** argv) {
-  Options options;
-  for (int k = 1; k < argc; ++k) {
-    const std::string word = argv[k];
-    if ((word == "--count" || word == "--first" || word == "--seed" || word == "--rounds") && k + 1 < argc)
-      (word == "--count"   ? options.count
-       : word == "--first" ? options.first
-       : word == "--seed"  ? options.seed
-                           : options.rounds) = std::strtoull(argv[++k], nullptr, 10);
-    else if (word[0] != '-')
-      options.files.push_back(word);
-    else
-      throw InputError("eager_ratios: " + word + ": allowed are --count N, --first N, --seed N, --rounds N and problems");
-  }
-  if (options.files.empty()) throw InputError("eager_ratios [--count N] [--first N] [--seed N] [--rounds N] PROBLEM.yaml...");
-  if (options.rounds == 0) throw InputError("eager_ratios: --rounds: allowed are whole numbers from 1 on");
-  return options;
-}
 
 void run(const Options& options) {
   std::vector<Problem> problems;
@@ -211,8 +194,19 @@ void run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("How much sooner `lazy` answers than `eager_dp` on random problems of the robots that the given problems have.",
+               "eager_ratios");
+  app.add_option("problems", options.files, "problem files, for their robots")->required()->check(CLI::ExistingFile);
+  app.add_option("--count", options.count, "random problems, robots one after the other")->capture_default_str();
+  app.add_option("--first", options.first, "number of the first random problem")->capture_default_str();
+  app.add_option("--seed", options.seed, "of the random problems")->capture_default_str();
+  app.add_option("--rounds", options.rounds, "plans of each, of which the median counts")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
-    run(options_of(argc, argv));
+    run(options);
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -15,6 +15,7 @@
 #ifdef SWIVEL_OMPL
 #include "constrained_sampling.hpp"
 #endif
+#include "arguments.hpp"
 #include "context.hpp"
 #include "settings.hpp"
 #include "swivel/core/campaign.hpp"
@@ -177,18 +178,20 @@ json run(const Problem& base, std::uint64_t episodes) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const long episodes = argc == 3 ? std::strtol(argv[2], nullptr, 10) : 100;
-  if (argc < 2 || argc > 3 || episodes < 1) {
-    std::fprintf(stderr, "usage: experiment_c OUT.json [EPISODES]\n");
-    return 2;
-  }
+  std::string file;
+  std::uint64_t episodes = 100;
+  CLI::App app(
+      "Experiment C of the paper: the door at random poses, by every method of Table I and by the planners of this project.",
+      "experiment_c");
+  app.add_option("out", file, "file for the results, JSON")->required();
+  app.add_option("episodes", episodes, "random poses")->check(CLI::PositiveNumber)->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
     json out;
     for (const auto& [key, value] : bench::context()) out["context"][key] = value;
     out["seed"] = kSeed;
-    out["rows"] = run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"),
-                      static_cast<std::uint64_t>(episodes));
-    io::write_file(argv[1], out.dump(1) + "\n");
+    out["rows"] = run(io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems/experiment_c.yaml"), episodes);
+    io::write_file(file, out.dump(1) + "\n");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "experiment_c: %s\n", error.what());
     return 2;

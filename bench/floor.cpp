@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 #include <vector>
 
 using Eigen::Matrix3d;
@@ -176,6 +177,12 @@ double median(std::vector<double> v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && (argc > 4 || argv[1][0] == '-')) {
+    const bool help = std::string_view(argv[1]) == "--help" || std::string_view(argv[1]) == "-h";
+    std::fprintf(help ? stdout : stderr,
+                 "floor [LAYERS=201 [ANGLES=126 [WINDOW=4]]]: times of one thread's closed-form IK and sweep\n");
+    return help ? 0 : 2;
+  }
   const int m = argc > 1 ? std::atoi(argv[1]) : 201, n = argc > 2 ? std::atoi(argv[2]) : 126, W = argc > 3 ? std::atoi(argv[3]) : 4;
   if (m < 2 || n < 2 * W + 1 || W < 0) {
     std::fprintf(stderr, "usage: floor LAYERS>=2 ANGLES>=2W+1 W>=0\n");

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "arguments.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
@@ -108,9 +109,15 @@ int run(const std::string& file, std::uint64_t episodes) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::string problem;
+  std::uint64_t episodes = 100;
+  CLI::App app("From a lattice's path to a motion, on random poses: what refining and timing bring, and what they take.",
+               "motion_benchmark");
+  app.add_option("problem", problem, "problem file; without `vary` it is planned once")->required()->check(CLI::ExistingFile);
+  app.add_option("episodes", episodes, "poses of seed 1")->check(CLI::PositiveNumber)->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
-    if (argc < 2) throw InputError("motion_benchmark PROBLEM.yaml [EPISODES]");
-    return run(argv[1], argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 100);
+    return run(problem, episodes);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

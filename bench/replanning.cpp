@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "arguments.hpp"
 #include "settings.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
@@ -63,7 +64,11 @@ void walk(const Problem& problem, const char* setting, const std::string& object
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int steps = argc > 1 ? std::atoi(argv[1]) : 1000;
+  int steps = 1000;
+  CLI::App app("Re-planning experiment C while an object walks 1 mm a step: a planner that remembers beside fresh plans.",
+               "replanning");
+  app.add_option("steps", steps, "steps of each object")->check(CLI::PositiveNumber)->capture_default_str();
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   Problem problem = io::load_problem(SWIVEL_DATA_DIR "/problems/experiment_c.yaml");
   for (const bench::Setting& setting : bench::kSettings) {
     if (setting.name[1] != '1' && setting.name[1] != '4') continue;

@@ -53,6 +53,13 @@ function(swivel_precompile target)
   endif()
 endfunction()
 
+# swivel_precompiled_as(TARGET OTHER): uses the headers that were compiled for the target OTHER, whose compile options must be the same.
+function(swivel_precompiled_as target other)
+  if(SWIVEL_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()
+
 # swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PRECOMPILE <header> ... PKG_CONFIG -lflag ...): one library, one
 # include root, one layer, installed. PRECOMPILE: headers to compile once. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)

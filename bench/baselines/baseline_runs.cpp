@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "arguments.hpp"
 #include "baselines.hpp"
 #include "swivel/io/io.hpp"
 
@@ -97,12 +98,11 @@ void run(const char* title, const std::filesystem::path& file, const std::filesy
 
 int main(int argc, char** argv) {
   const std::filesystem::path problems = std::filesystem::path(SWIVEL_DATA_DIR) / "problems";
-  const bool keep = argc == 3 && std::string_view(argv[1]) == "--rows";
-  if (argc != 1 && !keep) {
-    std::fprintf(stderr, "usage: baseline_runs [--rows FOLDER]\n");
-    return 2;
-  }
-  const std::filesystem::path rows = keep ? argv[2] : "";
+  std::filesystem::path rows;
+  CLI::App app("Experiments A and B of the paper: what the two local methods and the planner do from the same start.",
+               "baseline_runs");
+  app.add_option("--rows", rows, "folder for joints and clearance along the path, CSV")->check(CLI::ExistingDirectory);
+  if (const auto code = bench::read_arguments(app, argc, argv)) return *code;
   try {
     run("A, joint limits", problems / "experiment_a_start.yaml", rows);
     run("B, collision", problems / "experiment_b.yaml", rows);

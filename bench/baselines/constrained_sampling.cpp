@@ -16,6 +16,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "swivel/core/srs_lattice.hpp"
+
 namespace swivel::baselines {
 
 namespace {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <CLI/CLI.hpp>
+#include <optional>
+
+namespace swivel::bench {
+
+/// Reads the command line of a benchmark. Returns the exit code of a program that is to end here: 0 after --help, 2 after a word
+/// that the program does not know or a value that is not allowed, which CLI11 has told on stderr.
+inline std::optional<int> read_arguments(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+}
+
+}  // namespace swivel::bench
