@@ -58,7 +58,7 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   single.evidence = {.tool_path_error = true};  // a column
   single.progress = nullptr;
 
-  Executor executor(options.plan.threads, options.plan.backend);
+  Executor executor(options.plan.threads);
   std::vector<Planner> planners;  // by worker
   for (int worker = 0; worker < executor.threads(); ++worker) planners.emplace_back(prepared, problem);
   InOrder in_order(options.skip, row_done);

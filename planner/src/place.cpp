@@ -150,7 +150,7 @@ struct PlacementPlanner::Impl {
 };
 
 PlacementPlanner::PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing, PlanOptions options)
-    : impl_(new Impl{std::move(problem), std::move(thing), options, Executor(options.threads, options.backend), {}, {}}) {
+    : impl_(new Impl{std::move(problem), std::move(thing), options, Executor(options.threads), {}, {}}) {
   static_cast<void>(placed_problem(impl_->problem, impl_->thing, {}));
   for (int worker = 0; worker < impl_->executor.threads(); ++worker)
     impl_->workers.push_back({Planner(robot, impl_->problem), LeastMargins(alone_moved(impl_->problem, impl_->thing))});

@@ -192,7 +192,7 @@ struct Planner::Impl {
   std::uint64_t plans = 0;            // that the memory knows of
   std::vector<std::uint64_t> met;     // by object: the first of them that meets it as it is
   std::optional<Executor> executor;
-  std::pair<int, Executor::Backend> executor_is{0, Executor::Backend::kTbb};
+  int executor_threads = 0;  // that it was asked for
 
   bool once = false;  // no plan follows: nothing is remembered
   SlotPath path;      // of the last plan
@@ -283,9 +283,9 @@ struct Planner::Impl {
     return *robot;
   }
   Executor& threads_of(const PlanOptions& options) {
-    const std::pair wanted{options.planner == PlannerKind::kLazy ? 1 : options.threads, options.backend};
-    if (!executor || executor_is != wanted) executor.emplace(wanted.first, wanted.second);
-    executor_is = wanted;
+    const int wanted = options.planner == PlannerKind::kLazy ? 1 : options.threads;
+    if (!executor || executor_threads != wanted) executor.emplace(wanted);
+    executor_threads = wanted;
     return *executor;
   }
   void lay_out(const Budget& budget, PlanResult& result) {

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <atomic>
-#include <chrono>
 #include <cstdio>
-#include <functional>
 #include <initializer_list>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -21,124 +16,6 @@ namespace swivel {
 namespace {
 
 using namespace test;
-
-class Backends : public testing::TestWithParam<Executor::Backend> {};
-
-TEST_P(Backends, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
-  using Method = void (Executor::*)(int, const std::function<void(int, int)>&);
-  for (const Method for_each : {Method(&Executor::for_each), Method(&Executor::for_each_brief)})
-    for (const int threads : {1, 2, 3, 8}) {
-      Executor executor(threads, GetParam());
-      EXPECT_EQ(executor.threads(), threads);
-      // A hundred thousand steps an index are worth sharing, none are not.
-      for (const int count : {0, 1, 7, 1000})
-        for (const int work : {0, 100000}) {
-          if (count == 1000 && work > 0) continue;
-          std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
-          (executor.*for_each)(count, [&](int index, int worker) {
-            EXPECT_GE(worker, 0);
-            EXPECT_LT(worker, threads);
-            for (std::atomic<int> step{0}; step < work;) ++step;
-            ++visits[static_cast<std::size_t>(index)];
-          });
-          for (const auto& visit : visits) EXPECT_EQ(visit, 1);
-        }
-      for (const int failing : {0, 17, 49})
-        EXPECT_THROW((executor.*for_each)(50,
-                                          [&](int index, int) {
-                                            if (index == failing) throw std::runtime_error("x");
-                                          }),
-                     std::runtime_error);
-    }
-}
-
-TEST(Executor, WorkBesideACallMayNotShareItself) {
-  Executor executor(2);
-  executor.begin_brief();
-  const auto nothing = [](int, int) {};
-  EXPECT_THROW(executor.for_each_beside(4, nothing, [&] { executor.for_each_brief(4, nothing); }), std::logic_error);
-  executor.for_each_brief(4, nothing);
-}
-
-/// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and some that throw.
-TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
-  Random random(seed("Executor.BriefCalls"));
-  std::int64_t visited = 0, thrown = 0;
-  for (const int threads : {1, 2, 3, 8}) {
-    Executor executor(threads);
-    const auto keep_busy = [](int steps) {
-      for (std::atomic<int> step{0}; step < steps;) ++step;
-    };
-    if (threads == 3)
-      executor.begin_brief();
-    else
-      executor.for_each_brief(40, [&](int, int) { keep_busy(1'000'000); });  // begins threads, too
-    std::vector<int> visits;
-    for (int call = 0; call < trials(2000); ++call) {
-      const int count = random.below(20), steps = random.below(2000);
-      const int failing = count > 0 && random.below(8) == 0 ? random.below(count) : -1;
-      visits.assign(static_cast<std::size_t>(count), 0);
-      const auto body = [&](int index, int worker) {
-        if (worker < 0 || worker >= threads) throw std::logic_error("no such worker");
-        keep_busy(steps);
-        ++visits[static_cast<std::size_t>(index)];
-        if (index == failing) throw std::runtime_error("x");
-      };
-      const bool beside = random.coin(), work_fails = random.below(16) == 0;
-      int worked = 0;
-      const auto work = [&] {
-        keep_busy(steps / 2);
-        ++worked;
-        if (work_fails) throw std::invalid_argument("y");
-      };
-      const auto call_it = [&] { beside ? executor.for_each_beside(count, body, work) : executor.for_each_brief(count, body); };
-      if (beside && work_fails) {
-        ASSERT_THROW(call_it(), std::invalid_argument);
-        ++thrown;
-      } else if (failing < 0) {
-        call_it();
-        for (const int visit : visits) ASSERT_EQ(visit, 1);
-        visited += count;
-      } else {
-        ASSERT_THROW(call_it(), std::runtime_error);
-        ++thrown;
-      }
-      ASSERT_EQ(worked, beside ? 1 : 0);
-      if (random.below(50) == 0) std::this_thread::sleep_for(std::chrono::milliseconds(random.below(5)));
-    }
-  }
-  std::printf("%lld indices visited once, %lld calls threw\n", static_cast<long long>(visited), static_cast<long long>(thrown));
-  EXPECT_GE(visited, at_least(40'000));
-  EXPECT_GE(thrown, at_least(500));
-}
-
-#ifndef __SANITIZE_THREAD__
-TEST(Executor, AProcessThatForksNeedNotWaitForHelpers) {
-  auto executor = std::make_unique<Executor>(4);
-  const auto work = [&] {
-    std::atomic<int> sum{0};
-    executor->for_each_brief(40, [&](int index, int) {
-      for (std::atomic<int> step{0}; step < 1'000'000;) ++step;
-      sum += index;
-    });
-    return sum.load();
-  };
-  ASSERT_EQ(work(), 780);  // began helpers
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    alarm(30);  // ends it where it waits
-    const bool right = work() == 780;
-    executor.reset();
-    _exit(right ? 0 : 1);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 0);
-  EXPECT_EQ(work(), 780);
-}
-#endif
 
 void expect_same_answer(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.status, first.status);
@@ -177,8 +54,8 @@ PlanResult compared_at(std::initializer_list<int> thread_counts, const PlanWith&
   return *first;
 }
 
-TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
-  const std::uint64_t base = seed("Backends.SameResult");
+TEST(Threads, SameResultAndCountsAtAnyThreadCount) {
+  const std::uint64_t base = seed("Threads.SameResult");
   const auto robots = all_robots();
   int compared = 0;
   for (int trial = 0; trial < trials(20); ++trial) {
@@ -187,7 +64,6 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
     const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
-      options.backend = GetParam();
       return plan(problem, options);
     };
     static_cast<void>(compared_at({1, 2, 3, 8}, plan_with, compared));
@@ -197,7 +73,7 @@ TEST_P(Backends, SameResultAndCountsAtAnyThreadCount) {
 }
 
 /// Postures of long paths, of which most is kept from one to the next, and batches that fail.
-TEST_P(Backends, KeptClearancesCountTheSame) {
+TEST(Threads, KeptClearancesCountTheSame) {
   Problem base = io::load_problem(data_dir() / "problems/experiment_c.yaml");
   base.resolution.dphi = 0.2;
   const PreparedRobot robot(base);
@@ -207,7 +83,6 @@ TEST_P(Backends, KeptClearancesCountTheSame) {
     const auto plan_with = [&](int threads) {
       PlanOptions options;
       options.threads = threads;
-      options.backend = GetParam();
       return plan(robot, problem, options);
     };
     repaired += compared_at({1, 2, 4}, plan_with, compared).counters.iterations > 1;
@@ -247,9 +122,6 @@ TEST(Parallel, RegionsOfLargeLatticesGrowAlikeAtAnyThreadCount) {
   EXPECT_GE(grown, at_least(5));
   EXPECT_GE(solved, at_least(5));
 }
-
-INSTANTIATE_TEST_SUITE_P(Both, Backends, testing::Values(Executor::Backend::kTbb, Executor::Backend::kThreads),
-                         [](const auto& backend) { return backend.param == Executor::Backend::kTbb ? "Tbb" : "Threads"; });
 
 /// Every thread has a clone of one planner, moves its objects about and plans; answers are those of fresh plans made before.
 TEST(Planner, ClonesInThreadsAnswerAsSerialPlansDo) {

@@ -38,7 +38,6 @@ struct PlanOptions {
   Evidence evidence;          ///< what to find besides the verdict
   Hooks hooks;                ///< rules and costs of the caller's own, of any planner
   ProgressFunction progress;  ///< called now and then from the planning thread; must be quick
-  Executor::Backend backend = Executor::Backend::kTbb;
   /// The budget of a plan that begins now. The options must outlive it.
   [[nodiscard]] Budget budget() const { return Budget(timeout_s, cancel, stop, &progress); }
 };
