@@ -25,7 +25,7 @@ void occupy_standard_streams() {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Swivel plans joint trajectories of 7-DOF arms along tool paths.", "swivel");
+  CLI::App app("Swivel plans joint trajectories along tool paths, for arms with a degree of freedom to spare.", "swivel");
   app.set_version_flag("--version", SWIVEL_VERSION);
   app.require_subcommand(1);
   int exit_code = kOk;

@@ -71,7 +71,8 @@ struct Stretch {
   double reserve = 0;            ///< m, asked for besides
 };
 
-/// Half width of the band of clearances about a threshold, m, in which FCL alone decides, and by which FCL may err. docs/model.md.
+/// Half width of the band of clearances about a threshold, m, in which no certificate answers, and by which FCL may err. Within it FCL
+/// decides, save for two bodies of triangles: our own trees of triangles decide about them down to 1 um. docs/model.md.
 inline constexpr double kVerdictBand = 0.05e-3;
 
 /// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
@@ -117,10 +118,11 @@ struct CollisionCounters {
 /// How a Query decides. Its answers are the same.
 enum class Certificates {
   kOff,  ///< FCL, behind bounding volumes
-  kOn,   ///< closed forms, where they prove the clearance outside the band; FCL within it
+  kOn,   ///< closed forms, where they prove the clearance outside the band; within it triangle trees or FCL
 };
 
-/// The robot's bodies among the scene's, with FCL as the authority on every pair. Immutable after construction; const calls are
+/// The robot's bodies among the scene's, with FCL as the authority on every pair that neither a certificate nor our own distance of triangles
+/// settles. Immutable after construction; const calls are
 /// safe from many threads, each with its own Query.
 /// Verdicts are those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or
 /// capsule the equivalent boolean on the inflated body; closed meshes are solids.

@@ -34,7 +34,7 @@ struct PlanView {
 /// validate(), and then change nothing.
 class Planner {
  public:
-  /// Scene and task follow. Throws InputError: unknown links, fewer than seven joints, an arm that is not S-R-S, ...
+  /// Scene and task follow. Throws InputError: unknown links, an arm of fewer than seven joints (six, where the tool may roll), ...
   explicit Planner(const Robot& robot);
   /// Robot, scene and task of a problem.
   explicit Planner(Problem problem);
