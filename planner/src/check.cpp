@@ -10,6 +10,7 @@
 
 #include "answer_check.hpp"
 #include "between_samples.hpp"
+#include "check_rates.hpp"
 #include "collision_validity.hpp"
 #include "first_too_near.hpp"
 #include "path_following.hpp"
@@ -135,7 +136,9 @@ class Check {
     }
     if (chain_.tool_may_turn() && problem_.cost.roll > 0) result_.cost += cost_of_roll();
     examine_travel();
-    if (timed_) examine_rates(*timed_);
+    if (timed_ && timed_->size() >= 2)
+      result_.motion =
+          examine_rates(chain_, limits_, problem_.source, *timed_, tools_, [this](const std::string& line) { fail(line); });
     if (!options_.margins && result_.failure_count == 0) examine_clearance();
     result_.fcl_calls = contacts_.fcl_calls();
     result_.passed = result_.failure_count == 0;
@@ -150,15 +153,17 @@ class Check {
     std::size_t before = 0;  // candidate of the row before that leads here
   };
 
-  [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
+  void fail(const std::string& line) {
     constexpr std::int64_t kMostLines = 20;
-    if (++result_.failure_count > kMostLines) return;
+    if (++result_.failure_count <= kMostLines) result_.failures.push_back(line);
+  }
+  [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
     char line[400];
     std::va_list arguments;
     va_start(arguments, format);
     std::vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    result_.failures.emplace_back(line);
+    fail(std::string(line));
   }
 
   /// The tool as the path has it: where it stands turned about its own axis, as the row says, turned back.
@@ -466,58 +471,6 @@ class Check {
     const auto near = [&](int layer) { return std::abs(place - layer) <= kNear; };
     return near(0) || near(path_.size() - 1) ||
            std::any_of(path_.corners().begin(), path_.corners().end(), [&](const ToolPath::Corner& c) { return near(c.layer); });
-  }
-
-  void examine_rates(const std::vector<TimedRow>& rows) {
-    if (rows.size() < 2) return;
-    const JointRates rates = joint_rates(chain_, limits_, problem_.source);
-    CheckResult::Motion& motion = result_.motion.emplace();
-    motion.duration = rows.back().t - rows.front().t;
-    // Two rows of rest on both sides, as far apart as the rows there.
-    const auto n = static_cast<std::ptrdiff_t>(rows.size());
-    const auto at = [&](std::ptrdiff_t k) -> const TimedRow& {
-      return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))];
-    };
-    const auto time = [&](std::ptrdiff_t k) {
-      if (k < 0) return at(0).t + static_cast<double>(k) * (at(1).t - at(0).t);
-      return k < n ? at(k).t : at(n - 1).t + static_cast<double>(k - n + 1) * (at(n - 1).t - at(n - 2).t);
-    };
-    const char* const names[] = {"speed", "acceleration", "jerk"};
-    const Config* const bounds[] = {&rates.speed, &rates.acceleration, &rates.jerk};
-    for (std::ptrdiff_t k = -2; k < n + 2; ++k) {
-      const auto difference = [&](std::ptrdiff_t i) -> Config { return (at(i + 1).row.q - at(i).row.q) / (time(i + 1) - time(i)); };
-      const auto second = [&](std::ptrdiff_t i) -> Config {
-        return 2 * (difference(i + 1) - difference(i)) / (time(i + 2) - time(i));
-      };
-      const Config by_order[] = {difference(k), second(k), 3 * (second(k + 1) - second(k)) / (time(k + 3) - time(k))};
-      for (std::size_t order = 0; order < 3; ++order)
-        for (int j = 0; j < kDof; ++j) {
-          const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
-          if (!(ratio <= 1 + 1e-6))
-            fail("t = %.6g s: %s of joint '%s' is %.6g times what it can do", time(k), names[order],
-                 joint_name(static_cast<std::size_t>(j)), ratio);
-          if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, time(k)};
-        }
-      if (k < 1 || k + 1 >= n) continue;
-      const double dt = std::max(time(k + 1) - time(k), time(k) - time(k - 1));
-      const Config v = (at(k + 1).row.q - at(k - 1).row.q) / (time(k + 1) - time(k - 1)), a = second(k - 1);
-      for (int j = 0; j < kDof; ++j) {
-        if (!(std::abs(at(k).v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
-            !(std::abs(at(k).a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
-          fail("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", time(k),
-               joint_name(static_cast<std::size_t>(j)), at(k).v[j], at(k).a[j], v[j], a[j]);
-      }
-    }
-    for (std::ptrdiff_t k = 1; k < n; ++k) {
-      const double dt = time(k) - time(k - 1);
-      const Pose &from = tools_[static_cast<std::size_t>(k - 1)], &to = tools_[static_cast<std::size_t>(k)];
-      motion.tool_speed = std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
-      motion.turn_speed = std::max(motion.turn_speed, angle_between(from, to) / dt);
-    }
-    if (limits_.tool_speed && !(motion.tool_speed <= 1.001 * *limits_.tool_speed))
-      fail("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed, *limits_.tool_speed);
-    if (limits_.tool_turn_speed && !(motion.turn_speed <= 1.001 * *limits_.tool_turn_speed))
-      fail("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g", motion.turn_speed, *limits_.tool_turn_speed);
   }
 
   bool may_move(std::size_t k) {
