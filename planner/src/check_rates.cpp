@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstddef>
 #include <cstdio>
+#include <limits>
 
 namespace swivel {
 
@@ -20,51 +21,113 @@ namespace {
   return text;
 }
 
+/// A motion's samples in time, as a controller takes them that moves joints straight from each to the next: speeds are steady
+/// between samples and change at them. Joints rest before the first sample and after the last.
+class Samples {
+ public:
+  explicit Samples(const std::vector<TimedRow>& rows) : rows_(&rows), n_(static_cast<std::ptrdiff_t>(rows.size())) {
+    constexpr double kStill = 1e-9;  // rad
+    std::vector<double> steps, sorted;
+    for (std::size_t k = 1; k < rows.size(); ++k) {
+      steps.push_back(rows[k].t - rows[k - 1].t);
+      if (!((rows[k].row.q - rows[k - 1].row.q).lpNorm<Eigen::Infinity>() <= kStill)) sorted.push_back(steps.back());
+    }
+    if (sorted.empty()) sorted = steps;
+    // Messages state times in whole nanoseconds, and doubles of late times are coarse: steps within that are equal ones.
+    const double same =
+        2e-9 + 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(rows.front().t), std::abs(rows.back().t));
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    double sum = 0, count = 0;
+    for (const double step : steps)
+      if (std::abs(step - *middle) <= same) sum += step, ++count;
+    usual_ = sum / count;
+    steps_.push_back(usual_);
+    for (const double step : steps) steps_.push_back(std::abs(step - usual_) <= same ? usual_ : step);
+  }
+
+  [[nodiscard]] std::ptrdiff_t size() const { return n_; }
+  [[nodiscard]] const TimedRow& at(std::ptrdiff_t k) const {
+    return (*rows_)[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n_ - 1))];
+  }
+  /// The median of the steps in which a joint moves, s.
+  [[nodiscard]] double usual_step() const { return usual_; }
+  /// From sample k - 1 to sample k, s.
+  [[nodiscard]] double step(std::ptrdiff_t k) const { return k < 1 || k >= n_ ? usual_ : steps_[static_cast<std::size_t>(k)]; }
+  /// From sample k - 1 to sample k.
+  [[nodiscard]] Config speed(std::ptrdiff_t k) const { return (at(k).row.q - at(k - 1).row.q) / step(k); }
+  /// At sample k: the change of speed there, made within the time from the middle of the step before to the middle of the step
+  /// after, or within a usual step where that is less. So a gap in time leaves no more time for a change than any step does.
+  [[nodiscard]] Config acceleration(std::ptrdiff_t k) const {
+    return (speed(k + 1) - speed(k)) / std::min((step(k) + step(k + 1)) / 2, usual_);
+  }
+  /// Between samples k and k + 1, in the same way.
+  [[nodiscard]] Config jerk(std::ptrdiff_t k) const {
+    return (acceleration(k + 1) - acceleration(k)) / std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual_);
+  }
+  /// At sample k, over both steps beside it.
+  [[nodiscard]] Config mean_speed(std::ptrdiff_t k) const { return (at(k + 1).row.q - at(k - 1).row.q) / (step(k) + step(k + 1)); }
+
+ private:
+  const std::vector<TimedRow>* rows_;
+  std::ptrdiff_t n_;
+  std::vector<double> steps_;  // [k]: to sample k
+  double usual_ = 0;
+};
+
+/// Whether times ascend.
+bool ascend(const std::vector<TimedRow>& rows, const std::function<void(const std::string&)>& fail) {
+  bool all = true;
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    if (rows[k].t > rows[k - 1].t && std::isfinite(rows[k].t) && std::isfinite(rows[k - 1].t)) continue;
+    all = false;
+    fail(line("rows %zu-%zu: t is %.9g s after %.9g s: allowed are times that ascend", k - 1, k, rows[k].t, rows[k - 1].t));
+  }
+  return all;
+}
+
 }  // namespace
 
-CheckResult::Motion examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
-                                  const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
-                                  const std::function<void(const std::string&)>& fail) {
+std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
+                                                 const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
+                                                 const std::function<void(const std::string&)>& fail) {
   const JointRates rates = joint_rates(chain, limits, source);
+  if (!ascend(rows, fail)) return std::nullopt;
+  const Samples samples(rows);
+  const std::ptrdiff_t n = samples.size();
+  const double usual = samples.usual_step();
   CheckResult::Motion motion;
   motion.duration = rows.back().t - rows.front().t;
-  // Two rows of rest on both sides, as far apart as the rows there.
-  const auto n = static_cast<std::ptrdiff_t>(rows.size());
-  const auto at = [&](std::ptrdiff_t k) -> const TimedRow& {
-    return rows[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n - 1))];
-  };
-  const auto time = [&](std::ptrdiff_t k) {
-    if (k < 0) return at(0).t + static_cast<double>(k) * (at(1).t - at(0).t);
-    return k < n ? at(k).t : at(n - 1).t + static_cast<double>(k - n + 1) * (at(n - 1).t - at(n - 2).t);
-  };
   const char* const names[] = {"speed", "acceleration", "jerk"};
   const Config* const bounds[] = {&rates.speed, &rates.acceleration, &rates.jerk};
-  for (std::ptrdiff_t k = -2; k < n + 2; ++k) {
-    const auto difference = [&](std::ptrdiff_t i) -> Config { return (at(i + 1).row.q - at(i).row.q) / (time(i + 1) - time(i)); };
-    const auto second = [&](std::ptrdiff_t i) -> Config {
-      return 2 * (difference(i + 1) - difference(i)) / (time(i + 2) - time(i));
-    };
-    const Config by_order[] = {difference(k), second(k), 3 * (second(k + 1) - second(k)) / (time(k + 3) - time(k))};
+  for (std::ptrdiff_t k = -1; k < n; ++k) {
+    const double t = samples.at(k).t;
+    const Config by_order[] = {samples.speed(k + 1), samples.acceleration(k), samples.jerk(k)};
     for (std::size_t order = 0; order < 3; ++order)
       for (int j = 0; j < kDof; ++j) {
         const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
-        if (!(ratio <= 1 + 1e-6))
-          fail(line("t = %.6g s: %s of joint '%s' is %.6g times what it can do", time(k), names[order],
-                    chain.joint_names[static_cast<std::size_t>(j)].c_str(), ratio));
-        if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, time(k)};
+        if (!(ratio <= 1 + 1e-6)) {
+          const double longest = std::max({samples.step(k), samples.step(k + 1), samples.step(k + 2)});
+          fail(line("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t, names[order],
+                    chain.joint_names[static_cast<std::size_t>(j)].c_str(), ratio) +
+               (order > 0 && longest > 1.5 * usual ? line(", at a gap in time: %.6g s, where rows are %.6g s apart", longest, usual)
+                                                   : ""));
+        }
+        if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, t};
       }
-    if (k < 1 || k + 1 >= n) continue;
-    const double dt = std::max(time(k + 1) - time(k), time(k) - time(k - 1));
-    const Config v = (at(k + 1).row.q - at(k - 1).row.q) / (time(k + 1) - time(k - 1)), a = second(k - 1);
+    if (k < 0) continue;
+    const double dt = std::min(std::max(samples.step(k), samples.step(k + 1)), usual);
+    const Config v = samples.mean_speed(k), a = samples.acceleration(k);
+    const TimedRow& row = samples.at(k);
     for (int j = 0; j < kDof; ++j) {
-      if (!(std::abs(at(k).v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
-          !(std::abs(at(k).a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
-        fail(line("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", time(k),
-                  chain.joint_names[static_cast<std::size_t>(j)].c_str(), at(k).v[j], at(k).a[j], v[j], a[j]));
+      if (!(std::abs(row.v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
+          !(std::abs(row.a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
+        fail(line("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", t,
+                  chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j], v[j], a[j]));
     }
   }
   for (std::ptrdiff_t k = 1; k < n; ++k) {
-    const double dt = time(k) - time(k - 1);
+    const double dt = samples.step(k);
     const Pose &from = tools[static_cast<std::size_t>(k - 1)], &to = tools[static_cast<std::size_t>(k)];
     motion.tool_speed = std::max(motion.tool_speed, (to.translation() - from.translation()).norm() / dt);
     motion.turn_speed = std::max(motion.turn_speed, Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);

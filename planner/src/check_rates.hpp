@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,9 +10,10 @@
 namespace swivel {
 
 /// Proves the rates of a motion of at least two rows, as check_motion() says, or calls `fail` with one line for each that is not
-/// kept. `tools`: the tool at each row. Throws InputError as joint_rates() does.
-[[nodiscard]] CheckResult::Motion examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
-                                                const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
-                                                const std::function<void(const std::string&)>& fail);
+/// kept. `tools`: the tool at each row. None where times do not ascend: nothing can be said of rates then. Throws InputError as
+/// joint_rates() does.
+[[nodiscard]] std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
+                                                               const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
+                                                               const std::function<void(const std::string&)>& fail);
 
 }  // namespace swivel
