@@ -85,6 +85,7 @@ int run(const CheckArguments& arguments) {
   std::printf("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
   if (!result.passed)
     std::printf(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
+  if (result.rounded) std::printf(", on the path as motions follow it, its corners rounded");
   std::printf("; ");
   print_margins(problem, chain, result);
   return result.passed ? kOk : kNo;

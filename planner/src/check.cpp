@@ -30,6 +30,7 @@ namespace {
 constexpr double kPose = 1e-6;                    // m and rad
 constexpr double kLimit = 1e-9;                   // rad
 constexpr double kSame = 1e-9;                    // m along the path
+constexpr double kNear = 1e-3;                    // of a step: at a layer, or at the same place
 constexpr double kArmAngle = 1e-3;                // rad
 constexpr PoseDistance kAtWaypoints{1e-3, 0.02};  // where the problem sets no tolerance
 
@@ -184,7 +185,9 @@ class Check {
   /// Values and limits of a row.
   bool sound(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
-    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !std::isfinite(row.roll) || !row.q.allFinite()) {
+    const bool rates_finite =
+        !timed_ || (std::isfinite((*timed_)[k].t) && (*timed_)[k].v.allFinite() && (*timed_)[k].a.allFinite());
+    if (!std::isfinite(row.s) || !std::isfinite(row.phi) || !std::isfinite(row.roll) || !row.q.allFinite() || !rates_finite) {
       fail("row %zu: has values that are not finite", k);
       return false;
     }
@@ -328,7 +331,8 @@ class Check {
         }
       }
       for (std::size_t c = 0; c < to.size(); ++c) {
-        const Verdict verdict = ends[c] < begin ? kGoesBack : c >= later && reached[c - later] ? kPasses : kFails;
+        const bool stands = neighbours && timed_ && may_rest(begin) && has_same_pose(k) && std::abs(ends[c] - begin) <= kNear;
+        const Verdict verdict = stands || (c >= later && reached[c - later]) ? kPasses : ends[c] < begin ? kGoesBack : kFails;
         // Of equally good places to come from the last one: the way is the shortest.
         if (verdict <= best[c]) best[c] = verdict, to[c].before = f;
       }
@@ -449,25 +453,30 @@ class Check {
     const Config &from = rows_[k - 1].q, &to = rows_[k].q;
     const double begin = place(k - 1), end = place(k);
     ++result_.moves_examined;
-    if (end < begin)
+    const bool same_pose = has_same_pose(k), same_place = begin == end || (same_pose && std::abs(end - begin) <= kNear);
+    if (end < begin && !same_place)
       return fail("rows %zu-%zu: the tool goes back on its path, from s = %.9g to %.9g", k - 1, k, rows_[k - 1].s, rows_[k].s);
-    if (timed_ && begin == end && may_rest(end)) return;
-    if (std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(tools_[k - 1], tools_[k]) <= 1e-9) {
-      if (timed_ && may_rest(end)) return;
-      return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
-    }
+    const bool at_rest = same_place || (same_pose && !timed_);
+    if (at_rest && !(timed_ && may_rest(end))) return fail("rows %zu-%zu: the tool rests at s = %.9g", k - 1, k, rows_[k].s);
     if (!may_move(k)) return;
-    examine_path(k);
-    examine_step_error(k);
+    if (at_rest) {
+      examine_rest(k);
+    } else {
+      examine_path(k);
+      examine_step_error(k);
+    }
     if (!options_.margins || limits_.edges != EdgeMode::kContinuous) return;
     if (const auto pair = contacts_.on_the_way(from, to))
       fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(),
            1e3 * contacts_.keeps(*pair).motion);
   }
 
+  /// Whether the tool has the same pose at row k - 1 and at row k; it may have turned away and come back between.
+  [[nodiscard]] bool has_same_pose(std::size_t k) const {
+    return std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(tools_[k - 1], tools_[k]) <= 1e-9;
+  }
   /// At the ends of the path and at its corners.
   [[nodiscard]] bool may_rest(double place) const {
-    constexpr double kNear = 1e-3;  // of a step
     const auto near = [&](int layer) { return std::abs(place - layer) <= kNear; };
     return near(0) || near(path_.size() - 1) ||
            std::any_of(path_.corners().begin(), path_.corners().end(), [&](const ToolPath::Corner& c) { return near(c.layer); });
@@ -530,6 +539,27 @@ class Check {
     stray(k, {needed(at_waypoints_.position, position), needed(at_waypoints_.angle, angle)});
   }
 
+  /// By how much the tool leaves its pose of row k - 1 on the move to row k, at its farthest.
+  [[nodiscard]] PoseDistance sway(std::size_t k) const {
+    const ToolMotion motion = motion_to(k);
+    PoseDistance most{0, 0};
+    for (const Pose& tool : motion.poses) {
+      most.position = std::max(most.position, (tool.translation() - tools_[k - 1].translation()).norm());
+      most.angle = std::max(most.angle, angle_between(tools_[k - 1], tool));
+    }
+    return {most.position - motion.error.position, most.angle - motion.error.angle};  // errors of the motion are forgiven
+  }
+
+  /// The tool rests at a waypoint. The joints may move all the same, straight from row k - 1 to row k, as long as it stays there.
+  void examine_rest(std::size_t k) {
+    const PoseDistance off = sway(k);
+    if (options_.margins) {
+      result_.worst_path_error = std::max(result_.worst_path_error, off.position);
+      result_.worst_path_angle = std::max(result_.worst_path_angle, off.angle);
+    }
+    if (!within(off, at_waypoints_)) stray(k, off);
+  }
+
   void stray(std::size_t k, const PoseDistance& off) {
     result_.worst_path_error = std::max(result_.worst_path_error, off.position);
     result_.worst_path_angle = std::max(result_.worst_path_angle, off.angle);
@@ -549,28 +579,44 @@ class Check {
       fail("rows %zu-%zu: step error %.6g is above %.6g", k - 1, k, error, *limits_.step_error);
   }
 
-  /// Many small moves in one step could add up to a large one. So between any two rows a joint may come no further than the steps
-  /// touched allow, and one step more, since it may overshoot inside the first and the last.
+  /// Many small moves in one step could add up to a large one. So between any two rows a joint, and the roll of a tool that may
+  /// stand turned, may come no further than the steps touched allow, and one step more, since it may overshoot inside the first and
+  /// the last.
   void examine_travel() {
-    for (std::size_t j = 0; j < kDof; ++j)
-      for (const double sign : {1.0, -1.0}) {
-        const auto joint = static_cast<Eigen::Index>(j);
-        double least = kNone;  // of sign * q less what was allowed up to there
-        std::size_t since = 0;
-        for (std::size_t k = 0; k < rows_.size(); ++k) {
-          if (!examined(k)) continue;
-          if (jumps_[k]) least = kNone;  // said already
-          const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
-          const auto last = static_cast<std::size_t>(std::ceil(place(k)));
-          const double q = sign * rows_[k].q[joint], step = allowed_[first + 1][joint] - allowed_[first][joint];
-          if (q - allowed_[last][joint] - step > least + kLimit) {
-            fail("rows %zu-%zu: joint '%s' comes %.6g rad far, joint_step and speeds allow %.6g", since, k, joint_name(j),
-                 q - sign * rows_[since].q[joint], least + allowed_[last][joint] + step - sign * rows_[since].q[joint]);
-            least = kNone;
-          }
-          if (q - allowed_[first][joint] < least) least = q - allowed_[first][joint], since = k;
+    for (std::size_t j = 0; j < kDof; ++j) {
+      const auto joint = static_cast<Eigen::Index>(j);
+      examine_travel(
+          "joint '" + chain_.joint_names[j] + "'", "joint_step and speeds", kLimit,
+          [&](std::size_t k) { return rows_[k].q[joint]; }, [&](std::size_t layer) { return allowed_[layer][joint]; });
+    }
+    if (!chain_.free_roll) return;
+    std::vector<double> rolls;  // without jumps of whole turns
+    for (std::size_t k = 0; k < rows_.size(); ++k) rolls.push_back(k == 0 ? rows_[k].roll : rolls.back() + roll_change(k));
+    examine_travel(
+        "the roll", "roll_slope", kArmAngle, [&](std::size_t k) { return rolls[k]; },
+        [&](std::size_t layer) { return limits_.roll_slope * path_.layer(static_cast<int>(layer)).travel; });
+  }
+  /// `value`: of a row. `allowed`: the way that is allowed up to a layer.
+  template <class Value, class Allowed>
+  void examine_travel(const std::string& what, const char* limits, double forgiven, const Value& value, const Allowed& allowed) {
+    for (const double sign : {1.0, -1.0}) {
+      double least = kNone;  // of sign * value less what was allowed up to there
+      std::size_t since = 0;
+      for (std::size_t k = 0; k < rows_.size(); ++k) {
+        if (!examined(k)) continue;
+        if (jumps_[k]) least = kNone;  // said already
+        const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
+        const auto last = static_cast<std::size_t>(std::ceil(place(k)));
+        const double at = sign * value(k), step = allowed(first + 1) - allowed(first);
+        if (at - allowed(last) - step > least + forgiven) {
+          const double from = sign * value(since);
+          fail("rows %zu-%zu: %s comes %.6g rad far: allowed are %.6g by %s", since, k, what.c_str(), at - from,
+               least + allowed(last) + step - from, limits);
+          least = kNone;
         }
+        if (at - allowed(first) < least) least = at - allowed(first), since = k;
       }
+    }
   }
 
   [[nodiscard]] double cost_of(const Config& move) const {
@@ -622,7 +668,15 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
                              const CheckOptions& options) {
   validate(problem);
   robot.require_prepared_for(problem);
-  return Check(robot, problem, robot.world(), rows, options).run();
+  CheckResult result = Check(robot, problem, robot.world(), rows, options).run();
+  const bool on_path = result.worst_position <= kPose && result.worst_angle <= kPose;
+  if (result.passed || on_path || problem.smooth) return result;
+  // What was planned to be made a motion of follows the rounded path of motions.
+  const Problem of_motions = with_motion_defaults(problem);
+  CheckResult rounded = Check(robot, of_motions, robot.world(), rows, options).run();
+  if (rounded.failure_count >= result.failure_count) return result;
+  rounded.rounded = true;
+  return rounded;
 }
 
 CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,

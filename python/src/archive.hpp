@@ -357,9 +357,9 @@ void serialize(A& archive, CheckResult::Motion& x) {
 template <class A>
 void serialize(A& archive, CheckResult& x) {
   auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-         min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
+         rounded, min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
   archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-          min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
+          rounded, min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {

@@ -592,6 +592,9 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "cost", [](const Check& c) { return c.result.cost; }, "Of the rows as given.")
       .def_property_readonly(
+          "rounded", [](const Check& c) { return c.result.rounded; },
+          "Whether the rows were judged on the path of motions, whose corners are rounded.")
+      .def_property_readonly(
           "min_clearance", [](const Check& c) { return c.result.min_clearance; }, "m, of any pair at the rows.")
       .def_property_readonly(
           "min_margin", [](const Check& c) { return c.result.min_margin; }, "m, least clearance less what the pair must keep.")

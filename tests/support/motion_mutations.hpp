@@ -16,6 +16,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/posture_beside.hpp"
+#include "swivel/core/time_path.hpp"
 #include "swivel/core/tool_path.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
@@ -48,6 +49,47 @@ inline std::vector<TrajectoryRow> rows_of(const Judged& judged) {
 inline CheckResult judge(const Judged& judged, const CheckOptions& options = {}) {
   return judged.timed ? check_motion(*judged.robot, judged.problem, judged.rows, options)
                       : check_trajectory(*judged.robot, judged.problem, rows_of(judged), options);
+}
+
+/// Problems of the data folder and small ones of the project's robots, from the seed: trajectories as planned, some of them on the
+/// path of motions; or motions, at 20 to 250 samples a second.
+inline std::vector<Judged> planned_cases(bool timed, std::uint64_t seed, int small_ones) {
+  std::vector<Judged> found;
+  const auto add = [&](const std::string& what, const Problem& problem, bool as_motion, double rate, bool refined) {
+    Judged judged{what, problem, nullptr, timed, {}};
+    PlanOptions lazy;
+    lazy.planner = PlannerKind::kLazy;
+    Planner planner(as_motion ? with_motion_defaults(problem) : problem);
+    std::optional<TimingOptions> timing;
+    if (as_motion) timing = TimingOptions{0.25, 1.0, rate, {}};
+    const MotionPlan plan = plan_motion(planner, lazy, refined, timing);
+    if (plan.result.status != PlanStatus::kSolved || (timed && !plan.motion->motion)) return;
+    judged.robot = std::make_shared<const PreparedRobot>(problem);
+    if (timed)
+      judged.rows = plan.motion->motion->rows;
+    else
+      for (const TrajectoryRow& row : plan.result.trajectory) judged.rows.push_back({0, row});
+    if (judged.rows.size() >= 8) found.push_back(std::move(judged));
+  };
+  const double rates[] = {20, 125, 50, 250};
+  int number = 0;
+  for (const char* name : {"iiwa14_bench", "iiwa14_deburr_in_hand", "kr6_weld_pipe", "panda_weld_seam", "ur5e_deburr_edge"}) {
+    const Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    add(name, problem, timed || number % 2 == 1, 25, false);
+    ++number;
+  }
+  const std::vector<TestRobot> robots = all_robots();
+  for (int trial = 0; trial < small_ones; ++trial) {
+    Random random(seed + static_cast<std::uint64_t>(trial));
+    Problem problem = motion_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    // Corners rounded as motions do by themselves; or so little that the tool stops at them.
+    if (trial % 2 == 0)
+      problem.smooth.reset();
+    else if (timed)
+      problem.smooth = PathSmoothing{1e-6, 1e-6};
+    add(problem.source + " " + std::to_string(trial), problem, timed || trial % 3 > 0, rates[trial % 4], trial % 2 == 1);
+  }
+  return found;
 }
 
 /// What a file must hold for a mutation to be seen in it.
@@ -151,23 +193,56 @@ inline std::pair<double, double> sway(const Chain& chain, const Config& from, co
   return most;
 }
 
-/// Of a motion with time enough: before its first row, or behind its last, the arm swings to or from another posture.
+/// Rows of a motion at which the tool stands at a corner that is not rounded.
+inline std::vector<std::size_t> rows_at_corners(const Judged& judged) {
+  const ToolPath path = problem_path(with_motion_defaults(judged.problem), judged.chain());
+  std::vector<std::size_t> found;
+  for (const ToolPath::Corner& corner : path.corners()) {
+    if (corner.reach > 0 || judged.chain().tool_may_turn()) continue;
+    const Pose& there = path.layer(corner.layer).tool;
+    for (std::size_t k = 1; k + 1 < judged.rows.size(); ++k) {
+      const Pose tool = judged.chain().tool(judged.q(k));
+      if ((tool.translation() - there.translation()).norm() < 1e-6 && (tool.linear() - there.linear()).norm() < 1e-6)
+        found.push_back(k);
+    }
+  }
+  return found;
+}
+
+/// Of a motion with time enough: the arm swings to its first row from another posture, or from its last row to one; or at a corner
+/// to one and back.
 struct Swing {
   std::size_t row = 0;  // where the arm rests
   TimedRow other;
 };
 inline std::optional<Swing> some_swing(const Judged& judged, double far, Random& random) {
-  const bool at_end = judged.problem.start || random.coin();
-  Swing swing{at_end ? judged.rows.size() - 1 : 0, {}};
+  Swing swing{judged.problem.start || random.coin() ? judged.rows.size() - 1 : 0, {}};
+  if (const auto corners = rows_at_corners(judged); !corners.empty() && random.coin(0.7))
+    swing.row = corners[some(0, corners.size(), random)];
   const auto other = beside(judged, swing.row, far, random);
   if (!other) return std::nullopt;
   swing.other = *other;
   return swing;
 }
 inline void insert(Judged& judged, Swing swing) {
-  const bool at_end = swing.row > 0;
-  swing.other.t = judged.t(swing.row) + (at_end ? kAgesOfTime : -kAgesOfTime);
-  judged.rows.insert(at_end ? judged.rows.end() : judged.rows.begin(), swing.other);
+  const std::size_t k = swing.row, last = judged.rows.size() - 1;
+  swing.other.t = judged.t(k) + (k > 0 ? kAgesOfTime : -kAgesOfTime);
+  const TimedRow back = judged.rows[k];
+  judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k > 0 ? k + 1 : 0), swing.other);
+  if (k == 0 || k == last) return;
+  judged.rows.insert(judged.rows.begin() + static_cast<std::ptrdiff_t>(k) + 2, back);
+  delay(judged, k + 2, 2 * kAgesOfTime);
+}
+/// Whether the arm rests where the swing begins: it leaves for the swing, and comes back, without a jump of its speed.
+inline bool can_leave(const Judged& judged, std::size_t k) {
+  if (k < 2 || k + 2 >= judged.rows.size()) return true;
+  const double h = judged.t(1) - judged.t(0);
+  Judged resting = judged;
+  resting.rows.insert(resting.rows.begin() + static_cast<std::ptrdiff_t>(k), resting.rows[k]);
+  delay(resting, k + 1, kAgesOfTime);
+  for (std::size_t i = k - 1; i <= k + 3; ++i)
+    if (jolt(resting, i, h) > 0.9) return false;
+  return true;
 }
 
 /// So that arms may swing far: what is left is that nothing may be met on the way.
@@ -253,7 +328,7 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          if (!m.problem.limits.tool_path_error || m.rows.size() < 6) return "";
          const std::size_t a = some(0, m.rows.size() - 3, random), b = some(a + 2, m.rows.size(), random);
          // The middle of the move is far from every pose that was left out, and these lie close together.
-         const auto tool = [&](const Config& q) { return m.chain().tool(q).translation(); };
+         const auto tool = [&](const Config& q) -> Vector3d { return m.chain().tool(q).translation(); };
          const Vector3d middle = tool((m.q(a) + m.q(b)) / 2);
          double least = 1e9, between = 0;
          for (std::size_t k = a; k <= b; ++k) {
@@ -320,7 +395,9 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          const double allowed = m.problem.limits.tool_path_error.value_or(1e-3);
          if (!(off > 1.5 * allowed + 1e-4)) return "";
          insert(m, *swing);
-         return words("by %.3g m, allowed are %.3g", off, allowed);
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, by %.3g m, allowed are %.3g"
+                                                                       : "by %.3g m, allowed are %.3g",
+                      off, allowed);
        }},
       {"something is met in a swing at rest", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
@@ -540,7 +617,7 @@ inline const std::vector<LegalChange>& legal_changes() {
        [](Judged& m, Random& random) -> std::string {
          if (m.chain().tool_may_turn()) return "";
          const auto swing = some_swing(m, random.uniform(0.01, 0.1), random);
-         if (!swing) return "";
+         if (!swing || !can_leave(m, swing->row)) return "";
          const auto [off, turned] = sway(m.chain(), m.q(swing->row), swing->other.row.q);
          if (off > 0.5 * m.problem.limits.tool_path_error.value_or(1e-3) ||
              turned > 0.5 * m.problem.limits.tool_angle_error.value_or(0.02))
@@ -555,7 +632,8 @@ inline const std::vector<LegalChange>& legal_changes() {
        [](Judged& m, Random& random) -> std::string {
          if (m.chain().tool_may_turn()) return "";
          const auto swing = some_swing(m, random.uniform(0.3, 0.9) * m.problem.limits.joint_step, random);
-         if (!swing || (swing->other.row.q - m.q(swing->row)).lpNorm<Eigen::Infinity>() > 0.95 * m.problem.limits.joint_step)
+         if (!swing || !can_leave(m, swing->row) ||
+             (swing->other.row.q - m.q(swing->row)).lpNorm<Eigen::Infinity>() > 0.95 * m.problem.limits.joint_step)
            return "";
          allow_swings(m);
          const auto [off, turned] = sway(m.chain(), m.q(swing->row), swing->other.row.q);
@@ -564,7 +642,9 @@ inline const std::vector<LegalChange>& legal_changes() {
          World::Query query(world);
          if (!is_clear(m, query, m.q(swing->row), swing->other.row.q, 4e-3)) return "";
          insert(m, *swing);
-         return words("the tool sways by %.3g m, which is allowed", off);
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, the tool sways by %.3g m, which is allowed"
+                                                                       : "the tool sways by %.3g m, which is allowed",
+                      off);
        }},
       {"row left out where the speed is steady", true, false,
        [](Judged& m, Random& random) -> std::string {

@@ -25,6 +25,7 @@ struct CheckResult {
   double worst_path_angle = 0;          ///< rad, the same at the nearest points of the path
   double largest_step = 0;              ///< a joint's move between two rows over what joint_step and speeds allow it
   double cost = 0;                      ///< of the rows as given, by the problem's metric
+  bool rounded = false;                 ///< the rows were judged on the path of motions, whose corners are rounded
   std::optional<double> min_clearance;  ///< m, of any pair at the rows
   std::optional<double> min_margin;     ///< m, least clearance of a pair less what it must keep
   struct LimitDistance {
@@ -63,7 +64,9 @@ struct CheckOptions {
 /// At a row:
 /// - all values are finite, and joints within their limits less joint_margin (1e-9 rad);
 /// - the tool is within 1e-6 m and 1e-6 rad of the path at s (1e-9 m). Where the path only turns, s repeats and the orientation
-///   tells the place; rows are matched to places such that they come in order;
+///   tells the place; rows are matched to places such that they come in order. Rows of check_trajectory() that leave the path are
+///   judged as those of with_motion_defaults() where that leaves fewer failures: plans from which motions are made follow that
+///   path;
 /// - manipulability (1e-9) and clearance (0.05 mm) are kept; contact is never forgiven;
 /// - of S-R-S arms, phi is the arm angle of the joints (1e-3 rad, whole turns aside), carried along the layers, for a row between
 /// two layers from
@@ -87,10 +90,20 @@ struct CheckOptions {
 /// (PreparedRobot::require_prepared_for).
 [[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
                                            const std::vector<TrajectoryRow>& rows, const CheckOptions& options = {});
-/// A motion in time: the same, and that speeds, accelerations and jerks of all joints are within joint_rates() (1e-6 of them) by
-/// divided differences of the joints, that v and a of the rows are those of the joints (within what acceleration and jerk change in
-/// a sample), and that limits.tool_speed and tool_turn_speed, where given, are kept (0.1 %). The tool may rest at both ends and at
-/// corners. The problem counts with_motion_defaults(), and nothing comes nearer between rows than d_edge (0.05 mm).
+/// A motion in time. The problem counts with_motion_defaults(). What check_trajectory() proves of rows and of the moves between them
+/// is proved of every row and every move here, with these differences:
+/// - the tool may rest at both ends of the path and at corners. Joints may move there, from one posture to another of the same
+///   tool pose, as long as the tool stays within tool_path_error and tool_angle_error of that pose (1 mm or 0.02 rad where one is
+///   not set) and nothing comes too near on the way;
+/// - times are finite and ascend.
+/// Besides, for a controller that moves joints straight from row to row, at rest before the first and after the last:
+/// - the speed of each move, the change of speed at each row, and the change of acceleration from row to row are within
+///   joint_rates() (1e-6 of them). A change is made within the mean of the steps that it belongs to, and within no more than the
+///   usual step: the median of the steps in which a joint moves. So the speed may not jump on either side of a gap in time. Steps
+///   that differ by 2 ns are equal;
+/// - v and a of every row, the first and the last as well, are those of the joints, within what acceleration and jerk change in a
+///   step;
+/// - limits.tool_speed and tool_turn_speed, where given, are kept (0.1 %).
 [[nodiscard]] CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,
                                        const CheckOptions& options = {});
 /// Throws std::logic_error where a program's own answer has failed: what fails first, and where.
