@@ -171,6 +171,15 @@ class Motion(unittest.TestCase):
         self.assertIn("jerk", fast.stdout)
         skipped = checked(lines[:middle] + [with_field(line, 0, lambda t: t - 0.004) for line in lines[middle + 1:]])
         self.assertEqual(skipped.returncode, 1)
+        gap = checked(lines[:middle] + [with_field(line, 0, lambda t: t + 0.5) for line in lines[middle:]])
+        self.assertEqual(gap.returncode, 1)
+        self.assertIn("at a gap in time: 0.504 s, where rows are 0.004 s apart", gap.stdout)
+        paused = checked(lines + [with_field(lines[-1], 0, lambda t: t + 0.5)])  # at rest
+        self.assertEqual(paused.returncode, 0, paused.stdout)
+        for end in (1, len(lines) - 1):
+            stated = checked(lines[:end] + [with_field(lines[end], 11, lambda v: 1000.0)] + lines[end + 1:])
+            self.assertEqual(stated.returncode, 1)
+            self.assertIn("is said to have 1000 rad/s", stated.stdout)
         said = checked(lines[:middle] + [with_field(lines[middle], 11, lambda v: v + 0.2)] + lines[middle + 1:])
         self.assertEqual(said.returncode, 1)
         self.assertIn("is said to have", said.stdout)

@@ -125,6 +125,12 @@ class Plans(unittest.TestCase):
         self.assertEqual(motion.joints.shape, motion.velocities.shape)
         wrong = swivel.Trajectory(np.roll(plan.joints, 1, axis=1), plan.trajectory.s, plan.trajectory.phi, plan.trajectory.branch)
         self.assertFalse(swivel.check(problem, wrong))
+        self.assertFalse(planner.check(plan.trajectory).rounded)
+        for refine in (False, True):  # its rows follow the rounded path of its motion
+            timed = swivel.plan(problem, speed=0.1, refine=refine)
+            check = swivel.check(problem, timed.trajectory)
+            self.assertTrue(check.passed, check)
+            self.assertTrue(check.rounded)
         barred = swivel.plan(PROBLEMS / "experiment_a_start.yaml")
         self.assertEqual(barred.status, swivel.Status.INFEASIBLE)
         self.assertEqual(barred.diagnosis.cause.kind, swivel.CauseKind.LIMIT)
