@@ -167,5 +167,30 @@ TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
   EXPECT_GE(tried, 1);
 }
 
+/// A tool that may stand turned turns further and further at rest, each time by less than is forgiven.
+TEST(CheckOfPlans, SmallChangesOfTheRollDoNotAddUp) {
+  Problem problem = problem_for(data_robot("iiwa14"));
+  const Quaterniond down(Eigen::AngleAxisd(3.0, Vector3d::UnitY()));
+  problem.waypoints = {{{0.5, -0.1, 0.6}, down}, {{0.5, 0.1, 0.6}, down}};
+  problem.roll = Roll{};
+  Planner planner(with_motion_defaults(problem));
+  const MotionPlan plan = plan_motion(planner, {}, false, TimingOptions{0.1, {}, 50, {}});
+  ASSERT_TRUE(plan.motion && plan.motion->motion);
+  const PreparedRobot robot(problem);
+  for (const bool far : {false, true}) {
+    std::vector<TimedRow> rows = plan.motion->motion->rows;
+    for (int k = 0; k < (far ? 400 : 20); ++k) {  // tool z is joint 7's axis
+      TimedRow before = rows.front();
+      before.t -= 100;
+      before.row.q[kDof - 1] += 0.9e-3;
+      before.row.roll += 0.9e-3;
+      rows.insert(rows.begin(), before);
+    }
+    const CheckResult result = check_motion(robot, problem, rows);
+    EXPECT_EQ(result.passed, !far) << first(result);
+    EXPECT_EQ(first(result).find("the roll comes") != std::string::npos, far) << first(result);
+  }
+}
+
 }  // namespace
 }  // namespace swivel

@@ -626,7 +626,9 @@ inline const std::vector<LegalChange>& legal_changes() {
          World::Query query(world);
          if (!is_clear(m, query, m.q(swing->row), swing->other.row.q, 2e-3)) return "";
          insert(m, *swing);
-         return words("the tool sways by %.3g m", off);
+         return words(swing->row > 0 && swing->row + 2 < m.rows.size() ? "at a corner, the tool sways by %.3g m"
+                                                                       : "the tool sways by %.3g m",
+                      off);
        }},
       {"large swing at rest", true, false,
        [](Judged& m, Random& random) -> std::string {
