@@ -165,6 +165,35 @@ std::vector<double> rolls_for_motion(const Roll& range, const ToolPath& path, co
   return rolls;
 }
 
+/// Whether the check finds that the tool leaves the tolerances of its path between the samples of a motion.
+bool strays_between(const PreparedRobot& robot, const Problem& problem, const TimedPath& motion, const Budget& budget) {
+  constexpr double kShare = 0.5;  // of the true distance: what is measured half way between samples beside a corner, at least
+  const Limits& limits = problem.limits;
+  if (!(limits.tool_path_error && motion.between_position > kShare * *limits.tool_path_error) &&
+      !(limits.tool_angle_error && motion.between_angle > kShare * *limits.tool_angle_error))
+    return false;
+  const CheckResult check = check_motion_in(robot.world(), robot, problem, motion.rows, {.margins = false, .budget = budget});
+  return check.worst_path_error > 0 || check.worst_path_angle > 0;  // of moves that fail
+}
+
+/// time_path(), slower where the tool would leave the path's tolerances between samples, as at few samples a second; no motion
+/// where it would do so all the same.
+TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& problem, const PathMotion& motion,
+                                    const JointRates& rates, const TimingOptions& options, const Budget& budget) {
+  TimingResult timed = time_path(motion, rates, options, budget);
+  if (!timed.motion || !strays_between(robot, problem, *timed.motion, budget)) return timed;
+  if (const auto& tolerance = problem.limits.tool_path_error; tolerance && *tolerance > 0) {
+    TimingOptions slower = options;
+    slower.chord = std::min(*tolerance / 2, options.chord.value_or(*tolerance));
+    timed = time_path(motion, rates, slower, budget);
+    if (!timed.motion) return timed;
+    timed.motion->warnings.emplace_back(
+        "the motion is slowed down: at this rate the tool would leave limits.tool_path_error between samples");
+    if (!strays_between(robot, problem, *timed.motion, budget)) return timed;
+  }
+  return {std::nullopt, NoMotion{0, "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
+}
+
 /// `between_layers`: where the motion through the rows is at fault between them, it may be led through postures of its own there.
 MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                        const TimingOptions& options, bool between_layers, const Budget& budget) {
@@ -199,7 +228,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
     auto start = std::chrono::steady_clock::now();
     const auto motion =
         make_path_motion(chain, robot.arm_class(), path, rows, apart, problem.limits.joint_margin + off_limits, between);
-    TimingResult timed = time_path(*motion, rates, options, budget);
+    TimingResult timed = time_within_tolerances(robot, problem, *motion, rates, options, budget);
     result.time_ms += ms_since(std::exchange(start, std::chrono::steady_clock::now()));
     Tried tried{std::move(timed.failure), motion->knots().size() == rows.size(), !motion->jumps().empty(), {}, {}};
     if (timed.motion) {

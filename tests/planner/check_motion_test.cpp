@@ -128,6 +128,30 @@ TEST(CheckOfPlans, RowsOfATimedPlanPass) {
   EXPECT_LE(of_all, 2);
 }
 
+/// At few samples a second the tool would leave its path between them: the motion is slowed down, or refused, but never wrong.
+TEST(CheckOfPlans, MotionsOfFewSamplesPass) {
+  int passed = 0, slowed = 0, refused = 0;
+  for (const char* name : {"kr6_weld_pipe", "ur5e_deburr_edge", "iiwa14_bench"}) {
+    const Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    for (const double rate : {2.0, 3.0, 5.0, 7.0, 10.0}) {
+      Planner planner(with_motion_defaults(problem));
+      const MotionPlan plan = plan_motion(planner, {}, false, TimingOptions{0.1, {}, rate, {}});  // proves its answer
+      ASSERT_TRUE(plan.motion) << name;
+      refused += plan.motion->failure.has_value();
+      if (!plan.motion->motion) continue;
+      const TimedPath& motion = *plan.motion->motion;
+      const CheckResult result = check_motion(PreparedRobot(problem), problem, motion.rows, {false, {}});
+      EXPECT_TRUE(result.passed) << name << " at " << rate << ": " << first(result);
+      ++passed;
+      slowed += std::any_of(motion.warnings.begin(), motion.warnings.end(),
+                            [](const std::string& line) { return line.find("slowed down") != std::string::npos; });
+    }
+  }
+  std::printf("%d passed, %d of them slowed down, %d refused\n", passed, slowed, refused);
+  EXPECT_GE(passed, 10);
+  EXPECT_GE(slowed, 3);
+}
+
 /// The tool turns away on the spot and comes back. A motion that rests meanwhile has the same poses at its rows, and turns nowhere.
 TEST(CheckOfPlans, ATurnThereAndBackIsNotLeftOut) {
   Problem problem = problem_for(data_robot("iiwa14"));
