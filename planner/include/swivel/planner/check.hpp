@@ -52,8 +52,8 @@ struct CheckResult {
 
 struct CheckOptions {
   /// Whether worst errors and least clearances are found out, and FCL alone is asked. Else the verdict comes sooner: certificates
-  /// answer where they prove, the second bodies that come too near are not looked for, and worst_path_error, worst_path_angle,
-  /// min_clearance and min_margin stay unset.
+  /// answer where they prove, the second bodies that come too near are not looked for, worst_path_error and worst_path_angle are
+  /// those of moves that fail by them, and min_clearance and min_margin stay unset.
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
 };
@@ -90,8 +90,8 @@ struct CheckOptions {
 /// (PreparedRobot::require_prepared_for).
 [[nodiscard]] CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
                                            const std::vector<TrajectoryRow>& rows, const CheckOptions& options = {});
-/// A motion in time. The problem counts with_motion_defaults(). What check_trajectory() proves of rows and of the moves between them
-/// is proved of every row and every move here, with these differences:
+/// A motion in time. The problem counts with_motion_defaults(). What check_trajectory() proves of rows and of the moves between
+/// them is proved of every row and every move here, with these differences:
 /// - the tool may rest at both ends of the path and at corners. Joints may move there, from one posture to another of the same
 ///   tool pose, as long as the tool stays within tool_path_error and tool_angle_error of that pose (1 mm or 0.02 rad where one is
 ///   not set) and nothing comes too near on the way;
