@@ -9,6 +9,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/check.hpp"
+#include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -78,7 +79,11 @@ int run(const CheckArguments& arguments) {
   const Chain& chain = robot.arm().chain;
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
   const auto& rows = file.rows;
-  const CheckResult result = file.timed.empty() ? check_trajectory(robot, problem, rows) : check_motion(robot, problem, file.timed);
+  const auto complete = [&](const auto& work) { return in_the_name_of(arguments.trajectory, work); };
+  const CheckResult result =
+      file.timed.empty()
+          ? check_trajectory(robot, problem, complete([&] { return complete_rows(robot, problem, rows, file.stated); }))
+          : check_motion(robot, problem, complete([&] { return complete_motion(robot, problem, file.timed, file.stated); }));
   for (const std::string& failure : result.failures) std::printf("%s\n", failure.c_str());
   const auto shown = static_cast<std::int64_t>(result.failures.size());
   if (result.failure_count > shown) std::printf("and %lld more\n", static_cast<long long>(result.failure_count - shown));
@@ -97,7 +102,7 @@ void add_check(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("check", "Verify a trajectory, or that there is none, independently of the planners");
   auto arguments = std::make_shared<CheckArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("trajectory", arguments->trajectory, "trajectory or motion file (CSV)");
+  command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile);
   command->add_option("--certificate", arguments->certificate,
                       "instead of a trajectory: what `plan --certificate` wrote, that there is no path");
   arguments->lattice.add_to(*command);

@@ -9,6 +9,7 @@
 #include "search_options.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
+#include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
 
@@ -41,7 +42,7 @@ int run(const TimeArguments& arguments) {
   const TimingOptions options = arguments.motion.timing(problem);
   const PreparedRobot robot(problem);
   const io::JointNames& names = robot.arm().chain.joint_names;
-  auto rows = io::load_trajectory(arguments.trajectory, names);
+  const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, names);
   io::OutputFiles outputs(noted->files());
   noted.reset();
   outputs.add("--out", arguments.out);
@@ -49,8 +50,11 @@ int run(const TimeArguments& arguments) {
   std::optional<MotionResult> timed;
   try {
     timed = in_the_name_of(arguments.trajectory, [&] {
-      if (arguments.refine) rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
       const Budget budget(std::nullopt, &interrupted);
+      // The rows of a motion stand on the rounded path.
+      const Problem of_rows = file.timed.empty() ? problem : with_motion_defaults(problem);
+      std::vector<TrajectoryRow> rows = rows_at_layers(robot, of_rows, file.rows, file.stated, budget);
+      if (arguments.refine) rows = refined(robot, problem, rows, arguments.quiet || outputs.takes_standard_output());
       MotionResult result = time_trajectory(robot, problem, rows, options, budget);
       if (result.motion && !arguments.no_check)
         require_passed(check_motion(robot, problem, result.motion->rows, {.margins = false, .budget = budget}));
@@ -87,7 +91,7 @@ void add_time(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("time", "Make a trajectory a motion in time that a controller can run");
   auto arguments = std::make_shared<TimeArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("problem", arguments->problem, "problem file")->required();
-  command->add_option("trajectory", arguments->trajectory, "trajectory file (CSV)")->required();
+  command->add_option("trajectory", arguments->trajectory, io::kTrajectoryFile)->required();
   arguments->motion.add_to(*command);
   command->add_flag("--refine", arguments->refine,
                     "move the rows off the lattice's nodes first: cheaper and smoother, never dearer");

@@ -70,12 +70,27 @@ std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
   }
 }
 
-CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers) : file_(file.string()) {
+namespace {
+
+/// The header is one of those known.
+CsvTable::Header one_of(const std::vector<std::vector<std::string>>& headers) {
   std::string allowed;
   for (const std::vector<std::string>& header : headers) allowed += (allowed.empty() ? "" : " or ") + joined(header);
+  return {"the header " + allowed, [headers, allowed](const std::vector<std::string>& fields, const std::string& where) {
+            if (std::find(headers.begin(), headers.end(), fields) == headers.end())
+              bad_input(where, "header is '" + joined(fields) + "'", "the header " + allowed);
+          }};
+}
+
+}  // namespace
+
+CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers)
+    : CsvTable(file.string(), read_file(file, "CSV file", kMostTableBytes), one_of(headers)) {
+  header_ = static_cast<std::size_t>(std::find(headers.begin(), headers.end(), columns_) - headers.begin());
+}
+
+CsvTable::CsvTable(std::string file, std::string_view rest, const Header& header) : file_(std::move(file)) {
   constexpr std::size_t kMostRows = 1'000'000, kMostLineBytes = std::size_t{1} << 20;
-  const std::string text = read_file(file, "CSV file", kMostTableBytes);
-  std::string_view rest = text;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
   bool header_seen = false;
   for (int line_number = 1; !rest.empty(); ++line_number) {
@@ -86,29 +101,26 @@ CsvTable::CsvTable(const std::filesystem::path& file, const std::vector<std::vec
     // A field takes many times its bytes.
     if (line.size() > kMostLineBytes)
       bad_input(at_line(file_, line_number), "has " + std::to_string(line.size()) + " bytes", "a line of at most 1 MiB");
-    const std::vector<std::string> fields = csv_fields(line, line.size());
+    std::vector<std::string> fields = csv_fields(line, line.size());
     if (!header_seen) {
-      const auto found = std::find(headers.begin(), headers.end(), fields);
-      if (found == headers.end())
-        bad_input(at_line(file_, line_number), "header is '" + std::string(line) + "'", "the header " + allowed);
-      header_ = static_cast<std::size_t>(found - headers.begin());
-      columns_ = found->size();
+      header.require(fields, at_line(file_, line_number));
+      columns_ = std::move(fields);
       header_seen = true;
       continue;
     }
     if (rows() == kMostRows) bad_input(at_line(file_, line_number), "too many data rows", "at most " + std::to_string(kMostRows));
     lines_.push_back(line_number);
-    if (fields.size() != columns_)
+    if (fields.size() != columns_.size())
       bad_input(where(rows() - 1), "has " + std::to_string(fields.size()) + " columns",
-                std::to_string(columns_) + " columns: " + joined(headers[header_]));
-    for (std::size_t k = 0; k < columns_; ++k) {
+                std::to_string(columns_.size()) + " columns: " + joined(columns_));
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
       const auto value = to_number<double>(fields[k]);
       if (!value || !std::isfinite(*value))
-        bad_input(where(rows() - 1) + ": " + headers[header_][k], "'" + fields[k] + "' is not a number", "a finite number");
+        bad_input(where(rows() - 1) + ": " + columns_[k], "'" + fields[k] + "' is not a number", "a finite number");
       values_.push_back(*value);
     }
   }
-  if (!header_seen) bad_input(file_, "is empty", "the header " + allowed + " and at least two data rows");
+  if (!header_seen) bad_input(file_, "is empty", header.allowed + " and at least two data rows");
   if (rows() < 2) bad_input(file_, "has " + std::to_string(rows()) + " data row(s)", "at least two data rows after the header");
 }
 

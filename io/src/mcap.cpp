@@ -5,6 +5,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "mcap_records.hpp"
 #include "moved_joints.hpp"
 #include "stamp.hpp"
 #include "swivel/io/motion.hpp"
@@ -37,20 +38,6 @@ class Bytes {
 
  private:
   std::string text_;
-};
-
-enum Opcode : std::uint8_t {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07,
-  kChunkIndex = 0x08,
-  kStatistics = 0x0B,
-  kSummaryOffset = 0x0E,
-  kDataEnd = 0x0F
 };
 
 std::string record(Opcode opcode, const Bytes& content) {
@@ -93,7 +80,7 @@ class Cdr {
     return *this;
   }
   /// Behind the four bytes that name the representation.
-  [[nodiscard]] std::string message() const { return std::string("\0\1\0\0", 4) + bytes_.text(); }
+  [[nodiscard]] std::string message() const { return std::string(kLittleEndianCdr) + bytes_.text(); }
 
  private:
   Bytes bytes_;
@@ -119,7 +106,7 @@ std::uint64_t nanoseconds(double t) {
 
 std::string to_mcap(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id) {
   constexpr std::uint16_t kSchemaId = 1, kChannelId = 0;
-  const std::string magic("\x89MCAP0\r\n", 8);
+  const std::string magic(kMcapMagic);
   const std::uint64_t begin = nanoseconds(motion.rows.front().t), end = nanoseconds(motion.rows.back().t);
   const std::string schema =
       record(kSchema, Bytes().add(kSchemaId).counted("sensor_msgs/msg/JointState").counted("ros2msg").counted(kJointState));

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "csv.hpp"
 #include "schema.hpp"
 #include "swivel/core/plan.hpp"
 
@@ -15,11 +14,5 @@ namespace swivel::io {
 [[nodiscard]] std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names, bool roll);
 /// What stands in the columns of a trajectory.
 [[nodiscard]] std::string trajectory_fields(const TrajectoryRow& row, bool roll);
-/// Columns `first` ... of row k; how many there are.
-struct ReadRow {
-  TrajectoryRow row;
-  std::size_t columns = 0;
-};
-[[nodiscard]] ReadRow read_trajectory_row(const CsvTable& table, std::size_t k, std::size_t first, bool roll);
 
 }  // namespace swivel::io

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bad_input.hpp"
 #include "csv.hpp"
 #include "files.hpp"
 #include "schema.hpp"
@@ -50,22 +49,6 @@ std::string trajectory_fields(const TrajectoryRow& row, bool roll) {
   return text;
 }
 
-ReadRow read_trajectory_row(const CsvTable& table, std::size_t k, std::size_t first, bool roll) {
-  const std::span<const double> values = table.row(k).subspan(first);
-  ReadRow read;
-  const auto next = [&] { return values[read.columns++]; };
-  read.row.s = next();
-  read.row.phi = next();
-  if (roll) read.row.roll = next();
-  const double branch = next();
-  if (!(branch >= 0 && branch <= 7) || branch != static_cast<int>(branch))
-    bad_input(table.where(k) + ": branch", "is " + format_double(branch), "a whole number from 0 to 7");
-  read.row.branch = static_cast<int>(branch);
-  read.row.q = Config::Map(values.data() + read.columns);
-  read.columns += kDof;
-  return read;
-}
-
 std::string to_csv(const PlanResult& result) {
   std::string text;
   const bool roll = any_rolls(result.trajectory);
@@ -78,15 +61,6 @@ std::string to_csv(const PlanResult& result) {
 
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result) {
   write_file(csv, to_csv(result));
-}
-
-std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv, const std::array<std::string, kDof>& joint_names) {
-  const CsvTable table(csv,
-                       {csv_header(trajectory_schema(), joint_names, false), csv_header(trajectory_schema(), joint_names, true)});
-  std::vector<TrajectoryRow> rows;
-  rows.reserve(table.rows());
-  for (std::size_t k = 0; k < table.rows(); ++k) rows.push_back(read_trajectory_row(table, k, 0, table.header() == 1).row);
-  return rows;
 }
 
 }  // namespace swivel::io

@@ -139,4 +139,11 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
   return motion;
 }
 
+std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows) {
+  const Samples samples(rows);
+  std::vector<RowRates> rates;
+  for (std::ptrdiff_t k = 0; k < samples.size(); ++k) rates.push_back({samples.mean_speed(k), samples.acceleration(k)});
+  return rates;
+}
+
 }  // namespace swivel

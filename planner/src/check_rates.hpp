@@ -16,4 +16,11 @@ namespace swivel {
                                                                const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
                                                                const std::function<void(const std::string&)>& fail);
 
+/// Speed and acceleration at each row of a motion of at least two, rad/s and rad/s^2, as its joints and times say: what
+/// examine_rates() holds those that are stated against. Times must ascend.
+struct RowRates {
+  Config v, a;
+};
+[[nodiscard]] std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows);
+
 }  // namespace swivel

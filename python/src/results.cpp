@@ -7,6 +7,7 @@
 #include "swivel/core/answer_text.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/complete_rows.hpp"
 
 namespace swivel::python {
 
@@ -88,10 +89,21 @@ void save_trajectory(const Trajectory& trajectory, const std::filesystem::path& 
   io::write_trajectory(csv, result);
 }
 
-py::object load_trajectory(const std::filesystem::path& csv, const std::vector<std::string>& names) {
+py::object load_trajectory(const std::filesystem::path& name, const std::vector<std::string>& names, const Problem* problem) {
   const io::JointNames joint_names = to_joint_names(names);
-  io::TrajectoryFile file = io::load_trajectory_file(csv, joint_names);
-  if (file.timed.empty()) return py::cast(Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names});
+  io::TrajectoryFile file = io::load_trajectory_file(name, joint_names);
+  const bool timed = !file.timed.empty();
+  if (!(timed ? file.stated.motions() : file.stated.rows())) {
+    if (problem == nullptr)
+      throw InputError(name.string() + ": does not state all of s, phi, branch, " + (timed ? "speeds and accelerations" : "roll") +
+                       ": allowed is a problem as well, by which they can be worked out");
+    const PreparedRobot robot(*problem);
+    if (timed)
+      file.timed = complete_motion(robot, *problem, std::move(file.timed), file.stated);
+    else
+      file.rows = complete_rows(robot, *problem, std::move(file.rows), file.stated);
+  }
+  if (!timed) return py::cast(Trajectory{std::make_shared<const Rows>(std::move(file.rows)), joint_names});
   auto timing = std::make_shared<TimingResult>();
   TimedPath& path = timing->motion.emplace();
   path.duration = file.timed.back().t;
@@ -475,8 +487,11 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "bend", [](const RefinedPath& x) { return x.refined->bend; }, "rad/m^2.")
       .def("__repr__", [](const RefinedPath& x) { return "<Refined " + refined_words(*x.refined) + ">"; });
-  m.def("load_trajectory", &load_trajectory, py::arg("file"), py::arg("joint_names"),
-        "A Trajectory, or a Motion where the CSV has times. The file's joint names must be those given. Raises InputError.");
+  m.def(
+      "load_trajectory", &load_trajectory, py::arg("file"), py::arg("joint_names"), py::arg("problem") = py::none(),
+      "A Trajectory, or a Motion where the file has times: any CSV, JSON, YAML or MCAP that `swivel check` reads. The file's joint "
+      "names must be those given. What the file does not state (s, phi, branch, roll; of motions speeds and accelerations) is "
+      "worked out from the joints and the problem. Raises InputError.");
 }
 
 void bind_plan(py::module_& m) {

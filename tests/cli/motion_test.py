@@ -418,10 +418,51 @@ class Motion(unittest.TestCase):
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn(word, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1)
-        # Rows of another resolution are at no layers of this one.
-        done = run("time", self.problem, self.trajectory, "--speed", "0.1", "--ds", "0.03", "--dphi", "0.1")
+
+    def test_any_trajectory_is_checked_and_timed(self):
+        """The same joints in every format, by themselves or with what Swivel writes besides."""
+        files = {"t.csv": self.trajectory}
+        for ending in ("csv", "json", "yaml", "mcap"):
+            files[f"motion.{ending}"], _ = self.timed(f"foreign_motion.{ending}", "--speed", "0.1", "--rate", "30")
+        for name, source, wanted in (("joints.csv", self.trajectory, "j"), ("s_joints.csv", self.trajectory, "sj"),
+                                     ("t_joints.csv", files["motion.csv"], "tj")):
+            header, rows = self.table(source)
+            chosen = [k for k, column in enumerate(header) if column == "t" and "t" in wanted or column == "s" and "s" in wanted
+                      or column.startswith("arm_left_joint") and not column.endswith(("_v", "_a"))][::-1]
+            self.assertEqual(len(chosen), 6 + len(wanted))
+            files[name] = self.folder / f"foreign_{name}"
+            files[name].write_text("\n".join(",".join(map(str, row)) for row in
+                                             [[line[k] for k in chosen] for line in [header, *rows]]) + "\n")
+        for name, file in files.items():
+            with self.subTest(name):
+                check = run("check", self.problem, file, *COARSE)
+                self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+                out = self.folder / "again.csv"
+                done = run("time", self.problem, file, "--speed", "0.1", "--out", out, *COARSE)
+                self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                self.assertEqual(run("check", self.problem, out, *COARSE).returncode, 0)
+        # Rows of another resolution are moved to the layers of this one.
+        finer = ("--ds", "0.013", "--dphi", "0.1")
+        done = run("time", self.problem, files["joints.csv"], "--speed", "0.1", "--out", out, *finer)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertEqual(run("check", self.problem, out, *finer).returncode, 0)
+        # A joint that is not of the arm is refused; a pose off the path is told by how much.
+        header, *rows = files["joints.csv"].read_text().splitlines()
+        bad = self.folder / "foreign_bad.csv"
+        for command in (("check", self.problem, bad), ("time", self.problem, bad, "--speed", "0.1")):
+            bad.write_text("\n".join([header + ",finger", *(row + ",0" for row in rows)]) + "\n")
+            done = run(*command, *COARSE)
+            self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
+            self.assertIn("foreign_bad.csv:1: column 'finger'", done.stderr)
+        moved = rows[3].split(",")
+        moved[3] = repr(float(moved[3]) + 1e-3)
+        bad.write_text("\n".join([header, *rows[:3], ",".join(moved), *rows[4:]]) + "\n")
+        done = run("check", self.problem, bad, *COARSE)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("row 3: the tool is ", done.stdout)
+        done = run("time", self.problem, bad, "--speed", "0.1", *COARSE)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("at no layer", done.stderr)
+        self.assertIn("foreign_bad.csv: row 3: the tool is ", done.stderr)
 
     def test_limits_of_the_problem_file_come_first(self):
         text = self.problem.read_text().replace("../", str(PROBLEMS.parent) + "/")

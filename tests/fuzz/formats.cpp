@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstring>
 
 #include "robots.hpp"
@@ -209,7 +210,7 @@ std::vector<Reader> readers(const TempFolder& folder) {
   all.push_back({"trajectory",
                  {TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,"},
-                 at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory(file, joints); })});
+                 at("trajectory.csv", [joints](const fs::path& file) { (void)io::load_trajectory_file(file, joints); })});
   TimedPath motion;
   for (int k = 0; k < 5; ++k)
     motion.rows.push_back(
@@ -219,6 +220,23 @@ std::vector<Reader> readers(const TempFolder& folder) {
                  {timed, TempFolder::read(folder.path() / "good.csv")},
                  {",", "\"", "\n", "1e9,", first_lines(timed, 1)},
                  at("motion.csv", [joints](const fs::path& file) { (void)io::load_trajectory_file(file, joints); })});
+  const auto message = [&](const char* name, const char* file, std::string seed, std::vector<std::string> words) {
+    all.push_back({name, {std::move(seed)}, std::move(words), at(file, [joints](const fs::path& path) {
+                     (void)io::load_trajectory_file(path, joints);
+                   })});
+  };
+  // What is changed in the frame's name is read as before.
+  const std::string frame(2000, 'x');
+  message(
+      "motion_json", "motion.json", io::to_trajectory_json(motion, joints, frame),
+      {"0", "1e999", "[", "]", "{", "}", ",", "null", "-1", "\"positions\": [", "\"sec\": 2147483647", "\"nanosec\": 999999999"});
+  std::vector<std::string> yaml_words = kYamlWords;
+  yaml_words.insert(yaml_words.end(), {"positions: [", "- positions: [1, 2]\n", "sec: 2147483647", "nanosec: 999999999", ".nan"});
+  message("motion_yaml", "motion.yaml", io::to_trajectory_yaml(motion, joints, frame), yaml_words);
+  const auto little_endian = [](std::uint64_t value, std::size_t size) { return bytes(&value, size); };
+  message("mcap", "motion.mcap", io::to_mcap(motion, joints, frame),
+          {little_endian(0, 8), little_endian(1, 2), little_endian(7, 4), little_endian(~std::uint64_t{0}, 8),
+           little_endian(0x7FFFFFFF, 4), "\x03", "\x04", "\x05", "\x06", "\x0F", "cdr", "zstd", "sensor_msgs/msg/JointState"});
   const io::RunSettings settings{{{"seed", "1"}, {"planner", "lazy"}}, {{"arm.urdf", 0x0123456789abcdef}}};
   {
     io::CampaignFile part(folder.path() / "good_results.csv", settings, {}, 100);

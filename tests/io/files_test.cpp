@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "io_support.hpp"
+#include "swivel/io/motion.hpp"
 
 namespace swivel::io::test {
 namespace {
@@ -108,8 +109,8 @@ TEST(Files, InputsAreNotedWithTheirContents) {
   const std::array<std::string, kDof> names{"1", "2", "3", "4", "5", "6", "7"};
   const auto noted = [&] {
     const InputFiles inputs(InputFiles::Contents::kHash);
-    (void)load_trajectory(file, names);
-    (void)load_trajectory(file, names);
+    (void)load_trajectory_file(file, names);
+    (void)load_trajectory_file(file, names);
     return inputs.files();
   };
   const auto before = noted();
@@ -121,7 +122,7 @@ TEST(Files, InputsAreNotedWithTheirContents) {
   folder.write("t.csv", TempFolder::read(file) + "\n");
   const auto after = noted();
   EXPECT_NE(before[0].hash, after[0].hash);
-  (void)load_trajectory(file, names);  // nobody listens
+  (void)load_trajectory_file(file, names);  // nobody listens
 }
 
 TEST(Files, CampaignsKnowTheirSettings) {

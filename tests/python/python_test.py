@@ -239,8 +239,15 @@ class Memory(unittest.TestCase):
             for ending in ("csv", "json", "yaml", "mcap"):
                 motion.save(Path(folder) / f"m.{ending}")
                 self.assertGreater((Path(folder) / f"m.{ending}").stat().st_size, 1000)
+                read = swivel.load_trajectory(Path(folder) / f"m.{ending}", motion.joint_names, experiment("c"))
+                np.testing.assert_array_equal(read.joints, motion.joints)
+                np.testing.assert_allclose(read.s, motion.s, atol=1e-6)
+                check = swivel.check(experiment("c"), read)
+                self.assertTrue(check.passed, check.failures)
             read = swivel.load_trajectory(Path(folder) / "m.csv", motion.joint_names)
             np.testing.assert_array_equal(read.velocities, motion.velocities)
+            with self.assertRaisesRegex(swivel.InputError, "m.mcap: does not state"):
+                swivel.load_trajectory(Path(folder) / "m.mcap", motion.joint_names)
 
     def test_parts_of_a_problem_change_in_place(self):
         problem = experiment("c")

@@ -53,9 +53,6 @@ using MeshCache = std::map<std::string, MeshPtr>;
 [[nodiscard]] std::string to_csv(const PlanResult& result);
 /// The same as a file, written beside and renamed.
 void write_trajectory(const std::filesystem::path& csv, const PlanResult& result);
-/// Joint names of the header must be those given.
-[[nodiscard]] std::vector<TrajectoryRow> load_trajectory(const std::filesystem::path& csv,
-                                                         const std::array<std::string, kDof>& joint_names);
 
 /// RESULT.json as text, docs/formats.md. Cost, tool-path error and manipulability are null unless solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);

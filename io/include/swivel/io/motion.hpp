@@ -10,6 +10,7 @@
 #include "swivel/core/cut.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/refined.hpp"
+#include "swivel/core/stated.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel::io {
@@ -42,12 +43,20 @@ struct Aftermath {
 /// to_json(result) with the keys `refinement`, `motion`, `advice` and `certificate` filled in. docs/formats.md "Result".
 [[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
-/// A trajectory as a file has it.
+/// A trajectory as a file has it. What is not stated is 0.
 struct TrajectoryFile {
   std::vector<TrajectoryRow> rows;
   std::vector<TimedRow> timed;  ///< the same rows where the file has times, else empty
+  Stated stated;
 };
-/// TRAJ.csv, or a motion's CSV: the header tells. Times must ascend.
-[[nodiscard]] TrajectoryFile load_trajectory_file(const std::filesystem::path& csv, const JointNames& joint_names);
+/// What it reads, in a line for the help of commands.
+inline constexpr const char* kTrajectoryFile =
+    "any trajectory or motion of the arm: CSV with columns by name (the joints are enough; t, s, phi, roll, branch, and joints "
+    "with "
+    "_v and _a may be there), JSON or YAML (JointTrajectory), MCAP (JointState); the contents tell which";
+/// Any trajectory of the arm, docs/formats.md "Trajectories that are read": all that Swivel writes, and CSV files, JointTrajectory
+/// messages and JointState logs of other programs. The file's contents tell the format. Every joint must be there and no other;
+/// times must ascend.
+[[nodiscard]] TrajectoryFile load_trajectory_file(const std::filesystem::path& file, const JointNames& joint_names);
 
 }  // namespace swivel::io

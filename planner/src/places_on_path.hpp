@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <limits>
+#include <vector>
+
+#include "swivel/core/tool_path.hpp"
+
+namespace swivel {
+
+/// Finds where on a path a tool stands. A place is a layer's number plus the fraction of the step from it, as of pose_at().
+class PlacesOnPath {
+ public:
+  /// m and rad: a tool this near to the path is on it.
+  static constexpr double kOnPath = 1e-6;
+
+  /// `curved`: the path is rounded, by at most `rounding` metres from its polyline. `any_turn`: the turn of the tool about its own
+  /// z axis does not count.
+  PlacesOnPath(const ToolPath& path, bool curved, double rounding, bool any_turn);
+
+  /// All places at which the path has the tool's pose, ascending; where s is given, those that have it within 1e-9 m.
+  [[nodiscard]] std::vector<double> fits(const Pose& tool, double s = std::numeric_limits<double>::quiet_NaN()) const;
+  /// The place between two places that comes nearest to the tool; metres and radians count alike.
+  [[nodiscard]] double nearest(const Pose& tool, double from, double to) const;
+  /// Whether the path has the tool's pose there.
+  [[nodiscard]] bool fits_at(const Pose& tool, double place) const;
+  /// m along the path.
+  [[nodiscard]] double s_at(double place) const;
+  /// A place that has this s: the first, where the path turns on the spot.
+  [[nodiscard]] double place_at(double s) const;
+
+ private:
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  struct Box {
+    Vector3d low, high;
+    /// From the tool's position to the box, m.
+    [[nodiscard]] double distance(const Vector3d& point) const { return (point - point.cwiseMax(low).cwiseMin(high)).norm(); }
+  };
+  [[nodiscard]] Vector6 off(const Pose& there, const Pose& tool) const;
+  [[nodiscard]] double share_of(int step, const Pose& tool, double low, double high) const;
+  template <class Reaches, class Visit>
+  void search(std::size_t node, const Vector3d& point, const Reaches& reaches, const Visit& visit) const;
+
+  const ToolPath* path_;
+  bool curved_, any_turn_;
+  std::size_t leaves_ = 1;  // a power of two
+  std::vector<Box> boxes_;  // a binary tree of runs of steps: 1 is the root, 2k and 2k + 1 are below k
+};
+
+}  // namespace swivel
