@@ -40,6 +40,7 @@ class Completion {
         class_(robot.arm_class()),
         rows_(std::move(rows)),
         path_(problem_path(problem, chain_, budget)),
+        first_turn_(problem.start ? (*problem.start)[kDof - 1] : 0),
         any_turn_(chain_.roll ? !stated.last_joint : chain_.free_roll && !stated.roll),
         places_(path_, problem.smooth.has_value(), problem.smooth ? problem.smooth->position : 0, any_turn_) {
     if (!stated.last_joint && !chain_.roll)
@@ -53,10 +54,8 @@ class Completion {
   [[nodiscard]] std::ptrdiff_t off_path() const { return std::count(on_path_.begin(), on_path_.end(), false); }
 
   /// The rows with what was not stated.
-  std::vector<TrajectoryRow> label() {
-    if (class_.srs && !stated_.phi) planes_ = carried_planes(*class_.srs, path_, budget_);
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-      if (rows_[k].q.allFinite()) label(k);
+  std::vector<TrajectoryRow> rows() {
+    label();
     return std::move(rows_);
   }
 
@@ -239,6 +238,12 @@ class Completion {
     return best.value_or(nearest);
   }
 
+  void label() {
+    if (class_.srs && !stated_.phi) planes_ = carried_planes(*class_.srs, path_, budget_);
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+      if (rows_[k].q.allFinite()) label(k);
+  }
+
   void label(std::size_t k) {
     TrajectoryRow& row = rows_[k];
     const Pose there = pose_at(path_, place_[k]);
@@ -246,7 +251,7 @@ class Completion {
     if (!stated_.last_joint) {
       const JointLimit& limit = chain_.limit.back();
       const std::optional<Roll> bounds = limit.continuous ? std::optional<Roll>() : Roll{limit.lower, limit.upper};
-      row.q[kDof - 1] = image_near(roll_between(there, tools_[k]), k > 0 ? rows_[k - 1].q[kDof - 1] : 0, bounds);
+      row.q[kDof - 1] = image_near(roll_between(there, tools_[k]), k > 0 ? rows_[k - 1].q[kDof - 1] : first_turn_, bounds);
     }
     if (chain_.free_roll && !stated_.roll) {
       const Roll& range = *chain_.free_roll;
@@ -281,6 +286,7 @@ class Completion {
   const ArmClass& class_;
   std::vector<TrajectoryRow> rows_;
   ToolPath path_;
+  double first_turn_;  // rad, near which the last joint begins where it is worked out
   bool any_turn_;
   PlacesOnPath places_;
   std::vector<Pose> tools_;
@@ -308,7 +314,7 @@ std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Prob
 
 std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows,
                                          const Stated& stated, const Budget& budget) {
-  return stated.rows() ? rows : completion_of(robot, problem, rows, stated, budget)->label();
+  return stated.rows() ? rows : completion_of(robot, problem, rows, stated, budget)->rows();
 }
 
 std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem, std::vector<TimedRow> rows,

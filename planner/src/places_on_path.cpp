@@ -16,13 +16,13 @@ constexpr std::size_t kLeaf = 16;  // steps of a box
 }  // namespace
 
 PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, bool any_turn)
-    : path_(&path), curved_(curved), any_turn_(any_turn) {
+    : path_(&path), curved_(curved), any_turn_(any_turn), aside_(2 * rounding + 1e-9) {
   const auto steps = static_cast<std::size_t>(path.size() - 1);
   while (leaves_ * kLeaf < steps) leaves_ *= 2;
   const double infinity = std::numeric_limits<double>::infinity();
   boxes_.assign(2 * leaves_, {Vector3d::Constant(infinity), Vector3d::Constant(-infinity)});
   // Layers lie on the curve, which leaves the polyline by `rounding`; so does what lies between them.
-  const Vector3d aside = Vector3d::Constant(2 * rounding + 1e-9);
+  const Vector3d aside = Vector3d::Constant(aside_);
   for (std::size_t i = 0; i < steps; ++i)
     for (const std::size_t layer : {i, i + 1}) {
       Box& box = boxes_[leaves_ + i / kLeaf];
@@ -33,6 +33,14 @@ PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, b
   for (std::size_t node = leaves_; --node > 0;)
     boxes_[node] = {boxes_[2 * node].low.cwiseMin(boxes_[2 * node + 1].low),
                     boxes_[2 * node].high.cwiseMax(boxes_[2 * node + 1].high)};
+}
+
+/// A lower bound on the distance of a point from a step of the path, m.
+double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
+  const Vector3d from = path_->layer(step).tool.translation(), along = path_->layer(step + 1).tool.translation() - from;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0 ? std::clamp((point - from).dot(along) / length2, 0.0, 1.0) : 0;
+  return (point - from - t * along).norm() - aside_;
 }
 
 /// What takes a pose to the tool, m and rad.
@@ -88,6 +96,7 @@ std::vector<double> PlacesOnPath::fits(const Pose& tool, double s) const {
   std::vector<double> found;
   const bool given = !std::isnan(s);
   const auto visit = [&](int step) {
+    if (least_distance(step, tool.translation()) > kOnPath) return;
     const PathLayer& layer = path_->layer(step);
     double low = 0, high = 1;
     if (given) {
@@ -120,7 +129,7 @@ double PlacesOnPath::nearest(const Pose& tool, double from, double to) const {
       1, tool.translation(), [&](double distance) { return distance < least; },
       [&](int step) {
         const double low = std::max(0.0, from - step), high = std::min(1.0, to - step);
-        if (!(low <= high)) return;
+        if (!(low <= high) || least_distance(step, tool.translation()) >= least) return;
         const double t = share_of(step, tool, low, high), place = t == 1 ? step + 1 : step + t;
         const double distance = off(pose_at(*path_, place), tool).norm();
         if (distance < least) best = place, least = distance;

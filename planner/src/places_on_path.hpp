@@ -37,11 +37,13 @@ class PlacesOnPath {
   };
   [[nodiscard]] Vector6 off(const Pose& there, const Pose& tool) const;
   [[nodiscard]] double share_of(int step, const Pose& tool, double low, double high) const;
+  [[nodiscard]] double least_distance(int step, const Vector3d& point) const;
   template <class Reaches, class Visit>
   void search(std::size_t node, const Vector3d& point, const Reaches& reaches, const Visit& visit) const;
 
   const ToolPath* path_;
   bool curved_, any_turn_;
+  double aside_;            // m, how far the path may be from the chord of a step
   std::size_t leaves_ = 1;  // a power of two
   std::vector<Box> boxes_;  // a binary tree of runs of steps: 1 is the root, 2k and 2k + 1 are below k
 };
