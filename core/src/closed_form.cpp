@@ -569,6 +569,7 @@ LockMethod lock_method(const Chain& chain) {
   constexpr double kLeastShare = 1e-3;
   constexpr int kSamples = 64;
   LockMethod result;
+  result.roll = chain.roll;
   std::array<double, kDof> share{};
   for (int sample = 1; sample <= kSamples; ++sample) {
     Config q;
@@ -610,9 +611,13 @@ LockMethod lock_method(const Chain& chain) {
 std::string LockMethod::words() const {
   if (best < 0) return "no closed form: no three neighbouring axes meet in a point or are parallel where one joint is locked";
   const ClosedFormFit& fit = *by_joint[static_cast<std::size_t>(best)];
+  const auto is_roll = [&](int j) { return roll && j + 1 == static_cast<int>(kDof); };
   std::string text = "closed form: axes ";
-  for (int k = fit.first; k < fit.first + 3; ++k)
-    text += std::to_string((k < best ? k : k + 1) + 1) + (k < fit.first + 1 ? ", " : k < fit.first + 2 ? " and " : "");
+  for (int k = fit.first; k < fit.first + 3; ++k) {
+    const int j = k < best ? k : k + 1;
+    text += is_roll(j) ? "that of the roll" : std::to_string(j + 1);
+    text += k < fit.first + 1 ? ", " : k < fit.first + 2 ? " and " : "";
+  }
   text += fit.structure == Structure::kParallel ? " are parallel" : " meet in a point";
   if (!fit.exact) {
     char miss[60];
@@ -622,10 +627,11 @@ std::string LockMethod::words() const {
       std::snprintf(miss, sizeof miss, " within %.2g mm", 1e3 * fit.deviation.offset);
     text += miss;
   }
-  text += "; locks joint " + std::to_string(best + 1);
+  text += is_roll(best) ? "; locks the roll" : "; locks joint " + std::to_string(best + 1);
   std::string others;
   for (int j = 0; j < kDof; ++j)
-    if (j != best && by_joint[static_cast<std::size_t>(j)]) others += (others.empty() ? "" : ", ") + std::to_string(j + 1);
+    if (j != best && by_joint[static_cast<std::size_t>(j)])
+      others += (others.empty() ? is_roll(best) ? "joint " : "" : ", ") + (is_roll(j) ? "the roll" : std::to_string(j + 1));
   if (!others.empty()) text += " (or " + others + ")";
   return text;
 }

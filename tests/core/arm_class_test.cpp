@@ -35,5 +35,21 @@ TEST(ArmClass, NamesKindMethodAndCompleteness) {
   EXPECT_EQ(classify(chain_of(none), "none").completeness(), std::string("sampled"));
 }
 
+/// An arm of six joints has no joint 7: what stands there is the roll of its tool.
+TEST(ArmClass, NoArmOfSixJointsHasASeventh) {
+  LockMethod lock;
+  ClosedFormFit fit;
+  fit.first = 3;  // of the six that are left: axes 4, 5 and 7
+  fit.structure = Structure::kSphericalWrist;
+  fit.exact = true;
+  lock.by_joint[5] = lock.by_joint[6] = fit;
+  lock.best = 5;
+  EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and 7 meet in a point; locks joint 6 (or 7)");
+  lock.roll = true;
+  EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and that of the roll meet in a point; locks joint 6 (or the roll)");
+  lock.best = 6;
+  EXPECT_EQ(lock.words(), "closed form: axes 4, 5 and 6 meet in a point; locks the roll (or joint 6)");
+}
+
 }  // namespace
 }  // namespace swivel

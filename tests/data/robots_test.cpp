@@ -49,8 +49,8 @@ TEST(Robots, AreOfTheClassesTheyAreLike) {
       {"xarm7_like", "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)"},
       {"gen3_like", "closed form: axes 5, 6 and 7 meet in a point within 0.18 mm; locks joint 3 (or 1, 2, 4)"},
       {"fetch_like", "closed form: axes 5, 6 and 7 meet in a point; locks joint 3 (or 1, 2, 4)"},
-      {"ur5e_like", "closed form: axes 2, 3 and 4 are parallel; locks joint 7 (or 5, 6)"},
-      {"kr6_like", "closed form: axes 4, 5 and 6 meet in a point; locks joint 7"}};
+      {"ur5e_like", "closed form: axes 2, 3 and 4 are parallel; locks the roll (or joint 5, 6)"},
+      {"kr6_like", "closed form: axes 4, 5 and 6 meet in a point; locks the roll"}};
   Pose torch = Pose::Identity();
   torch.translation() << 0.05, 0, 0.2;
   torch.rotate(Eigen::AngleAxisd(0.7, Vector3d::UnitY()));

@@ -130,8 +130,10 @@ class ClosedForm {
 /// is such a chain too: its last joint is that turn.
 struct LockMethod {
   std::array<std::optional<ClosedFormFit>, kDof> by_joint;  ///< none: locking that joint gives no closed form
-  int best = -1;  ///< the joint to lock: of those possible, the one that self-motion turns most on average; -1: none
-  /// For people, e.g. "closed form: axes 1, 2, 3 meet in a point; locks joint 5 (or 4, 6, 7)".
+  int best = -1;      ///< the joint to lock: of those possible, the one that self-motion turns most on average; -1: none
+  bool roll = false;  ///< the last joint is the roll of the tool of an arm of six
+  /// For people, e.g. "closed form: axes 1, 2 and 3 meet in a point; locks joint 5 (or 4, 6, 7)". An arm of six joints has no joint
+  /// 7: there it is "the roll", the turn of the tool about its own axis.
   [[nodiscard]] std::string words() const;
 };
 [[nodiscard]] LockMethod lock_method(const Chain& chain);
