@@ -58,6 +58,14 @@ bool is_hand_name(const std::string& name) {
   return false;
 }
 
+/// What an arm carries, and may tilt.
+bool is_sensor_name(const std::string& name) {
+  const std::string lower = lower_case(name);
+  for (const char* const word : {"camera", "gimbal", "lidar"})
+    if (lower.find(word) != std::string::npos) return true;
+  return false;
+}
+
 constexpr int kLeast = static_cast<int>(kDof) - 1;  ///< joints of an arm, whose tool's roll makes seven
 
 class Guesser {
@@ -105,19 +113,36 @@ class Guesser {
   /// Links that the first, the second, ... of arm joints in a row move.
   using Row = std::vector<int>;
 
-  /// Movable joints from this one on, in the longest chain.
-  [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + joint.movable(); }
+  static bool moves_alone(const Joint& joint) { return joint.movable() && !joint.mimic; }
+
+  /// Joints from this one on that move on their own, in the longest chain.
+  [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + moves_alone(joint); }
 
   /// Arm joints from this one on that follow each other, in the longest row.
   [[nodiscard]] int row_from(const Joint& joint) const {
-    if (!joint.movable()) return row_below_[joint.child_link];
+    if (!joint.movable() || mimics_above(joint)) return row_below_[joint.child_link];
     return is_arm_joint(joint) ? row_below_[joint.child_link] + 1 : 0;
   }
 
-  /// Turns on its own, as the joints of an arm do.
+  /// Turns on its own, as the joints of an arm do. One that others mimic moves a linkage, where the arm goes on behind it, else a
+  /// hand.
   bool is_arm_joint(const Joint& joint) const {
     return (joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous) && !joint.mimic &&
-           !leaders_.contains(static_cast<int>(&joint - robot_.joints.data())) && !is_leg_name(joint.name);
+           (depth_[joint.child_link] > 0 || !leaders_.contains(static_cast<int>(&joint - robot_.joints.data()))) &&
+           !is_leg_name(joint.name);
+  }
+
+  [[nodiscard]] bool is_sensor(const Joint& joint) const {
+    return is_sensor_name(joint.name) || is_sensor_name(robot_.links[joint.child_link].name);
+  }
+
+  /// Mimics a joint that carries it. It ends no row: build_arm() says of an arm through it what is not supported.
+  bool mimics_above(const Joint& joint) const {
+    if (!joint.movable() || !joint.mimic) return false;
+    for (int above = robot_.links[joint.parent_link].parent_joint; above >= 0;
+         above = robot_.links[robot_.joints[above].parent_link].parent_joint)
+      if (above == joint.mimic->joint) return true;
+    return false;
   }
 
   /// Whether an arm begins at a link, whatever turns above it: its maker's base, or the torso of several arms.
@@ -175,8 +200,10 @@ class Guesser {
         constexpr int kFinger = 4;                                           // movable joints, at most; so have heads and wheels
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
         Visit next{(*joint)->child_link, visit.row};
-        if ((*joint)->movable()) {
-          const bool goes_on = is_arm_joint(**joint) && !(whole && is_hand_name((*joint)->name));
+        if (mimics_above(**joint)) {
+          if (row_below_[next.link] >= kLeast) next.row.clear();  // a whole arm goes on behind it
+        } else if ((*joint)->movable()) {
+          const bool goes_on = is_arm_joint(**joint) && !(whole && (is_hand_name((*joint)->name) || is_sensor(**joint)));
           if (whole && !goes_on) {  // a finger
             rows_.push_back(visit.row);
             continue;
@@ -191,7 +218,7 @@ class Guesser {
   std::vector<std::string> longest_row() const {
     std::vector<std::string> names;
     for (int joint = robot_.links[end_of_most_].parent_joint; joint >= 0 && static_cast<int>(names.size()) < most_;) {
-      if (robot_.joints[joint].movable()) names.push_back(robot_.joints[joint].name);
+      if (moves_alone(robot_.joints[joint])) names.push_back(robot_.joints[joint].name);
       joint = robot_.links[robot_.joints[joint].parent_link].parent_joint;
     }
     std::reverse(names.begin(), names.end());
@@ -208,15 +235,30 @@ class Guesser {
     }
   }
 
+  /// The one joint that leads on from a link; none where there are several. Cameras are passed by, and beside other links one with
+  /// none behind it that stands where this one does: it holds shapes for checks of collision.
+  const Joint* only_onwards(int link) const {
+    constexpr double kSame = 1e-9;
+    const Joint* found = nullptr;
+    for (const Joint* joint : children_[link]) {
+      if (is_sensor(*joint)) continue;
+      if (children_[link].size() == 1) return joint;
+      if (!joint->movable() && children_[joint->child_link].empty() && joint->origin.isApprox(Pose::Identity(), kSame)) continue;
+      if (found != nullptr) return nullptr;
+      found = joint;
+    }
+    return found;
+  }
+
   std::string tip_name(int last) const {
     if (const std::optional<int> tool = tool_link(last)) return robot_.links[*tool].name;
     // The last link before the hand.
     int tip = last;
-    while (children_[tip].size() == 1 && !children_[tip].front()->movable()) {
-      const int next = children_[tip].front()->child_link;
-      const auto& below = children_[next];
+    while (const Joint* const onwards = only_onwards(tip)) {
+      if (onwards->movable()) break;
+      const auto& below = children_[onwards->child_link];
       if (std::any_of(below.begin(), below.end(), [](const Joint* joint) { return joint->movable(); })) break;
-      tip = next;
+      tip = onwards->child_link;
     }
     return robot_.links[tip].name;
   }
@@ -229,14 +271,14 @@ class Guesser {
       if (count >= joints && is_base_name(robot_.links[link].name)) break;
       const Joint& joint = robot_.joints[robot_.links[link].parent_joint];
       if (count == kLeast && joints == kLeast && joint.movable() && !joint.mimic && joint.type != Joint::Type::kPrismatic) break;
-      count += joint.movable();
+      count += moves_alone(joint);
     }
     return robot_.links[link].name;
   }
 
   const RobotModel& robot_;
   std::vector<std::vector<const Joint*>> children_;  ///< by link
-  std::vector<int> depth_;                           ///< by link: movable joints below it, in the longest chain
+  std::vector<int> depth_;                           ///< by link: joints below it that move on their own, in the longest chain
   std::vector<int> row_below_;                       ///< by link: arm joints that follow each other below it, in the longest row
   std::set<int> leaders_;                            ///< joints that others mimic
   std::vector<Row> rows_;                            ///< of at least six
