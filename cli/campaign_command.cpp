@@ -114,6 +114,7 @@ int run(const CampaignArguments& arguments) {
   }();
   arguments.search.apply(problem);
   const PreparedRobot robot(problem);
+  warn_of_held(robot.arm().held);
 
   io::OutputFiles outputs(inputs);
   outputs.add("--out", arguments.out);

@@ -51,20 +51,25 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
   const Cut cut = io::load_cut(file);
   catch_interrupts();
   CutCheck result;
+  std::vector<HeldJoint> held;
   try {
     const Budget budget(std::nullopt, &interrupted);
-    result = check_cut(PreparedRobot(problem, budget), problem, cut, budget);
+    const PreparedRobot robot(problem, budget);
+    held = robot.arm().held;
+    result = check_cut(robot, problem, cut, budget);
   } catch (const Stopped&) {
     std::printf("stopped\n");
     return kStopped;
   }
+  warn_of_held(held);
   if (!result.passed) {
     std::printf("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
     return kNo;
   }
-  std::printf("passed: no path at this resolution%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
-              result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1], removed_text(cut).c_str(),
-              static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
+  std::printf(
+      "passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
+      with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1],
+      removed_text(cut).c_str(), static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
   return kOk;
 }
 
@@ -77,6 +82,8 @@ int run(const CheckArguments& arguments) {
   if (!arguments.certificate.empty()) return run_on_certificate(problem, arguments.certificate);
   const PreparedRobot robot(problem);
   const Chain& chain = robot.arm().chain;
+  const std::vector<HeldJoint>& held = robot.arm().held;
+  warn_of_held(held);
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, chain.joint_names);
   const auto& rows = file.rows;
   const auto complete = [&](const auto& work) { return in_the_name_of(arguments.trajectory, work); };
@@ -91,6 +98,7 @@ int run(const CheckArguments& arguments) {
   if (!result.passed)
     std::printf(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
   if (result.rounded) std::printf(", on the path as motions follow it, its corners rounded");
+  if (!held.empty()) std::printf(", held: %s", words(held).c_str());
   std::printf("; ");
   print_margins(problem, chain, result);
   return result.passed ? kOk : kNo;

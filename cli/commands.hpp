@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "placement_options.hpp"
+#include "swivel/core/held_joint.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/problem.hpp"
 
@@ -39,6 +40,9 @@ struct EpisodeChoice {
 
 /// Throws InputError where the text printed so far has not reached standard output: it is full or closed.
 void flush_standard_output();
+
+/// Says on standard error which joints between base and tip stand still though `hold` does not say where.
+void warn_of_held(const std::vector<HeldJoint>& held);
 
 /// Says on standard error that earlier files are gone, and why.
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);

@@ -127,6 +127,23 @@ void print_other(const Chain& chain, const ArmClass& arm) {
   if (chain.roll) std::printf("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
 }
 
+/// Joints that move on their own and are neither the arm's nor between base and tip: a gripper's, another arm's.
+std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm, const std::map<std::string, double>& hold) {
+  std::vector<HeldJoint> beside;
+  for (const Joint& joint : robot.joints) {
+    const auto is_named = [&](const HeldJoint& held) { return held.name == joint.name; };
+    const auto& own = arm.chain.joint_names;
+    if (!joint.movable() || joint.mimic || std::find(own.begin(), own.end(), joint.name) != own.end() ||
+        std::any_of(arm.held.begin(), arm.held.end(), is_named))
+      continue;
+    const auto given = hold.find(joint.name);
+    const double nearest = joint.type == Joint::Type::kContinuous ? 0 : std::clamp(0.0, joint.lower, joint.upper);
+    beside.push_back({joint.name, given == hold.end() ? nearest : given->second, joint.type == Joint::Type::kPrismatic,
+                      given != hold.end(), ""});
+  }
+  return beside;
+}
+
 int run(const InfoArguments& arguments) {
   if (arguments.pairs) {
     print_pairs(arguments.urdf);
@@ -146,6 +163,10 @@ int run(const InfoArguments& arguments) {
   if (!missing_meshes.empty())
     std::printf("meshes     %zu not found, which planning needs: %s\n", missing_meshes.size(), missing_meshes.front().c_str());
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
+  for (const HeldJoint& held : arm.held) std::printf("held       %s\n", words({held}).c_str());
+  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) std::printf("beside     %s\n", words(beside).c_str());
+  for (const Chain::Follower& follower : arm.chain.followers)
+    std::printf("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier, follower.leader + 1);
   for (const ArmGuess& other : others)
     std::printf("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(), other.joints == 6 ? ", six joints" : "");
   kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
@@ -160,6 +181,7 @@ int run(const InfoArguments& arguments) {
     limit.velocity > 0 ? std::printf(", %.3f rad/s\n", limit.velocity) : std::printf(", no speed limit\n");
   }
   for (const std::string& warning : limit_warnings(arm.chain)) std::printf("warning    %s\n", warning.c_str());
+  for (const std::string& warning : held_warnings(arm.held)) std::printf("warning    %s\n", warning.c_str());
   return kOk;
 }
 

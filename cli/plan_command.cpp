@@ -240,6 +240,10 @@ int run(const PlanArguments& arguments) {
 
 }  // namespace
 
+void warn_of_held(const std::vector<HeldJoint>& held) {
+  for (const std::string& warning : held_warnings(held)) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+}
+
 void EpisodeChoice::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "campaign seed of --episode");
   command.add_option("--episode", episode, "plan the problem of this campaign episode");

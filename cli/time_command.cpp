@@ -41,6 +41,7 @@ int run(const TimeArguments& arguments) {
   arguments.lattice.apply(problem);
   const TimingOptions options = arguments.motion.timing(problem);
   const PreparedRobot robot(problem);
+  if (!arguments.quiet) warn_of_held(robot.arm().held);
   const io::JointNames& names = robot.arm().chain.joint_names;
   const io::TrajectoryFile file = io::load_trajectory_file(arguments.trajectory, names);
   io::OutputFiles outputs(noted->files());

@@ -15,13 +15,16 @@ double EdgeRule::motion(const Config& q0, const Config& q1, int first, int last)
 }
 
 double EdgeRule::bend(const Config& dq) const {
-  double sum = 0, before = 0;  // of joints before j
+  double sum = 0, before = 0;             // of joints before j
+  double followers_move = 0, in_all = 0;  // m, rad
   for (int j = 0; j < kDof; ++j) {
     const double turn = std::abs(dq[j]);
     sum += turn * (2 * before + turn) * radii[j];
     before += turn;
+    followers_move += turn * followers.reach[j];
+    in_all += turn * (1 + followers.turns[j]);
   }
-  return sum / 2;
+  return sum / 2 + followers_move * in_all;
 }
 
 std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tolerance) const {

@@ -21,11 +21,11 @@ constexpr int kSamples = 1000;
 /// The first of these, an odd number: what a pair keeps is half of a median, which needs no third digit.
 constexpr std::size_t kMedianSamples = 201;
 
-/// Postures inside the joint limits, always the same.
+/// Postures inside the joint limits, always the same: displacements by group.
 class Samples {
  public:
   explicit Samples(const Chain& chain) : chain_(&chain) {}
-  std::array<Pose, kDof + 1> next() {
+  std::vector<Pose> next() {
     Config q;
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_->limit[j];
@@ -33,7 +33,7 @@ class Samples {
       // The library's distributions differ by vendor.
       q[j] = lower + static_cast<double>(random_() >> 11) * 0x1.0p-53 * (upper - lower);
     }
-    return chain_->displacements(q);
+    return chain_->all_displacements(q);
   }
 
  private:
@@ -43,12 +43,12 @@ class Samples {
 
 /// One pair of the robot's bodies at one posture.
 struct PlacedPair {
-  PlacedPair(const RobotPart& part, const BodyPair& pair, const std::array<Pose, kDof + 1>& moved)
+  PlacedPair(const RobotPart& part, const BodyPair& pair, const std::vector<Pose>& moved)
       : shape_a(&part.shapes[pair.a]),
         shape_b(&part.shapes[pair.b]),
         pose_a(pose(part.bodies[pair.a], moved)),
         pose_b(pose(part.bodies[pair.b], moved)) {}
-  static Pose pose(const RobotBody& body, const std::array<Pose, kDof + 1>& moved) { return moved[body.group] * body.pose; }
+  static Pose pose(const RobotBody& body, const std::vector<Pose>& moved) { return moved[body.group] * body.pose; }
   [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
   [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
   [[nodiscard]] Certificate certificate(double d) const {
@@ -67,7 +67,7 @@ struct PlacedPair {
 
 /// Where a joint moves no shape at all, nothing keeps what it moves clear of anything.
 std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm, const std::vector<RobotBody>& bodies) {
-  std::array<bool, kDof + 1> has_shape{};
+  std::vector<bool> has_shape(kDof + 1 + arm.chain.followers.size());
   for (const RobotBody& body : bodies) has_shape[body.group] = true;
   if (std::find(has_shape.begin() + 1, has_shape.end(), true) == has_shape.end())
     return {robot.name + ": the arm has no collision shape at all: it is kept clear of nothing"};
@@ -92,7 +92,10 @@ double far_enough(const Limits& limits) {
 }  // namespace
 
 RobotPart::RobotPart(const RobotModel& robot, const ArmModel& arm, const Problem& problem, MeshStore& meshes, const Budget& budget)
-    : chain(arm.chain), bodies(robot_bodies(robot, arm, problem.attached)), warnings_(shapeless_links(robot, arm, bodies)) {
+    : chain(arm.chain),
+      bodies(robot_bodies(robot, arm, problem.attached)),
+      followers(follower_motion(chain, bodies)),
+      warnings_(shapeless_links(robot, arm, bodies)) {
   for (const RobotBody& body : bodies) {
     budget.poll();
     shapes.push_back(make_fcl_shape(body.shape, meshes));
@@ -122,10 +125,10 @@ void RobotPart::drop_always_touching(const Budget& budget) {
   for (Candidate* candidate : open) candidate->dropped = true;
 }
 
-double RobotPart::median(const BodyPair& pair, double far, const std::vector<std::array<Pose, kDof + 1>>& samples,
+double RobotPart::median(const BodyPair& pair, double far, const std::vector<std::vector<Pose>>& samples,
                          const Budget& budget) const {
   constexpr std::size_t kHalf = kMedianSamples / 2;
-  std::vector<const std::array<Pose, kDof + 1>*> near;
+  std::vector<const std::vector<Pose>*> near;
   near.reserve(samples.size());
   for (const auto& moved : samples) {
     budget.poll();
@@ -135,7 +138,7 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   }
   PairTest fcl(PairTest::Meshes::kNear);
   TrianglePair witness;
-  const auto exact = [&](const std::array<Pose, kDof + 1>& moved) {
+  const auto exact = [&](const std::vector<Pose>& moved) {
     budget.poll();
     const PlacedPair placed(*this, pair, moved);
     return fcl.clearance(placed.a(), placed.b(), &witness);
@@ -174,7 +177,7 @@ std::shared_ptr<const RobotPart> RobotPart::for_limits(const std::shared_ptr<con
 
 void RobotPart::find_medians(double far, const Budget& budget) {
   const TraceSpan span("medians of robot pairs");
-  std::vector<std::array<Pose, kDof + 1>> samples;
+  std::vector<std::vector<Pose>> samples;
   Samples random(chain);
   for (std::size_t k = 0; k < candidates_.size(); ++k) {
     if (!candidates_[k].sampled || candidates_[k].dropped || medians_[k] < medians_up_to_) continue;

@@ -26,6 +26,7 @@ class RobotPart {
   Chain chain;
   std::vector<RobotBody> bodies;
   std::vector<FclShape> shapes;
+  FollowerMotion followers;
 
  private:
   struct Candidate {
@@ -35,7 +36,7 @@ class RobotPart {
   };
   void find_medians(double far, const Budget& budget);
   void drop_always_touching(const Budget& budget);
-  [[nodiscard]] double median(const BodyPair& pair, double far, const std::vector<std::array<Pose, kDof + 1>>& samples,
+  [[nodiscard]] double median(const BodyPair& pair, double far, const std::vector<std::vector<Pose>>& samples,
                               const Budget& budget) const;
 
   std::vector<Candidate> candidates_;

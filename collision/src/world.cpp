@@ -96,8 +96,8 @@ struct World::Impl {
       const RobotPair* known = robot_pair(p);
       if (known == nullptr || !known->near) continue;
       Kept& own = keeps.back();
-      const auto [first_joint, last] = std::minmax(body(p.a).group, body(p.b).group);
-      near.push_back({p, own[kMotionIndex], known->keeps.tolerance, first_joint, last});
+      const Chain::Joints joints = robot->chain.joints_between(body(p.a).group, body(p.b).group);
+      near.push_back({p, own[kMotionIndex], known->keeps.tolerance, joints.first, joints.last});
       own[kMotionIndex] = own[kMidpointIndex] = -std::numeric_limits<double>::infinity();
     }
     number_pairs();
@@ -187,7 +187,7 @@ struct World::Impl {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
     const auto round = [&](int i) { return body(i).shape.kind == FclShape::Kind::kRound; };
     const auto key = [&](const BodyPair& p) {
-      const int outermost = std::max(body(p.a).group, body(p.b).group);
+      const int outermost = std::max(robot->chain.root_of(body(p.a).group), robot->chain.root_of(body(p.b).group));
       return std::tuple(p.b < robot_bodies, !round(p.a) && !round(p.b), -outermost, -p.a, -p.b);
     };
     std::sort(pairs.begin(), pairs.end(), [&](const BodyPair& p, const BodyPair& q) { return key(p) < key(q); });
@@ -263,6 +263,9 @@ void World::make_ready(const std::function<bool()>& stop) const {
     if (mesh.is_closed()) static_cast<void>(mesh.solid());
   });
 }
+Chain::Joints World::joints_between(const BodyPair& pair) const {
+  return impl_->robot->chain.joints_between(impl_->body(pair.a).group, impl_->body(pair.b).group);
+}
 PairKeeps World::keeps(const BodyPair& pair) const {
   return impl_->keeps_of(pair);
 }
@@ -280,7 +283,7 @@ std::vector<RobotPair> World::robot_pairs_with_medians() const {
   return impl_->robot->pairs_with_medians(impl_->limits);
 }
 EdgeRule World::edge_rule(const std::array<double, kDof>& radii) const {
-  return {radii, impl_->limits.edge_tolerance, impl_->near};
+  return {radii, impl_->limits.edge_tolerance, impl_->near, impl_->robot->followers};
 }
 const std::vector<std::string>& World::warnings() const {
   return impl_->warnings;
@@ -297,7 +300,7 @@ struct World::Query::Impl {
   std::vector<PlacedBound> bounds;
   Config q = Config::Constant(std::numeric_limits<double>::quiet_NaN());
   std::array<Pose, kDof + 1> displacements;
-  int displaced = 0;           // up to this group
+  int displaced = 0;           // up to this group of the chain
   std::vector<char> in_place;  // bodies, at q
   // For next_below. What a pair's two bodies have moved in all is subtracted from its lower bound of the distance.
   std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
@@ -311,7 +314,7 @@ struct World::Query::Impl {
   struct Twist {
     Vector3d turn = Vector3d::Zero(), origin = Vector3d::Zero();  // rad, m
   };
-  std::array<Twist, kDof + 1> twists;
+  std::vector<Twist> twists;  // by group
 
   Impl(const World::Impl& w, Certificates c)
       : world(&w),
@@ -321,7 +324,8 @@ struct World::Query::Impl {
         moved(w.bodies.size()),
         step(w.bodies.size()),
         lower_bound(w.pairs.size(), std::numeric_limits<double>::lowest()),
-        witness(w.pairs.size()) {
+        witness(w.pairs.size()),
+        twists(kDof + 1 + w.robot->chain.followers.size()) {
     open.reserve(lower_bound.size());
     moved_to.reserve(moved.size());
     displacements[0].setIdentity();
@@ -342,11 +346,13 @@ struct World::Query::Impl {
     const auto i = static_cast<std::size_t>(index);
     const auto& body = world->bodies[i];
     if (in_place[i] || body.group == 0) return;
-    if (displaced < body.group) {
-      world->robot->chain.displace(q, displaced, body.group, displacements);
-      displaced = body.group;
+    const Chain& chain = world->robot->chain;
+    if (const int root = chain.root_of(body.group); displaced < root) {
+      chain.displace(q, displaced, root, displacements);
+      displaced = root;
     }
-    poses[i] = product(displacements[body.group], body.pose);
+    poses[i] = body.group <= static_cast<int>(kDof) ? product(displacements[body.group], body.pose)
+                                                    : product(chain.displacement(body.group, q, displacements), body.pose);
     bounds[i] = place(body.shape.bound, poses[i]);
     in_place[i] = 1;
   }
@@ -363,19 +369,36 @@ struct World::Query::Impl {
       const Vector3d turn = asked.half[j] * (displacements[k].linear() * chain.axis[k]);
       twists[k + 1] = {twists[k].turn + turn, twists[k].origin + (displacements[k] * chain.point[k]).cross(turn)};
     }
+    for (std::size_t f = 0; f < chain.followers.size(); ++f) {
+      const Chain::Follower& follower = chain.followers[f];
+      if (follower.root > displaced) continue;  // it carries no body
+      const Pose parent = chain.displacement(follower.parent, q, displacements);
+      const Vector3d motion = asked.half[follower.leader] * follower.multiplier * (parent.linear() * follower.axis);
+      const Twist& carried = twists[static_cast<std::size_t>(follower.parent)];
+      twists[kDof + 1 + f] = follower.slides
+                                 ? Twist{carried.turn, carried.origin + motion}
+                                 : Twist{carried.turn + motion, carried.origin + (parent * follower.point).cross(motion)};
+    }
   }
-  /// How much nearer two bodies can come on the stretch, to first order: how fast the one that more joints move goes, as seen from
-  /// the other.
+  /// How much nearer two bodies can come on the stretch, to first order: how fast they go, as seen from the group of the chain that
+  /// carries both; where there are no followers, that is one of them, and the other goes.
   [[nodiscard]] double comes_nearer(const BodyPair& p) const {
     const int group_a = world->body(p.a).group, group_b = world->body(p.b).group;
-    const int mover = group_b > group_a ? p.b : p.a;
-    const Twist &far = twists[static_cast<std::size_t>(std::max(group_a, group_b))],
-                &near = twists[static_cast<std::size_t>(std::min(group_a, group_b))];
+    const Chain& chain = world->robot->chain;
+    const int common = std::min(chain.root_of(group_a), chain.root_of(group_b));
+    double speed = 0;
+    if (group_a != common) speed += speed_against(common, group_a, p.a);
+    if (group_b != common) speed += speed_against(common, group_b, p.b);
+    return speed;
+  }
+  /// Of any point of a body of a group, as seen from another group.
+  [[nodiscard]] double speed_against(int still, int group, int body) const {
+    const Twist &far = twists[static_cast<std::size_t>(group)], &near = twists[static_cast<std::size_t>(still)];
     const Vector3d turn = far.turn - near.turn;
-    const PlacedBound& at = placed_bound(mover);
+    const PlacedBound& at = placed_bound(body);
     double speed = (far.origin - near.origin + turn.cross(at.center)).norm();
     for (int k = 0; k < 3; ++k)
-      if (const double half = bound(mover).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
+      if (const double half = bound(body).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
     return speed;
   }
   /// What is asked of one of the world's pairs, m.

@@ -46,10 +46,11 @@ std::string without_text(const PlanResult& result) {
 
 std::string diagnosis_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
-  const std::string none = d.holds() == Diagnosis::Holds::kEveryResolution ? "no path at any resolution"
-                           : d.holds() == Diagnosis::Holds::kExactTool     ? "no path for a tool that follows exactly"
-                           : result.lattice.complete                       ? "no path at this resolution"
-                                                                           : "no path found, among the solutions that were found";
+  const std::string claim = d.holds() == Diagnosis::Holds::kEveryResolution ? "no path at any resolution"
+                            : d.holds() == Diagnosis::Holds::kExactTool     ? "no path for a tool that follows exactly"
+                            : result.lattice.complete                       ? "no path at this resolution"
+                                                                            : "no path found, among the solutions that were found";
+  const std::string none = claim + with_held(result.held);
   if (d.cause.kind == Cause::Kind::kNone) return none + "; stopped before it was known what ends every one\n";
   const std::string why = cause_text(d.cause);
   std::string answer = d.reached_layer ? none +
@@ -72,6 +73,10 @@ std::string diagnosis_text(const PlanResult& result) {
   return answer;
 }
 
+std::string held_text(const PlanResult& result) {
+  return result.held.empty() ? "" : " | held: " + words(result.held);
+}
+
 std::string solved_text(const PlanResult& result) {
   const auto s_of = [&](int row) { return result.trajectory[static_cast<std::size_t>(row)].s; };
   std::string line = formatted("solved: %d layers, cost %.6g", result.lattice.layers, result.cost);
@@ -84,7 +89,7 @@ std::string solved_text(const PlanResult& result) {
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)
     line += formatted(" | tool %.3f mm off", error.max) + (error.allowed ? formatted(" (allowed %.3g)", 1e3 * *error.allowed) : "");
   if (const auto& top = result.top_tool_speed) line += formatted(" | tool speed up to %.3g m/s (", top->speed) + top->joint + ")";
-  return line + '\n';
+  return line + held_text(result) + '\n';
 }
 
 }  // namespace
@@ -96,7 +101,7 @@ std::string answer_text(const PlanResult& result) {
     case PlanStatus::kInfeasible:
       return diagnosis_text(result);
     default:
-      return std::string("stopped: ") + to_string(result.status) + '\n';
+      return std::string("stopped: ") + to_string(result.status) + held_text(result) + '\n';
   }
 }
 

@@ -49,6 +49,39 @@ Vector3d nearest_on_line(const Vector3d& p, const Vector3d& a, const Vector3d& q
   return p + t * a;
 }
 
+/// How far what each follower carries, with all followers behind it, is from its line, over all configurations.
+struct FollowerReaches {
+  FollowerReaches(const Chain& chain, const std::vector<RobotBody>& bodies) {
+    const std::size_t count = chain.followers.size();
+    about_point.assign(count, 0);
+    about_axis.assign(count, 0);
+    carries.assign(count, 0);
+    for (const Chain::Follower& follower : chain.followers) point.push_back(follower.point);
+    for (std::size_t f = count; f-- > 0;) {  // parents come first
+      const Chain::Follower& follower = chain.followers[f];
+      const auto add = [&](const Vector3d& x, double radius) {
+        carries[f] = 1;
+        about_axis[f] = std::max(about_axis[f], (x - point[f]).cross(follower.axis).norm() + radius);
+        about_point[f] = std::max(about_point[f], (x - point[f]).norm() + radius);
+      };
+      const int group = static_cast<int>(kDof + 1 + f);
+      for (const RobotBody& body : bodies)
+        if (body.group == group)
+          for (const Ball& ball : bounding_balls(body.shape)) add(body.pose * ball.center, ball.radius);
+      for (std::size_t g = f + 1; g < count; ++g)
+        if (chain.followers[g].parent == group && carries[g]) add(point[g], about_point[g]);
+      if (!follower.slides || !carries[f]) continue;
+      const JointLimit& limit = chain.limit[static_cast<std::size_t>(follower.leader)];
+      about_axis[f] = 1;  // m per m
+      about_point[f] += std::abs(follower.multiplier) * std::max(std::abs(limit.lower), std::abs(limit.upper));
+    }
+  }
+  std::vector<Vector3d> point;      ///< of the line, as it stands at q = 0
+  std::vector<double> about_point;  ///< m, from `point` as its parent carries it
+  std::vector<double> about_axis;   ///< m for 1 rad of a turn, and for 1 m of a shift
+  std::vector<char> carries;        ///< some body
+};
+
 }  // namespace
 
 std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm, const std::vector<AttachedBody>& attached) {
@@ -72,6 +105,33 @@ std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm
   return bodies;
 }
 
+FollowerMotion follower_motion(const Chain& chain, const std::vector<RobotBody>& bodies) {
+  FollowerMotion result;
+  if (chain.followers.empty()) return result;
+  const FollowerReaches reaches(chain, bodies);
+  std::array<double, kDof> second{};
+  std::vector<std::array<double, kDof>> reach(chain.followers.size()), turns(chain.followers.size());
+  for (std::size_t f = 0; f < chain.followers.size(); ++f) {
+    const Chain::Follower& follower = chain.followers[f];
+    if (!reaches.carries[f]) continue;  // and so do none of those behind it
+    if (follower.parent > static_cast<int>(kDof)) {
+      const auto parent = static_cast<std::size_t>(follower.parent) - kDof - 1;
+      reach[f] = reach[parent];
+      turns[f] = turns[parent];
+    }
+    const auto leader = static_cast<std::size_t>(follower.leader);
+    reach[f][leader] += std::abs(follower.multiplier) * reaches.about_axis[f];
+    turns[f][leader] += std::abs(follower.multiplier);
+    for (std::size_t j = 0; j < kDof; ++j) {
+      second[j] = std::max(second[j], std::min(reach[f][j], result.reach[j]));
+      result.reach[j] = std::max(result.reach[j], reach[f][j]);
+      result.turns[j] = std::max(result.turns[j], turns[f][j]);
+    }
+  }
+  for (std::size_t j = 0; j < kDof; ++j) result.reach[j] += second[j];  // both bodies of a pair may be on followers
+  return result;
+}
+
 std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<RobotBody>& bodies) {
   const auto& p = chain.point;
   const auto& a = chain.axis;
@@ -86,6 +146,7 @@ std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<Robo
   c[6] = nearest_on_line(p[6], a[6], p[5], a[5]);
   const auto off_axis = [&](std::size_t j, const Vector3d& x) { return (x - c[j]).cross(a[j]).norm(); };
 
+  const FollowerReaches followers(chain, bodies);
   std::array<double, kDof> radii{};
   double reach = 0;  // of everything that joint j+1 moves, from c[j+1]
   for (std::size_t j = kDof; j-- > 0;) {
@@ -98,6 +159,11 @@ std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<Robo
         about_point = std::max(about_point, (x - c[j]).norm() + ball.radius);
       }
     }
+    for (std::size_t f = 0; f < chain.followers.size(); ++f) {
+      if (chain.followers[f].parent != static_cast<int>(j) + 1 || !followers.carries[f]) continue;
+      about_axis = std::max(about_axis, off_axis(j, followers.point[f]) + followers.about_point[f]);
+      about_point = std::max(about_point, (followers.point[f] - c[j]).norm() + followers.about_point[f]);
+    }
     if (j + 1 < kDof && reach > 0) {
       about_axis = std::max(about_axis, off_axis(j, c[j + 1]) + reach);
       about_point = std::max(about_point, (c[j + 1] - c[j]).norm() + reach);
@@ -105,6 +171,8 @@ std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<Robo
     radii[j] = about_axis;
     reach = about_point;
   }
+  const FollowerMotion beside = follower_motion(chain, bodies);
+  for (std::size_t j = 0; j < kDof; ++j) radii[j] += beside.reach[j];
   return radii;
 }
 

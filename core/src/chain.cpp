@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include "swivel/core/arm.hpp"
 #include "swivel/core/input_error.hpp"
@@ -24,6 +24,13 @@ Chain::Turn turn_about(const Vector3d& a, const Vector3d& p) {
 
 Pose at(const Chain::Turn& turn, double cosine, double sine) {
   return Pose(turn.still + cosine * turn.cosine + sine * turn.sine);
+}
+
+/// Of what a follower carries, where the group that carries it has displacement `parent`.
+Pose displacement_of(const Chain::Follower& follower, const Config& q, const Pose& parent) {
+  const double motion = follower.multiplier * q[follower.leader];
+  if (follower.slides) return parent * Eigen::Translation3d(motion * follower.axis);
+  return product(parent, at(follower.turn, std::cos(motion), std::sin(motion)));
 }
 
 Pose joint_motion(const Joint& joint, double position) {
@@ -75,37 +82,57 @@ int require_link(const RobotModel& robot, const std::string& key, const std::str
   return link;
 }
 
-/// Mimic joints follow their leaders, which may follow others, in any order. `position` holds that of all other joints.
-void place_mimics(const RobotModel& robot, const std::vector<int>& arm, std::vector<double>& position) {
-  std::vector<char> known(robot.joints.size());
-  for (std::size_t j = 0; j < robot.joints.size(); ++j) known[j] = !robot.joints[j].mimic;
+/// The joint that leads, through others perhaps, a joint that mimics: position = multiplier * leader's + offset.
+struct Lead {
+  int leader = -1;
+  double multiplier = 1, offset = 0;
+};
+/// By joint; of a joint that mimics none: itself.
+std::vector<Lead> leads_of(const RobotModel& robot) {
+  std::vector<Lead> leads(robot.joints.size());
+  for (std::size_t j = 0; j < robot.joints.size(); ++j)
+    if (!robot.joints[j].mimic) leads[j].leader = static_cast<int>(j);
+  // Leaders may mimic others, in any order of the file: a joint waits for its own.
   std::vector<std::size_t> waiting;
   for (std::size_t first = 0; first < robot.joints.size(); ++first) {
-    for (std::size_t j = first; !known[j]; j = static_cast<std::size_t>(robot.joints[j].mimic->joint)) {
+    for (std::size_t j = first; leads[j].leader < 0; j = static_cast<std::size_t>(robot.joints[j].mimic->joint)) {
       if (waiting.size() == robot.joints.size())
         fail(robot, "joint '" + robot.joints[j].name + "' mimics itself: allowed is another");
       waiting.push_back(j);
     }
     for (; !waiting.empty(); waiting.pop_back()) {
-      const Joint& joint = robot.joints[waiting.back()];
-      if (std::find(arm.begin(), arm.end(), joint.mimic->joint) != arm.end())
-        fail(robot, "joint '" + joint.name + "' mimics a joint of the arm: not supported: hold it by removing the mimic element");
-      position[waiting.back()] =
-          joint.mimic->multiplier * position[static_cast<std::size_t>(joint.mimic->joint)] + joint.mimic->offset;
-      known[waiting.back()] = 1;
+      const Joint::Mimic& mimic = *robot.joints[waiting.back()].mimic;
+      const Lead& next = leads[static_cast<std::size_t>(mimic.joint)];
+      leads[waiting.back()] = {next.leader, mimic.multiplier * next.multiplier, mimic.multiplier * next.offset + mimic.offset};
     }
   }
+  return leads;
+}
+
+bool is_in(const std::vector<int>& arm, int joint) {
+  return std::find(arm.begin(), arm.end(), joint) != arm.end();
+}
+
+bool is_bounded(const Joint& joint) {
+  return joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kPrismatic;
+}
+
+bool is_outside(const Joint& joint, double position) {
+  constexpr double kRounding = 1e-9;
+  return is_bounded(joint) && (position < joint.lower - kRounding || position > joint.upper + kRounding);
+}
+
+std::string limits_allowed(const Joint& joint) {
+  return "is outside its limits: allowed is " + std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
 }
 
 /// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
-std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold,
-                                   const std::vector<int>& arm) {
+std::vector<double> held_positions(const RobotModel& robot, const std::map<std::string, double>& hold, const std::vector<int>& arm,
+                                   const std::vector<Lead>& leads) {
   std::vector<double> position(robot.joints.size(), 0.0);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const Joint& joint = robot.joints[j];
-    const bool bounded = joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kPrismatic;
-    if (bounded && std::find(arm.begin(), arm.end(), static_cast<int>(j)) == arm.end())
-      position[j] = std::clamp(0.0, joint.lower, joint.upper);
+    if (is_bounded(joint) && !is_in(arm, static_cast<int>(j))) position[j] = std::clamp(0.0, joint.lower, joint.upper);
   }
   for (const auto& [name, value] : hold) {
     const int j = robot.find_joint(name);
@@ -113,13 +140,121 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
     if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
     if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
-    if (joint.type != Joint::Type::kContinuous && (value < joint.lower - 1e-9 || value > joint.upper + 1e-9))
-      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " is outside its limits: allowed is " +
-                      std::to_string(joint.lower) + " to " + std::to_string(joint.upper));
+    if (is_outside(joint, value))
+      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " " + limits_allowed(joint));
     position[static_cast<std::size_t>(j)] = value;
   }
-  place_mimics(robot, arm, position);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    const Joint& joint = robot.joints[j];
+    if (!joint.mimic) continue;
+    const auto leader = static_cast<std::size_t>(leads[j].leader);
+    position[j] = leads[j].multiplier * position[leader] + leads[j].offset;
+    const std::string& name = robot.joints[leader].name;
+    if (joint.movable() && hold.count(name) > 0 && is_outside(joint, position[j]))
+      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(position[leader]) + ": joint '" + joint.name +
+                      "', which mimics it, is then at " + std::to_string(position[j]) + " and " + limits_allowed(joint));
+  }
   return position;
+}
+
+/// Movable joints between base and tip that are none of the arm's, from the base on.
+std::vector<HeldJoint> held_between(const RobotModel& robot, const Way& way, const std::vector<int>& arm,
+                                    const std::map<std::string, double>& hold, const std::vector<Lead>& leads,
+                                    const std::vector<double>& position) {
+  std::vector<HeldJoint> held;
+  for (const int j : way.joints) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    if (!joint.movable() || is_in(arm, j)) continue;
+    const Joint& leader = robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)];
+    held.push_back({joint.name, position[static_cast<std::size_t>(j)], joint.type == Joint::Type::kPrismatic,
+                    hold.count(leader.name) > 0, joint.mimic ? leader.name : ""});
+  }
+  return held;
+}
+
+/// A joint of the arm can do no more than what mimics it: limits by position and rates of the follower are its leader's as well.
+void narrow(const RobotModel& robot, const Joint& follower, const Lead& lead, JointLimit& limit) {
+  const double m = lead.multiplier;
+  if (m == 0) return;
+  const std::string& leader = robot.joints[static_cast<std::size_t>(lead.leader)].name;
+  if (is_bounded(follower)) {
+    const double a = (follower.lower - lead.offset) / m, b = (follower.upper - lead.offset) / m;
+    if (limit.continuous) limit.lower = -std::numeric_limits<double>::infinity(), limit.upper = -limit.lower;
+    limit.continuous = false;
+    limit.lower = std::max(limit.lower, std::min(a, b));
+    limit.upper = std::min(limit.upper, std::max(a, b));
+    if (limit.lower > limit.upper)
+      fail(robot, "joint '" + follower.name + "' mimics '" + leader +
+                      "' of the arm, and no position of it is within the limits of both: allowed are limits that meet");
+  }
+  const auto rate = [&](double& leaders, double own) {
+    if (own > 0) leaders = leaders > 0 ? std::min(leaders, own / std::abs(m)) : own / std::abs(m);
+  };
+  rate(limit.velocity, follower.velocity);
+  rate(limit.acceleration, follower.acceleration);
+  rate(limit.jerk, follower.jerk);
+}
+
+/// A posture is known by its joints up to whole turns of those that have a turn or more: what follows must then stand as before.
+void require_same_after_a_turn(const RobotModel& robot, const Chain& chain, const Chain::Follower& follower) {
+  const JointLimit& limit = chain.limit[static_cast<std::size_t>(follower.leader)];
+  if (!limit.continuous && limit.upper - limit.lower < kTwoPi - 1e-3) return;
+  if (!follower.slides && follower.multiplier == std::round(follower.multiplier)) return;
+  fail(robot,
+       "joint '" + follower.name + "' mimics '" + chain.joint_names[static_cast<std::size_t>(follower.leader)] +
+           "' of the arm, which can make a whole turn, and stands elsewhere after one: not supported: allowed are a range of "
+           "less than a turn, or a multiplier that is a whole number on a joint that turns");
+}
+
+/// Which group each link is of, outwards from the way; joints outside the way that mimic the arm's become followers of the chain.
+void group_links(const RobotModel& robot, const Way& way, const std::vector<int>& arm, const std::vector<Lead>& leads,
+                 ArmModel& model) {
+  constexpr int kUnknown = -1;
+  const auto group_of = [&](int link) -> int& { return model.links[static_cast<std::size_t>(link)].group; };
+  for (LinkPlacement& placement : model.links) placement.group = kUnknown;
+  std::vector<int> order;  // links whose group is known
+  int on_way = 0;
+  for (std::size_t k = 0; k < way.links.size(); ++k) {
+    on_way += k > 0 && is_in(arm, way.joints[k - 1]);
+    group_of(way.links[k]) = on_way;
+    order.push_back(way.links[k]);
+  }
+  Chain& chain = model.chain;
+  const auto beyond = [&](int j, int group, double sign) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    const Lead& lead = leads[static_cast<std::size_t>(j)];
+    const auto leader = std::find(arm.begin(), arm.end(), lead.leader);
+    if (!joint.movable() || !joint.mimic || leader == arm.end()) return group;
+    Chain::Follower follower;
+    follower.name = joint.name;
+    follower.parent = group;
+    follower.root = chain.root_of(group);
+    follower.leader = static_cast<int>(leader - arm.begin());
+    follower.multiplier = lead.multiplier;
+    follower.slides = joint.type == Joint::Type::kPrismatic;
+    const Pose frame = model.links[static_cast<std::size_t>(joint.parent_link)].pose * joint.origin;
+    follower.axis = sign * (frame.linear() * joint.axis).normalized();
+    follower.point = frame.translation();
+    follower.turn = turn_about(follower.axis, follower.point);
+    narrow(robot, joint, lead, chain.limit[static_cast<std::size_t>(follower.leader)]);
+    chain.followers.push_back(std::move(follower));
+    return static_cast<int>(kDof + chain.followers.size());
+  };
+  std::vector<std::vector<int>> below(robot.links.size());
+  for (std::size_t j = 0; j < robot.joints.size(); ++j)
+    below[static_cast<std::size_t>(robot.joints[j].parent_link)].push_back(static_cast<int>(j));
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const int link = order[k], group = group_of(link);
+    const auto go = [&](int j, int to, double sign) {
+      if (group_of(to) != kUnknown) return;
+      group_of(to) = beyond(j, group, sign);
+      order.push_back(to);
+    };
+    for (const int j : below[static_cast<std::size_t>(link)]) go(j, robot.joints[static_cast<std::size_t>(j)].child_link, 1);
+    if (const int j = robot.links[static_cast<std::size_t>(link)].parent_joint; j >= 0)
+      go(j, robot.joints[static_cast<std::size_t>(j)].parent_link, -1);
+  }
+  for (const Chain::Follower& follower : chain.followers) require_same_after_a_turn(robot, chain, follower);
 }
 
 }  // namespace
@@ -136,6 +271,40 @@ void Chain::displace(const Config& q, int first, int last, std::array<Pose, kDof
     const double angle = q[static_cast<Eigen::Index>(k)];
     G[k + 1] = product(G[k], at(turn[k], std::cos(angle), std::sin(angle)));
   }
+}
+
+Pose Chain::displacement(int group, const Config& q, const std::array<Pose, kDof + 1>& G) const {
+  if (group <= static_cast<int>(kDof)) return G[static_cast<std::size_t>(group)];
+  const Follower& follower = followers[static_cast<std::size_t>(group) - kDof - 1];
+  return displacement_of(follower, q, displacement(follower.parent, q, G));
+}
+
+std::vector<Pose> Chain::all_displacements(const Config& q) const {
+  const auto G = displacements(q);
+  std::vector<Pose> all(G.begin(), G.end());
+  for (const Follower& follower : followers)
+    all.push_back(displacement_of(follower, q, all[static_cast<std::size_t>(follower.parent)]));
+  return all;
+}
+
+int Chain::root_of(int group) const {
+  return group <= static_cast<int>(kDof) ? group : followers[static_cast<std::size_t>(group) - kDof - 1].root;
+}
+
+Chain::Joints Chain::joints_between(int group_a, int group_b) const {
+  const int root_a = root_of(group_a), root_b = root_of(group_b);
+  Joints joints{std::min(root_a, root_b), std::max(root_a, root_b)};
+  const auto add = [&](int joint) {
+    joints = joints.first == joints.last ? Joints{joint, joint + 1}
+                                         : Joints{std::min(joints.first, joint), std::max(joints.last, joint + 1)};
+  };
+  for (int group : {group_a, group_b})
+    while (group > static_cast<int>(kDof)) {
+      const Follower& follower = followers[static_cast<std::size_t>(group) - kDof - 1];
+      add(follower.leader);
+      group = follower.parent;
+    }
+  return joints;
 }
 
 Pose Chain::tool(const Config& q) const {
@@ -203,7 +372,17 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)
       fail(robot, "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' is prismatic: the arm's " +
                       (seven ? "seven" : "six") + " joints must turn");
-  const std::vector<double> position = held_positions(robot, hold, arm);
+  const std::vector<Lead> leads = leads_of(robot);
+  for (const int j : way.joints) {
+    const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
+    const int leader = leads[static_cast<std::size_t>(j)].leader;
+    if (joint.movable() && joint.mimic && is_in(arm, leader))
+      fail(robot, "joint '" + joint.name + "', between '" + base_link + "' and '" + tip_link + "', mimics '" +
+                      robot.joints[static_cast<std::size_t>(leader)].name +
+                      "' of the arm: not supported: the tool would move by that joint in two places; allowed are such joints on "
+                      "links that do not carry the tool");
+  }
+  const std::vector<double> position = held_positions(robot, hold, arm, leads);
 
   // Parents come before children only by luck in a file: a link waits, with its children so far, for its parent.
   ArmModel model;
@@ -229,23 +408,6 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
   const Pose root_in_base = model.links[static_cast<std::size_t>(base)].pose.inverse(Eigen::Isometry);
   for (LinkPlacement& placement : model.links) placement.pose = root_in_base * placement.pose;
 
-  // A link moves with the link of the way that it hangs from; what hangs from none, with the one that all of them hang from.
-  constexpr int kUnknown = -1;
-  for (LinkPlacement& placement : model.links) placement.group = kUnknown;
-  int group = 0;
-  for (std::size_t k = 0; k < way.links.size(); ++k) {
-    group += k > 0 && std::find(arm.begin(), arm.end(), way.joints[k - 1]) != arm.end();
-    model.links[static_cast<std::size_t>(way.links[k])].group = group;
-  }
-  const int above_all = model.links[static_cast<std::size_t>(way.links[way.up])].group;
-  for (std::size_t link = 0; link < robot.links.size(); ++link) {
-    auto from = link;
-    int j = 0;
-    while (model.links[from].group == kUnknown && (j = robot.links[from].parent_joint) >= 0)
-      from = static_cast<std::size_t>(robot.joints[static_cast<std::size_t>(j)].parent_link);
-    model.links[link].group = model.links[from].group == kUnknown ? above_all : model.links[from].group;
-  }
-
   Chain& chain = model.chain;
   for (std::size_t k = 0; k < joints; ++k) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(arm[k])];
@@ -258,6 +420,8 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
     chain.limit[k] = {joint.lower,        joint.upper, joint.velocity, joint.type == Joint::Type::kContinuous,
                       joint.acceleration, joint.jerk};
   }
+  group_links(robot, way, arm, leads, model);
+  model.held = held_between(robot, way, arm, hold, leads, position);
   chain.home = model.links[static_cast<std::size_t>(tip)].pose * tool;
   if (roll && seven) {
     chain.free_roll = roll;

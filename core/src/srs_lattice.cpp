@@ -546,6 +546,7 @@ int SrsLattice::along(int layer, int slot, int by) const {
 }
 
 void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+  if (!stand_alike(groups)) return out.assign(1, slot);
   if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();

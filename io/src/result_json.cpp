@@ -155,6 +155,17 @@ Json margin_json(const LeastMargin& least) {
           {"row", least.row}};
 }
 
+Json held_json(const std::vector<HeldJoint>& held) {
+  Json list = Json::array();
+  for (const HeldJoint& joint : held)
+    list.push_back({{"joint", joint.name},
+                    {"position", joint.position},
+                    {"unit", joint.slides ? "m" : "rad"},
+                    {"given", joint.given},
+                    {"mimics", text_or_null(joint.leader)}});
+  return list;
+}
+
 Json reduced_json(const std::vector<SpecialPair>& pairs) {
   Json list = Json::array();
   for (const SpecialPair& pair : pairs)
@@ -314,6 +325,7 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};
+  json["held"] = held_json(result.held);
   json["warnings"] = result.warnings;
   json["joint_names"] = result.joint_names;
   // File and joint names need not be UTF-8: replace what is not, rather than fail.

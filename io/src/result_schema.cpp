@@ -335,6 +335,13 @@ Schema plan_result() {
               "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: pairs near by design, with "
               "`median`, "
               "`clearance`, `edge_clearance` (m); `info PROBLEM --pairs` lists all"),
+          key("held",
+              list(section(
+                  "", {key("joint", text(), "its name"), key("position", number(), "where it stands", "`unit`"),
+                       key("unit", one_of({"m", "rad"}), "of `position`"), key("given", boolean(), "whether `robot.hold` says so"),
+                       key("mimics", or_null(text()), "the joint that it follows, which stands still as well")})),
+              "joints between base and tip that move and are not planned: `joint`, `position` (`unit`), whether `robot.hold` has "
+              "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said with them there"),
           key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
           key("joint_names", list(text(), kDof), "base to tip"),
       });

@@ -161,7 +161,10 @@ bool CollisionValidity::fails_before_row(const NodeQuestion& question, const Bod
 unsigned groups_of(const World& world, const BodyPair& pair) {
   unsigned groups = 0;
   for (const int body : {pair.a, pair.b})
-    if (body < static_cast<int>(world.bodies().size())) groups |= 1u << world.bodies()[static_cast<std::size_t>(body)].group;
+    if (body < static_cast<int>(world.bodies().size())) {
+      const int group = world.bodies()[static_cast<std::size_t>(body)].group;
+      groups |= group > static_cast<int>(kDof) ? Lattice::kFollowers : 1u << group;
+    }
   return groups & ~1u;  // group 0 stands still
 }
 

@@ -62,7 +62,7 @@ class OpenParts {
   };
 
   /// How far bodies come from row to row: on the chord, and off it by no more than an eighth of the acceleration, which is at most
-  /// 2 sum |dq_j| sum |dq_j| R_j.
+  /// 2 sum |dq_j| sum |dq_j| R_j, of all joints that move a body, followers of the chain among them.
   void add_travel(const World& world, const EdgeRule& rule) {
     bodies_ = world.bodies().size();
     for (std::size_t k = 0; k < joints_->size(); ++k) {
@@ -83,7 +83,9 @@ class OpenParts {
         bound += way;
       }
       turned_.push_back(turned);
-      off_chords_.push_back(off_chords_.back() + move.sum() * bound / 4);
+      double followers = 0;
+      for (int j = 0; j < kDof; ++j) followers += move[j] * rule.followers.turns[static_cast<std::size_t>(j)];
+      off_chords_.push_back(off_chords_.back() + (move.sum() + followers) * bound / 4);
     }
   }
 
@@ -93,8 +95,9 @@ class OpenParts {
     };
     for (std::size_t k = 0; k < world.pairs().size(); ++k) {
       const BodyPair& bodies = world.pairs()[k];
-      const int of_a = group(bodies.a), of_b = group(bodies.b), first = std::min(of_a, of_b), last = std::max(of_a, of_b);
-      Pair pair{bodies.a, bodies.b, world.required(k, Keep::kNode), kNever, (first > 0) + (last > 0), first, last};
+      const int of_a = group(bodies.a), of_b = group(bodies.b);
+      const Chain::Joints joints = world.joints_between(bodies);
+      Pair pair{bodies.a, bodies.b, world.required(k, Keep::kNode), kNever, (of_a > 0) + (of_b > 0), joints.first, joints.last};
       if (asks_moves_) pair.move = world.required(k, Keep::kMidpoint);
       for (const EdgeRule::Near& near : rule.near)
         if (asks_moves_ && near.pair == bodies) pair.move = near.d_edge + near.h;

@@ -297,7 +297,10 @@ struct Planner::Impl {
     if (world_is_old) world = World(world ? *world : robot->world(), problem, budget);
     world_is_old = false;
     result.time_ms["world"] = watch.lap();
+    result.held = robot->arm().held;
     result.warnings = limit_warnings(robot->arm().chain);
+    const std::vector<std::string> held = held_warnings(result.held);
+    result.warnings.insert(result.warnings.end(), held.begin(), held.end());
     result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());

@@ -2,6 +2,7 @@
 #include "row_margin.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 namespace swivel {
@@ -11,7 +12,7 @@ std::vector<RowMargin::Body> RowMargin::measured() const {
   if (!lattice_->has_own_rows()) return bodies;
   for (const RobotBody& body : world_->bodies()) {
     Body& mine = bodies.emplace_back(Body{body.group, 0});
-    if (body.group == 0) continue;
+    if (body.group == 0 || body.group > static_cast<int>(kDof)) continue;
     const Vector3d about = lattice_->row_shift(0, body.group, Config::Zero()).about;
     for (const Ball& ball : bounding_balls(body.shape))
       mine.radius = std::max(mine.radius, (body.pose * ball.center - about).norm() + ball.radius);
@@ -26,6 +27,8 @@ double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
   for (const int body : {pair.a, pair.b}) {
     if (body >= static_cast<int>(bodies.size())) continue;
     const Body& moving = bodies[static_cast<std::size_t>(body)];
+    // What follows a joint is moved by two.
+    if (moving.group > static_cast<int>(kDof)) return std::numeric_limits<double>::infinity();
     if (moving.group > 0) sum += shift(moving.group).of(moving.radius);
   }
   return sum;

@@ -260,6 +260,11 @@ void serialize(A& archive, Measures& x) {
   auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, min_manipulability, arm_angle] = x;
   archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, min_manipulability, arm_angle);
 }
+template <class A>
+void serialize(A& archive, HeldJoint& x) {
+  auto& [name, position, slides, given, leader] = x;
+  archive(name, position, slides, given, leader);
+}
 /// Members of two classes, as Problem.
 template <class A>
 void serialize(A& archive, PlanResult& x) {
@@ -275,13 +280,14 @@ void serialize(A& archive, PlanResult& x) {
     bool checked;
     std::vector<TrajectoryRow> partial;
     std::array<std::string, kDof> joint_names;
+    std::vector<HeldJoint> held;
     Diagnosis diagnosis;
     std::vector<SpecialPair> dropped_pairs, reduced_pairs;
     std::vector<std::string> warnings;
   };
   static_assert(sizeof(Listed) == sizeof(PlanResult));
   archive(static_cast<Measures&>(x), x.status, x.cost, x.planner, x.threads, x.lattice, x.counters, x.time_ms, x.trajectory,
-          x.checked, x.partial, x.joint_names, x.diagnosis, x.dropped_pairs, x.reduced_pairs, x.warnings);
+          x.checked, x.partial, x.joint_names, x.held, x.diagnosis, x.dropped_pairs, x.reduced_pairs, x.warnings);
 }
 template <class A>
 void serialize(A& archive, Refined& x) {

@@ -326,6 +326,15 @@ void bind_robot(py::module_& m) {
           "tool", [](const Robot& robot) { return robot.tool; }, [](Robot& robot, const Pose& tool) { robot.tool = tool; },
           "(4, 4): tool frame in the tip link.")
       .def_readonly("hold", &Robot::hold, "Positions of joints that the arm leaves out, rad or m (a copy).")
+      .def_property_readonly(
+          "held",
+          [](const Robot& robot) {
+            std::map<std::string, double> held;
+            for (const HeldJoint& joint : arm_of(robot).held) held[joint.name] = joint.position;
+            return held;
+          },
+          "Joints between base and tip that are not planned -> where they stand, rad or m: where `hold` says, else at 0 or at the "
+          "limit nearest to it.")
       .def_readonly("roll", &Robot::roll, "None where the tool stands as the waypoints have it.")
       .def_property_readonly(
           "links",

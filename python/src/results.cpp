@@ -566,6 +566,14 @@ void bind_plan(py::module_& m) {
       .def_property_readonly("planner", [](const Plan& p) { return p.result().planner; })
       .def_property_readonly("threads", [](const Plan& p) { return p.result().threads; })
       .def_property_readonly("joint_names", [](const Plan& p) { return p.result().joint_names; })
+      .def_property_readonly(
+          "held",
+          [](const Plan& p) {
+            std::map<std::string, double> held;
+            for (const HeldJoint& joint : p.result().held) held[joint.name] = joint.position;
+            return held;
+          },
+          "Joints between base and tip that are not planned -> where they stand, rad or m; the answer is of the arm with them there.")
       .def_property_readonly("lattice", [](const Plan& p) -> const LatticeInfo& { return p.result().lattice; })
       .def_property_readonly(
           "counters", [](const Plan& p) { return counters_of(p.result().counters); }, "Work done, by name.")

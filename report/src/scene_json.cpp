@@ -40,7 +40,15 @@ Json chain_json(const Chain& chain) {
                       {"lower", limit.continuous ? Json(nullptr) : Json(limit.lower)},
                       {"upper", limit.continuous ? Json(nullptr) : Json(limit.upper)}});
   }
-  return {{"joints", std::move(joints)}, {"home", pose_json(chain.home)}};
+  Json followers = Json::array();
+  for (const Chain::Follower& follower : chain.followers)
+    followers.push_back({{"parent", follower.parent},
+                         {"leader", follower.leader},
+                         {"multiplier", follower.multiplier},
+                         {"slides", follower.slides},
+                         {"axis", vector_json(follower.axis)},
+                         {"point", vector_json(follower.point)}});
+  return {{"joints", std::move(joints)}, {"followers", std::move(followers)}, {"home", pose_json(chain.home)}};
 }
 
 Bodies::Bodies(const World& world, const std::vector<SceneObject>& scene) {

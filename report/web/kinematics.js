@@ -5,15 +5,22 @@ import { Matrix4, Vector3 } from 'three';
 export const vector = (v) => new Vector3(v[0], v[1], v[2]);
 export const matrix = (p) => new Matrix4().set(...p, 0, 0, 0, 1);
 
-/** G_0 ... G_7: the displacement of a body of each group from its pose at q = 0, base frame. */
+/** exp([S] angle) of the line through a joint's point along its axis. */
+function turned(joint, angle) {
+  const point = vector(joint.point);
+  const turn = new Matrix4().makeRotationAxis(vector(joint.axis), angle);
+  return turn.setPosition(point.clone().sub(point.clone().applyMatrix4(turn)));
+}
+
+/** The displacement of a body of each group from its pose at q = 0, base frame: G_0 ... G_7, then of the joints that mimic the arm's. */
 export function displacements(chain, q) {
   const g = [new Matrix4()];
-  chain.joints.forEach((joint, k) => {
-    const point = vector(joint.point);
-    const turn = new Matrix4().makeRotationAxis(vector(joint.axis), q[k]);
-    turn.setPosition(point.clone().sub(point.clone().applyMatrix4(turn)));
-    g.push(g[k].clone().multiply(turn));
-  });
+  chain.joints.forEach((joint, k) => g.push(g[k].clone().multiply(turned(joint, q[k]))));
+  for (const follower of chain.followers ?? []) {
+    const motion = follower.multiplier * q[follower.leader];
+    const own = follower.slides ? new Matrix4().setPosition(vector(follower.axis).multiplyScalar(motion)) : turned(follower, motion);
+    g.push(g[follower.parent].clone().multiply(own));
+  }
   return g;
 }
 

@@ -5,7 +5,7 @@ import { $, number, table } from './page.js';
 /** The answer in one line; what it names along the path are buttons that go there. jump: called with s, m. */
 export function verdict(host, { result, rows, map }, jump) {
   const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
-  const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = result.summary ?? {}, d = result.diagnosis;
+  const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = result.summary ?? {}, d = result.diagnosis, held = result.held ?? [];
   const say = (text, s) => {
     if (host.childNodes.length) host.append(' · ');
     if (s === undefined || s === null) return host.append(text);
@@ -16,7 +16,8 @@ export function verdict(host, { result, rows, map }, jump) {
   };
   host.classList.add(result.status === 'solved' ? 'solved' : 'failed');
   if (result.status !== 'solved') {
-    const none = { every_resolution: 'No path at any resolution', exact_tool: 'No path for a tool that follows exactly' }[d?.holds] ?? 'No path at this resolution';
+    const claim = { every_resolution: 'No path at any resolution', exact_tool: 'No path for a tool that follows exactly' }[d?.holds] ?? 'No path at this resolution';
+    const none = claim + (held.length ? ` with ${held.map(({ joint, position, unit }) => `${joint} held at ${number(position)} ${unit}`).join(', ')}` : '');
     say(!d || d.reached_layer === null ? `${none}: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`
       : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), where ${d.reason} stops it.`);
     if (d?.unreachable) say(`no joints within their limits reach ${d.unreachable.waypoint === null ? `layer ${d.unreachable.layer}` : `waypoint ${d.unreachable.waypoint}`}`, d.unreachable.s);
@@ -28,6 +29,7 @@ export function verdict(host, { result, rows, map }, jump) {
     if (limit) say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s);
     if (error) say(`tool ${number(error.max_mm, 2)} mm off${error.allowed_mm === null || error.allowed_mm === undefined ? '' : ` (allowed ${number(error.allowed_mm)})`}`, error.s);
     if (speed) say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s);
+    if (held.length) say(`held: ${held.map(({ joint, position, unit }) => `${joint} at ${number(position)} ${unit}`).join(', ')}`);
   }
   for (const warning of result.warnings ?? []) {
     const line = document.createElement('p');

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """`swivel info` without options: which arm it finds on robots of many kinds."""
+import json
 import re
 import unittest
 
@@ -114,6 +115,81 @@ class Info(WithFolder):
             done = self.info(more, "--packages", wrong)
             self.assertEqual((done.returncode, done.stdout), (2, ""))
             self.assertIn("--packages", done.stderr)
+
+    def test_linkages_follow_the_arm(self):
+        mimics = lambda leader, more="": f'<mimic joint="{leader}"{more}/>'
+        rods = joint("balancer", "revolute", "link_1", "rod", axis="0 1 0", more=mimics("joint_a2", ' multiplier="-1"')) + joint("cylinder", "prismatic", "rod", "piston", more=mimics("joint_a2", ' multiplier="0.1"')) \
+            + joint("rocker", "revolute", "link_3", "lever", axis="0 1 0", more=mimics("joint_a4"))
+        done = self.info(rods)
+        self.finds(done, "base_link", "tool0")
+        for line in ("linkage    balancer moves by -1 times joint 2\n", "linkage    cylinder moves by 0.1 times joint 2\n", "linkage    rocker moves by 1 times joint 4\n"):
+            self.assertIn(line, done.stdout)
+        self.assertRegex(done.stdout, r"joint 2    joint_a2 +-1\.0000 to +1\.0000 rad")  # the balancer's limits
+        six = (DATA / "robots/ur5e_like.urdf").read_text()
+        first = re.search(r'<joint name="joint_1".*?<child link="([^"]*)"', six, re.S).group(1)
+        done = self.info(joint("balancer", "revolute", first, "rod", axis="0 1 0", more=mimics("joint_2")), text=six)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("class      6R and a roll", done.stdout)
+        self.assertIn("linkage    balancer moves by 1 times joint 2\n", done.stdout)
+
+    def test_an_arm_that_mimics_itself(self):
+        text = re.sub(r'(<joint name="joint_a4".*?<axis[^>]*/>)', r'\g<1><mimic joint="joint_a2" multiplier="-1"/>', IIWA, flags=re.S)
+        self.assertNotEqual(text, IIWA)
+        done = self.info(text=text)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("joint 'joint_a4', between 'base_link' and 'tool0', mimics 'joint_a2' of the arm: not supported", done.stderr)
+
+    def test_tips(self):
+        renamed = IIWA.replace('"tool0"', '"plate"')
+        side = joint("shell", "fixed", "link_7", "link_7_sc", xyz="0 0 0")  # holds shapes, at link 7 itself
+        camera = joint("camera_rojoint", "revolute", "link_7", "camera_rolink", xyz="0 0.05 0", axis="0 1 0")
+        lens = joint("mount", "fixed", "link_7", "front_camera", xyz="0 0.05 0")
+        for more in (side, camera, lens, side + camera + lens, camera + joint("lens", "fixed", "camera_rolink", "lens_link")):
+            with self.subTest(more=more):
+                self.finds(self.info(more, text=renamed), "base_link", "plate")
+        bare = re.sub(r'<joint name="[^"]*" type="fixed">\s*<parent link="link_7"/>.*?</joint>', "", re.sub(r'<link name="tool0"[^>]*(/>|>.*?</link>)', "", IIWA, flags=re.S), flags=re.S)
+        self.assertNotIn("tool0", bare)
+        self.finds(self.info(camera, text=bare), "base_link", "link_7")
+
+    def rail(self, tail=""):
+        """The arm on a rail of 2 m, and a path 1 m beside it."""
+        self.info('<link name="hall"/><joint name="rail" type="prismatic"><parent link="hall"/><child link="base_link"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1" effort="1"/></joint>')
+        file = self.folder / "problem.yaml"
+        file.write_text(f"robot: {{urdf: robot.urdf, base_link: hall, tip_link: tool0{tail}}}\npath: {{waypoints: [{{xyz: [0.5, 1.2, 0.5]}}, {{xyz: [0.5, 1.25, 0.5]}}]}}\n")
+        return file
+
+    def test_held_joints_are_named(self):
+        problem = self.rail()
+        done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0")
+        self.assertIn("held       rail at 0 m\n", done.stdout)
+        self.assertIn("warning    joint 'rail' lies between base and tip and is not planned: it is held at 0 m: robot.hold: {rail: POSITION}", done.stdout)
+        done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", "rail=1")
+        self.assertIn("held       rail at 1 m\n", done.stdout)
+        self.assertNotIn("warning", done.stdout)
+        alone = run("info", self.folder / "robot.urdf").stdout
+        self.assertNotIn("held", alone)
+        self.assertIn("beside     rail at 0 m\n", alone)
+
+        result = self.folder / "result.json"
+        done = run("plan", problem, "--json", result)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("no path at any resolution with rail held at 0 m: ", done.stdout)
+        self.assertIn("swivel: warning: joint 'rail' lies between base and tip and is not planned: it is held at 0 m", done.stderr)
+        held = {"joint": "rail", "position": 0, "unit": "m", "given": False, "mimics": None}
+        self.assertEqual(json.loads(result.read_text())["held"], [held])
+
+        problem = self.rail(", hold: {rail: 1.1}")
+        done = run("plan", problem, "--json", result, "--out", self.folder / "path.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn(" | held: rail at 1.1 m\n", done.stdout)
+        self.assertEqual(json.loads(result.read_text())["held"], [held | {"position": 1.1, "given": True}])
+        done = run("check", problem, self.folder / "path.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn(", held: rail at 1.1 m; ", done.stdout)
+        problem = self.rail(", hold: {rail: 3}")
+        done = run("plan", problem)
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        self.assertIn("joint 'rail' at 3.000000 is outside its limits: allowed is -2.000000 to 2.000000", done.stderr)
 
     def test_near_matches(self):
         for options, words in ((("--tip", "tol0"), "--tip: unknown link 'tol0', nearest is 'tool0'"), (("--base", "baselink"), "--base: unknown link 'baselink', nearest is 'base_link'"),

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "linkages.hpp"
 #include "random_problem.hpp"
 #include "seed.hpp"
 #include "swivel/planner/prepared_robot.hpp"
@@ -41,10 +42,25 @@ std::vector<Config> walk(const World& world, const Chain& chain, Random& random)
   return rows;
 }
 
-TEST(FirstTooNear, IsWhatEachQuestionFinds) {
-  const std::uint64_t base = test::seed("FirstTooNear");
-  const auto robots = test::all_robots();
-  const int count = test::trials(300);
+/// The robots of `all_robots()`, each with links that joints beside its arm move.
+std::vector<test::TestRobot> robots_with_linkages(std::uint64_t seed) {
+  Random random(seed);
+  auto robots = test::all_robots();
+  for (test::TestRobot& robot : robots) {
+    const auto names = test::arm_of(robot).chain.joint_names;
+    auto model = std::make_shared<RobotModel>(*robot.model);
+    test::add_linkages(*model, {names.begin(), names.end()}, 2, random);
+    robot.model = model;
+    robot.name += " with linkages";
+  }
+  return robots;
+}
+
+struct Walks {
+  int free = 0, at_row = 0, between = 0;
+};
+
+Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t base, int count) {
   int free = 0, at_row = 0, between = 0, up_to_it = 0;
   std::int64_t rows_asked = 0;
   for (int trial = 0; trial < count; ++trial) {
@@ -78,11 +94,25 @@ TEST(FirstTooNear, IsWhatEachQuestionFinds) {
   }
   std::printf("%lld rows: %d walks free, %d end at a row, %d between two, %d of them free up to there\n",
               static_cast<long long>(rows_asked), free, at_row, between, up_to_it);
+  return {free, at_row, between};
+}
+
+TEST(FirstTooNear, IsWhatEachQuestionFinds) {
+  const std::uint64_t base = test::seed("FirstTooNear");
+  const int count = test::trials(300);
+  const Walks walks = compare_walks(test::all_robots(), base, count);
   if (count >= 300) {
-    EXPECT_GE(free, count / 5);
-    EXPECT_GE(at_row, count / 20);
-    EXPECT_GE(between, count / 60);
+    EXPECT_GE(walks.free, count / 5);
+    EXPECT_GE(walks.at_row, count / 20);
+    EXPECT_GE(walks.between, count / 60);
   }
+}
+
+TEST(FirstTooNear, IsWhatEachQuestionFindsOfRobotsWithLinkages) {
+  const std::uint64_t base = test::seed("FirstTooNear.Linkages");
+  const Walks walks = compare_walks(robots_with_linkages(base), base, test::trials(100));
+  EXPECT_GE(walks.free, test::at_least(5));
+  EXPECT_GE(walks.at_row + walks.between, test::at_least(10));
 }
 
 }  // namespace

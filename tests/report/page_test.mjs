@@ -253,7 +253,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     const viewport = name === 'a_start' ? phone : wide;
     const { page, close } = await open(html, { viewport, colorScheme: 'light' });
     await drawn(page);
-    assert.match(await page.textContent('#verdict'), reached ? /^No path at this resolution: every one ends by layer \d+ of \d+/ : /^No path at this resolution: the first layer has no valid node/);
+    assert.match(await page.textContent('#verdict'), reached ? /^No path at this resolution with torso_joint_b1 held at 0 rad: every one ends by layer \d+ of \d+/ : /^No path at this resolution with torso_joint_b1 held at 0 rad: the first layer has no valid node/);
     assert.match(data.cut.what, reason);
     const episode = options.includes('--episode') ? `, episode ${options.at(options.indexOf('--episode') + 1)} of seed 1` : '';
     assert.equal(await page.textContent('#title'), `experiment_${name}.yaml${episode}`);

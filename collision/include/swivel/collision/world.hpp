@@ -88,10 +88,11 @@ struct EdgeRule {
     int first_joint = 0, last = 0;  ///< first_joint <= j < last
   };
   std::vector<Near> near;
+  FollowerMotion followers;  ///< m per rad, rad; in `radii` already
   /// A bound on how far any point moves, m: sum |dq_j| R_j; for joints first <= j < last: as seen from the link below them.
   [[nodiscard]] double motion(const Config& q0, const Config& q1, int first = 0, int last = kDof) const;
   /// A bound on how far a point's place at q + dq is from where its velocity at q would bring it, m: sum |dq_i dq_j| R_max(i,j)
-  /// / 2.
+  /// / 2, and of points on followers as much as these add.
   [[nodiscard]] double bend(const Config& dq) const;
   /// Number of midpoints N: the smallest power of two with B / (2 N) <= tolerance, B = motion of all joints.
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1, double tolerance) const;
@@ -153,6 +154,8 @@ class World {
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
+  /// The joints that move the two bodies of a pair against each other.
+  [[nodiscard]] Chain::Joints joints_between(const BodyPair& pair) const;
   /// How far any point of a scene object moves at most from one pose to another, m, rounding included.
   [[nodiscard]] double displacement(int object, const Pose& from, const Pose& to) const;
   /// Of the robot or the scene: questions then take a hundred times as long.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/held_joint.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
 #include "swivel/core/types.hpp"
@@ -47,6 +48,33 @@ struct Chain {
   };
   std::array<Turn, kDof> turn;  ///< of `axis` and `point`, by build_arm
 
+  /// A joint outside the chain that mimics one of the chain's, as those of a balancer's linkage do: the links behind it have pose
+  /// G * motion * X, G the displacement of the group that carries them, `motion` a turn or a shift along a line of the base frame.
+  struct Follower {
+    std::string name;       ///< of the joint
+    int parent = 0;         ///< group that carries it, of the chain or of another follower
+    int root = 0;           ///< group of the chain, 0..7, that carries both
+    int leader = 0;         ///< joint of the chain, from 0
+    double multiplier = 1;  ///< rad or m of motion for 1 rad of the leader
+    bool slides = false;    ///< along `axis`, else it turns about the line through `point` along `axis`
+    Vector3d axis, point;   ///< unit; m; base frame, q = 0
+    Turn turn;              ///< of `axis` and `point`
+  };
+  /// Parents first. Links behind followers[f] are group kDof + 1 + f.
+  std::vector<Follower> followers;
+
+  /// Displacement of a group from q = 0, given G_0 ... G_7 up to its root.
+  [[nodiscard]] Pose displacement(int group, const Config& q, const std::array<Pose, kDof + 1>& G) const;
+  /// Displacements of all groups, by number: G_0 ... G_7, then those of the followers.
+  [[nodiscard]] std::vector<Pose> all_displacements(const Config& q) const;
+  /// Group of the chain, 0..7, that carries a group: itself, or its follower's root.
+  [[nodiscard]] int root_of(int group) const;
+  /// Joints first ... last - 1 are all that move bodies of two groups against each other, and maybe some more.
+  struct Joints {
+    int first = 0, last = 0;
+  };
+  [[nodiscard]] Joints joints_between(int group_a, int group_b) const;
+
   /// G_0 ... G_7.
   [[nodiscard]] std::array<Pose, kDof + 1> displacements(const Config& q) const;
   /// G_first+1 ... G_last, from G_first.
@@ -66,18 +94,23 @@ struct Chain {
 
 /// Where every link of the robot is at q = 0, and which joint of the chain moves it.
 struct LinkPlacement {
-  int group = 0;                 ///< 0: does not move; k: moves with joints 1..k of the chain
+  /// 0: does not move; k = 1..7: moves with joints 1..k of the chain; beyond: with a follower of the chain
+  int group = 0;
   Pose pose = Pose::Identity();  ///< link in base, q = 0, other joints held
 };
 
 /// The arm: the last seven movable joints before the tip that are not held by name; with `roll`, where no more than six of them
-/// turn, these, of which the tool's roll makes seven. Every other joint is held at `hold` (default 0 or its nearest limit). The
-/// tip need not hang from the base: where the part is in the hand and the tool stands, the hand is the base, and the chain leads
-/// through the arm backwards.
-/// Throws InputError for unknown names, a held joint outside its limits, fewer joints, and a prismatic joint among them.
+/// turn, these, of which the tool's roll makes seven. Every other joint is held at `hold` (default 0 or its nearest limit), but
+/// those that mimic a joint of the arm follow it: what they carry moves (Chain::followers), and their limits and rates bound their
+/// leader's. The tip need not hang from the base: where the part is in the hand and the tool stands, the hand is the base, and the
+/// chain leads through the arm backwards.
+/// Throws InputError for unknown names, a held joint outside its limits (or one that `hold` moves through its leader), fewer
+/// joints, a prismatic joint among them, a joint between base and tip that mimics one of them, and a joint that mimics one with a
+/// range of a turn or more other than by whole turns.
 struct ArmModel {
   Chain chain;
   std::vector<LinkPlacement> links;  ///< by RobotModel link index
+  std::vector<HeldJoint> held;       ///< those between base and tip, from the base on
 };
 [[nodiscard]] ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
                                  const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll = {});
@@ -87,7 +120,7 @@ struct RobotBody {
   std::string name;  ///< link name, or the attached body's name
   int link = -1;     ///< RobotModel link that carries it
   bool attached = false;
-  int group = 0;  ///< see LinkPlacement
+  int group = 0;  ///< see LinkPlacement; Chain::displacement() places it
   Shape shape;
   Pose pose = Pose::Identity();  ///< of the shape in base at q = 0
 };
@@ -96,9 +129,19 @@ struct RobotBody {
 [[nodiscard]] std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm,
                                                   const std::vector<AttachedBody>& attached);
 
-/// R_j: a bound on the distance from axis j of any point that joint j moves, over all configurations, metres. By spheres about the
-/// points where neighbouring axes come closest, so it is tight when the shoulder and the wrist are spherical. docs/model.md
-/// "Motions".
+/// How far followers move what they carry, beside the chain.
+struct FollowerMotion {
+  /// By joint of the chain, m per rad: no two bodies of different groups are moved further together by the followers that it leads.
+  std::array<double, kDof> reach{};
+  /// By joint of the chain: the followers that carry a body, one behind the other, turn by so many rad (or slide by so many m) in
+  /// all, at most, for 1 rad of the joint.
+  std::array<double, kDof> turns{};
+};
+[[nodiscard]] FollowerMotion follower_motion(const Chain& chain, const std::vector<RobotBody>& bodies);
+
+/// R_j: a bound on the distance from axis j of any point that joint j moves, over all configurations, metres; where followers mimic
+/// joint j, their FollowerMotion::reach is added. By spheres about the points where neighbouring axes come closest, so it is tight
+/// when the shoulder and the wrist are spherical. docs/model.md "Motions".
 [[nodiscard]] std::array<double, kDof> motion_radii(const Chain& chain, const std::vector<RobotBody>& bodies);
 
 }  // namespace swivel

@@ -115,8 +115,10 @@ class Lattice {
   }
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
   [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
+  /// Of `groups` below: bodies on followers of the chain, which no two nodes are sure to share.
+  static constexpr unsigned kFollowers = 1u << (kDof + 1);
   /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
-  /// 1..7. Rows of such nodes: up to rows_apart() of every group.
+  /// 1..7, or kFollowers. Rows of such nodes: up to rows_apart() of every group.
   [[nodiscard]] virtual bool stand_alike(unsigned groups) const = 0;
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "swivel/core/cause.hpp"
+#include "swivel/core/held_joint.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {
@@ -180,6 +181,7 @@ struct PlanResult : Measures {
   /// Where there is no answer: rows from the first layer on that are valid, as far as they are known; maybe none.
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
+  std::vector<HeldJoint> held;             ///< joints between base and tip that are not planned
   Diagnosis diagnosis;                     ///< filled when infeasible
   std::vector<SpecialPair> dropped_pairs;  ///< touch in every posture: not kept apart
   std::vector<SpecialPair> reduced_pairs;  ///< near by design: keep less

@@ -90,7 +90,7 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int across(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// As in an SrsLattice, among nodes of one roll.
-  [[nodiscard]] bool stand_alike(unsigned) const override { return !has_own_rows(); }
+  [[nodiscard]] bool stand_alike(unsigned groups) const override { return !has_own_rows() && (groups & kFollowers) == 0; }
   void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] unsigned alike_in_manipulability() const override { return at_roll(0).alike_in_manipulability(); }
   [[nodiscard]] bool all_unmanipulable(int layer, const Config& q) const override {
