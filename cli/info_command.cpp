@@ -22,7 +22,7 @@ namespace {
 
 struct InfoArguments {
   std::string urdf, srdf, base, tip;
-  std::vector<std::string> hold, packages;
+  std::vector<std::string> hold, packages, without;
   bool pairs = false, roll = false;
 };
 
@@ -149,8 +149,11 @@ int run(const InfoArguments& arguments) {
     print_pairs(arguments.urdf);
     return kOk;
   }
-  std::vector<std::string> missing_meshes;
-  const auto robot = io::load_kinematics(arguments.urdf, parse_packages(arguments.packages), missing_meshes);
+  if (const std::string end = std::filesystem::path(arguments.urdf).extension(); end == ".yaml" || end == ".yml")
+    throw InputError(arguments.urdf + ": is a problem file: allowed is a URDF file, or `swivel info --pairs " + arguments.urdf +
+                     "` for the pairs of bodies and `swivel plan " + arguments.urdf + "` for its path");
+  io::ShapeSurvey shapes;
+  const auto robot = io::load_kinematics(arguments.urdf, parse_packages(arguments.packages), {arguments.without, true}, shapes);
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
   for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
@@ -160,8 +163,12 @@ int run(const InfoArguments& arguments) {
       build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   const ArmClass kind = classify(arm.chain, robot->source);
   std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
-  if (!missing_meshes.empty())
-    std::printf("meshes     %zu not found, which planning needs: %s\n", missing_meshes.size(), missing_meshes.front().c_str());
+  if (!shapes.missing_meshes.empty())
+    std::printf("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
+                shapes.missing_meshes.front().c_str());
+  if (shapes.collision == 0)
+    std::printf("shapes     none for collision: the robot is kept clear of nothing%s\n",
+                shapes.visual_meshes == 0 ? "" : "; `swivel fit --visual` fits capsules about its visual meshes");
   std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
   for (const HeldJoint& held : arm.held) std::printf("held       %s\n", words({held}).c_str());
   if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) std::printf("beside     %s\n", words(beside).c_str());
@@ -182,6 +189,8 @@ int run(const InfoArguments& arguments) {
   }
   for (const std::string& warning : limit_warnings(arm.chain)) std::printf("warning    %s\n", warning.c_str());
   for (const std::string& warning : held_warnings(arm.held)) std::printf("warning    %s\n", warning.c_str());
+  for (const std::string& warning : file_warnings(*robot, arm.chain)) std::printf("warning    %s\n", warning.c_str());
+  if (const std::string rest = joints_at_rest(*robot, arm.chain, 0); !rest.empty()) std::printf("warning    %s\n", rest.c_str());
   return kOk;
 }
 
@@ -193,12 +202,13 @@ void add_info(CLI::App& app, int& exit_code) {
   command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
   command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
   command->add_option("--packages", arguments->packages, kPackagesHelp);
+  command->add_option("--without", arguments->without, "links left out, with all that they carry, as robot.without does");
   command->add_option("--base", arguments->base, "base link (default: the nearest called base_link or the like, else the root)");
   command->add_option("--tip", arguments->tip, "tip link (default: the end of the first arm of seven joints, else of six)");
   command->add_option("--hold", arguments->hold, "JOINT=POSITION of joints outside the arm");
   command->add_flag("--roll", arguments->roll, "an arm of six joints, for paths with path.roll, even where there are seven");
   command->add_flag("--pairs", arguments->pairs, "which bodies of the robot are kept apart, and how far")
-      ->excludes("--srdf", "--packages", "--base", "--tip", "--hold");
+      ->excludes("--srdf", "--packages", "--without", "--base", "--tip", "--hold");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -120,8 +120,14 @@ class Guesser {
 
   /// Arm joints from this one on that follow each other, in the longest row.
   [[nodiscard]] int row_from(const Joint& joint) const {
-    if (!joint.movable() || mimics_above(joint)) return row_below_[joint.child_link];
+    if (joint.type == Joint::Type::kFixed || mimics_above(joint)) return row_below_[joint.child_link];
     return is_arm_joint(joint) ? row_below_[joint.child_link] + 1 : 0;
+  }
+
+  /// Whether there is a joint above a link, and one that an arm may lead through.
+  bool leads_up_from(int link) const {
+    const int joint = robot_.links[link].parent_joint;
+    return joint >= 0 && robot_.joints[joint].type != Joint::Type::kFree;
   }
 
   /// Turns on its own, as the joints of an arm do. One that others mimic moves a linkage, where the arm goes on behind it, else a
@@ -158,7 +164,7 @@ class Guesser {
     std::vector<int> fixed{link};
     for (std::size_t k = 0; k < fixed.size(); ++k)
       for (const Joint* joint : children_[fixed[k]])
-        if (!joint->movable()) fixed.push_back(joint->child_link);
+        if (joint->type == Joint::Type::kFixed) fixed.push_back(joint->child_link);
     return fixed;
   }
 
@@ -199,7 +205,7 @@ class Guesser {
       for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {  // the first in the file is visited first
         constexpr int kFinger = 4;                                           // movable joints, at most; so have heads and wheels
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
-        Visit next{(*joint)->child_link, visit.row};
+        Visit next{(*joint)->child_link, (*joint)->type == Joint::Type::kFree ? Row() : visit.row};
         if (mimics_above(**joint)) {
           if (row_below_[next.link] >= kLeast) next.row.clear();  // a whole arm goes on behind it
         } else if ((*joint)->movable()) {
@@ -227,8 +233,10 @@ class Guesser {
 
   bool is_srs(int link) const {
     try {
-      const std::string& root = robot_.links[robot_.root_link].name;
-      static_cast<void>(fit_srs(build_arm(robot_, root, robot_.links[link].name, {}, Pose::Identity()).chain, ""));
+      int root = link;
+      while (leads_up_from(root)) root = robot_.joints[robot_.links[root].parent_joint].parent_link;
+      static_cast<void>(
+          fit_srs(build_arm(robot_, robot_.links[root].name, robot_.links[link].name, {}, Pose::Identity()).chain, ""));
       return true;
     } catch (const InputError&) {
       return false;
@@ -255,7 +263,7 @@ class Guesser {
     // The last link before the hand.
     int tip = last;
     while (const Joint* const onwards = only_onwards(tip)) {
-      if (onwards->movable()) break;
+      if (onwards->type != Joint::Type::kFixed) break;
       const auto& below = children_[onwards->child_link];
       if (std::any_of(below.begin(), below.end(), [](const Joint* joint) { return joint->movable(); })) break;
       tip = onwards->child_link;
@@ -267,7 +275,7 @@ class Guesser {
   /// with which they would be seven, the link that it turns.
   std::string base_name(int last, int joints) const {
     int link = last;
-    for (int count = 0; robot_.links[link].parent_joint >= 0; link = robot_.joints[robot_.links[link].parent_joint].parent_link) {
+    for (int count = 0; leads_up_from(link); link = robot_.joints[robot_.links[link].parent_joint].parent_link) {
       if (count >= joints && is_base_name(robot_.links[link].name)) break;
       const Joint& joint = robot_.joints[robot_.links[link].parent_joint];
       if (count == kLeast && joints == kLeast && joint.movable() && !joint.mimic && joint.type != Joint::Type::kPrismatic) break;

@@ -351,6 +351,11 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
   const int base = require_link(robot, "robot.base_link", base_link);
   const int tip = require_link(robot, "robot.tip_link", tip_link);
   const Way way = way_between(robot, base, tip);
+  for (const int j : way.joints)
+    if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
+      fail(robot,
+           "joint '" + robot.joints[static_cast<std::size_t>(j)].name + "' between '" + base_link + "' and '" + tip_link +
+               "' is floating or planar: allowed between base_link and tip_link are fixed, revolute, continuous and prismatic");
   std::vector<int> arm;
   for (const int j : way.joints) {
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];

@@ -133,9 +133,14 @@ class ProblemReader {
     const auto srdf = section.find_filled("srdf");
     const YamlValue base = section.require("base_link"), tip = section.require("tip_link");
     const auto packages = read_packages(section);
-    const std::shared_ptr<RobotModel> robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages); });
-    if (srdf) with_key(*srdf, [&] { load_srdf({resolve(*srdf)}, *robot); });
-    problem_.model = robot;
+    RobotOptions options;
+    if (const auto without = section.find_filled("without"))
+      for (const YamlValue& link : without->items()) options.without.push_back(link.text());
+    if (const auto limits = root_.find_filled("limits"))
+      if (const auto soft = limits->section().find("soft_limits")) options.soft_limits = word(*soft, {true, false});
+    const UrdfRobot robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages, options); });
+    if (srdf) with_key(*srdf, [&] { load_srdf({resolve(*srdf)}, *robot.model, robot.left_out); });
+    problem_.model = robot.model;
     problem_.base_link = link_name(base);
     problem_.tip_link = link_name(tip);
     if (const auto tool = section.find_filled("tool")) problem_.tool = pose(tool->section());

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "urdf.hpp"
 
-#include <console_bridge/console.h>
-#include <urdf_model/model.h>
-#include <urdf_parser/urdf_parser.h>
-
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <map>
-#include <mutex>
 #include <string_view>
 
 #include "bad_input.hpp"
@@ -17,9 +11,11 @@
 #include "srdf.hpp"
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/core/nearest_name.hpp"
+#include "swivel/io/urdf_shapes.hpp"
 #include "text_number.hpp"
 #include "xml.hpp"
+#include "xml_words.hpp"
 
 namespace swivel::io {
 
@@ -28,160 +24,223 @@ namespace {
 constexpr std::size_t kMostLinks = 10'000;  // the largest real ones have hundreds
 constexpr std::size_t kMostShapes = 10'000;
 
-/// Collects what urdfdom would print to stderr.
-class MessageCollector : public console_bridge::OutputHandler {
- public:
-  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
-    if (level < console_bridge::CONSOLE_BRIDGE_LOG_ERROR) return;
-    text_ += (text_.empty() ? "" : "; ") + text;
-  }
-  [[nodiscard]] const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-std::string replaced(std::string_view text, std::string_view what, std::string_view by) {
-  std::string result;
-  for (std::size_t at; (at = text.find(what)) != std::string_view::npos; text.remove_prefix(at + what.size()))
-    result.append(text.substr(0, at)).append(by);
-  return result.append(text);
+/// URDF 1.0 to 1.2, https://wiki.ros.org/urdf/XML and https://github.com/ros/urdfdom/tree/master/xsd: what states geometry, limits
+/// and moving joints. `unread` elements are those of the same pages, of Gazebo
+/// (https://classic.gazebosim.org/tutorials?tut=ros_urdf), ros2_control (https://control.ros.org), Bullet (<contact>), MuJoCo
+/// (<mujoco>), and of the PR2's time (<verbose>, <contact_coefficients>, <map>), which describe looks, dynamics, drives and
+/// simulators.
+const XmlElement& urdf_format() {
+  static const XmlElement origin{"origin", {"xyz", "rpy", "quat_xyzw"}};
+  static const XmlElement geometry{"geometry",
+                                   {},
+                                   {{"box", {"size"}},
+                                    {"sphere", {"radius"}},
+                                    {"cylinder", {"radius", "length"}},
+                                    {"capsule", {"radius", "length"}},
+                                    {"mesh", {"filename", "scale"}}}};
+  static const XmlElement collision{
+      "collision", {"name"}, {origin, geometry}, {"material", "verbose", "contact_coefficients"}, XmlElement::Unknown::kRefused,
+      true};
+  static const XmlElement link{
+      "link", {"name", "type"}, {collision}, {"visual", "inertial", "contact", "sensor", "gazebo"}, XmlElement::Unknown::kWarnedOf,
+      true};
+  static const XmlElement joint{"joint",
+                                {"name", "type"},
+                                {{"parent", {"link"}},
+                                 {"child", {"link"}},
+                                 origin,
+                                 {"axis", {"xyz"}},
+                                 {"limit", {"lower", "upper", "velocity", "effort", "acceleration", "deceleration", "jerk"}},
+                                 {"mimic", {"joint", "multiplier", "offset"}},
+                                 {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}},
+                                {"dynamics", "calibration"},
+                                XmlElement::Unknown::kRefused,
+                                true};
+  static const XmlElement robot{"robot",
+                                {"name", "version"},
+                                {link, joint},
+                                {"material", "transmission", "gazebo", "ros2_control", "sensor", "mujoco"},
+                                XmlElement::Unknown::kWarnedOf};
+  return robot;
 }
 
-constexpr std::string_view kPercent = "\xEE\x80\xA5";  // U+E025, which no file has a use for
-
-urdf::ModelInterfaceSharedPtr parse_quietly(const std::string& xml, const std::string& file) {
-  static std::mutex one_at_a_time;  // console_bridge has one output handler for the whole process
-  const std::lock_guard lock(one_at_a_time);
-  MessageCollector messages;
-  console_bridge::useOutputHandler(&messages);
-  urdf::ModelInterfaceSharedPtr model;
-  std::string thrown;
-  const console_bridge::LogLevel level = console_bridge::getLogLevel();
-  try {
-    // It hands text of the file to printf as a format: what is wrong is said of one without '%'.
-    model = urdf::parseURDF(replaced(xml, "%", kPercent));
-    if (model && xml.find('%') != std::string::npos) {
-      console_bridge::setLogLevel(console_bridge::CONSOLE_BRIDGE_LOG_NONE);
-      model = urdf::parseURDF(xml);
-    }
-  } catch (const std::exception& error) {
-    thrown = error.what();
-  }
-  console_bridge::setLogLevel(level);
-  console_bridge::restorePreviousOutputHandler();
-  // A complaint counts even where urdfdom goes on: it drops collision geometry that it cannot read.
-  if (!model || !messages.text().empty())
-    bad_input(file, "not a valid robot (" + replaced(thrown.empty() ? messages.text() : thrown, kPercent, "%") + ")",
-              "a URDF 1.0 robot, xacro expanded");
-  return model;
-}
-
-/// Removes comments, text and the like, at any depth: printed and read again they may turn into something else.
-void keep_elements(tinyxml2::XMLElement& element) {
-  for (tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr;) {
-    tinyxml2::XMLNode* const next = child->NextSibling();
-    if (tinyxml2::XMLElement* const inner = child->ToElement())
-      keep_elements(*inner);
-    else
-      element.DeleteChild(child);
-    child = next;
-  }
-}
-
-/// Removes children that are not in `kept`.
-void keep_children(tinyxml2::XMLElement& element, std::initializer_list<std::string_view> kept) {
-  for (tinyxml2::XMLNode* child = element.FirstChild(); child != nullptr;) {
-    tinyxml2::XMLNode* const next = child->NextSibling();
-    const tinyxml2::XMLElement* const child_element = child->ToElement();
-    if (child_element == nullptr || std::find(kept.begin(), kept.end(), child_element->Name()) == kept.end())
-      element.DeleteChild(child);
-    child = next;
-  }
+/// The same element where a link's looks are read as its body.
+XmlElement visual_format() {
+  XmlElement visual = urdf_format().children.front().children.front();
+  visual.name = "visual";
+  visual.unread = {"material"};
+  return visual;
 }
 
 /// Calls `visit` for every child element of that name.
 template <class Visit>
-void for_each_child(tinyxml2::XMLElement& element, const char* name, const Visit& visit) {
-  for (auto* child = element.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name)) visit(*child);
+void for_each_child(const tinyxml2::XMLElement& element, const char* name, const Visit& visit) {
+  for (const auto* child = element.FirstChildElement(name); child != nullptr; child = child->NextSiblingElement(name))
+    visit(*child);
 }
 
-/// Leaves only what a planner reads: urdfdom rejects whole files for materials used twice or an odd inertia, and older ones for
-/// version 1.2, whose limits of acceleration and jerk are read here.
-void strip(tinyxml2::XMLElement& robot) {
-  robot.DeleteAttribute("version");
-  keep_children(robot, {"link", "joint"});
-  for_each_child(robot, "link", [](tinyxml2::XMLElement& link) {
-    keep_children(link, {"collision"});
-    for_each_child(link, "collision", [](tinyxml2::XMLElement& collision) { keep_children(collision, {"origin", "geometry"}); });
-  });
-  for_each_child(robot, "joint", [](tinyxml2::XMLElement& joint) {
-    keep_children(joint, {"parent", "child", "origin", "axis", "limit", "mimic"});
-    for_each_child(joint, "limit", [](tinyxml2::XMLElement& limit) {
-      for (const char* name : {"effort", "velocity"})  // urdfdom insists on both; a planner can do without
-        if (limit.Attribute(name) == nullptr) limit.SetAttribute(name, "0");
-    });
-  });
+/// Rz(yaw) Ry(pitch) Rx(roll) by half angles, as urdfdom has it to the last bit.
+Quaterniond from_urdf_rpy(const Vector3d& rpy) {
+  const double phi = rpy.x() / 2, the = rpy.y() / 2, psi = rpy.z() / 2;
+  const double x = std::sin(phi) * std::cos(the) * std::cos(psi) - std::cos(phi) * std::sin(the) * std::sin(psi);
+  const double y = std::cos(phi) * std::sin(the) * std::cos(psi) + std::sin(phi) * std::cos(the) * std::sin(psi);
+  const double z = std::cos(phi) * std::cos(the) * std::sin(psi) - std::sin(phi) * std::sin(the) * std::cos(psi);
+  const double w = std::cos(phi) * std::cos(the) * std::cos(psi) + std::sin(phi) * std::sin(the) * std::sin(psi);
+  const double length = std::sqrt(x * x + y * y + z * z + w * w);
+  return {w / length, x / length, y / length, z / length};
 }
 
-Vector3d to_eigen(const urdf::Vector3& v) {
-  return {v.x, v.y, v.z};
-}
+/// An element of a link or joint: its attributes as what they mean. Messages name file, line, and the link or joint.
+class Element {
+ public:
+  Element(const tinyxml2::XMLElement& xml, const std::string& file, const std::string& owner)
+      : xml_(xml), file_(file), owner_(owner) {}
 
-Pose origin(const urdf::Pose& pose, const std::string& at) {
-  Pose result = Pose::Identity();
-  result.translation() = to_eigen(pose.position);
-  const urdf::Rotation& r = pose.rotation;
-  result.linear() = Quaterniond(r.w, r.x, r.y, r.z).normalized().toRotationMatrix();
-  if (!(result.translation().array().abs() <= kMostMetres).all() || !result.linear().allFinite())
-    bad_input(at, "origin is not finite or too far away", "numbers, those of xyz from -1000 to 1000");
-  return result;
-}
+  [[nodiscard]] std::string where() const { return at_line(file_, xml_.GetLineNum()) + ": " + owner_; }
+  [[noreturn]] void fail(const std::string& what, const std::string& allowed) const { bad_input(where(), what, allowed); }
+  [[nodiscard]] bool has(const char* attribute) const { return xml_.Attribute(attribute) != nullptr; }
+  [[nodiscard]] Element with(const tinyxml2::XMLElement& child) const { return {child, file_, owner_}; }
 
-/// Turns urdfdom's model into ours, in the order of the file, and checks what urdfdom leaves unchecked.
+  [[nodiscard]] std::string text(const char* attribute) const {
+    const char* const value = xml_.Attribute(attribute);
+    if (value == nullptr || *value == 0) fail(label(attribute) + " is missing", "a name");
+    return value;
+  }
+  /// Finite, save where `infinite` is said to be allowed.
+  [[nodiscard]] double number(const char* attribute, bool infinite = false) const {
+    const std::string all = text(attribute);
+    Words words(all);
+    const auto value = to_number<double>(words.next());
+    if (!value || !words.next().empty() || std::isnan(*value) || (!infinite && std::isinf(*value)))
+      fail(label(attribute) + " is '" + all + "'", expanded(attribute, "a number"));
+    return *value;
+  }
+  [[nodiscard]] double number_or(const char* attribute, double otherwise) const {
+    return has(attribute) ? number(attribute) : otherwise;
+  }
+  template <int kCount>
+  [[nodiscard]] Eigen::Matrix<double, kCount, 1> numbers(const char* attribute) const {
+    const std::string all = text(attribute);
+    Words words(all);
+    Eigen::Matrix<double, kCount, 1> result;
+    bool right = true;
+    for (double& number : result) {
+      const auto value = to_number<double>(words.next());
+      right = right && value && std::isfinite(*value);
+      if (right) number = *value;
+    }
+    if (!right || !words.next().empty())
+      fail(label(attribute) + " is '" + all + "'", expanded(attribute, std::to_string(kCount) + " numbers with spaces between"));
+    return result;
+  }
+  [[nodiscard]] double length(const char* attribute) const { return positive(attribute, number(attribute)); }
+  [[nodiscard]] Vector3d lengths(const char* attribute) const {
+    const Vector3d result = numbers<3>(attribute);
+    for (const double one : result) positive(attribute, one);
+    return result;
+  }
+
+  /// The pose that a child <origin> states; without one none but the identity.
+  [[nodiscard]] Pose origin() const {
+    const auto* const child = xml_.FirstChildElement("origin");
+    return child == nullptr ? Pose::Identity() : with(*child).pose();
+  }
+
+ private:
+  [[nodiscard]] std::string label(const char* attribute) const { return std::string(xml_.Name()) + " " + attribute; }
+  /// "${...}" is what xacro leaves where it did not run.
+  [[nodiscard]] std::string expanded(const char* attribute, const std::string& allowed) const {
+    return text(attribute).find("${") == std::string::npos ? allowed : allowed + ", xacro expanded";
+  }
+  double positive(const char* attribute, double value) const {
+    if (!(value > 0 && value <= kMostMetres)) fail(label(attribute) + " is " + format_double(value), kLengthAllowed);
+    return value;
+  }
+  [[nodiscard]] Pose pose() const {
+    Pose result = Pose::Identity();
+    if (has("xyz")) result.translation() = numbers<3>("xyz");
+    if (!(result.translation().array().abs() <= kMostMetres).all())
+      fail("origin is too far away", "numbers from -1000 to 1000 for xyz");
+    if (has("rpy") && has("quat_xyzw")) fail("origin has rpy and quat_xyzw", "one of them");
+    if (has("rpy")) result.linear() = from_urdf_rpy(numbers<3>("rpy")).normalized().toRotationMatrix();
+    if (has("quat_xyzw")) {
+      const Eigen::Vector4d q = numbers<4>("quat_xyzw");
+      if (!(q.norm() > 1e-9) || !std::isfinite(q.norm())) fail("origin quat_xyzw has no direction", "a quaternion of length 1");
+      result.linear() = Quaterniond(q[3], q[0], q[1], q[2]).normalized().toRotationMatrix();
+    }
+    if (!result.linear().allFinite()) fail("origin is not finite", "angles in rad");
+    return result;
+  }
+
+  const tinyxml2::XMLElement& xml_;
+  const std::string& file_;
+  const std::string& owner_;
+};
+
+/// Whose shapes a link gets, and whether meshes are read.
+enum class Shapes { kCollision, kVisualWhereNoCollision, kNone };
+
+/// Makes a model of a URDF, in the order of the file.
 class ModelBuilder {
  public:
-  /// With `missing_meshes` links get no shapes, and the names of meshes are looked up alone.
-  ModelBuilder(const XmlSource& source, const Packages& packages, std::vector<std::string>* missing_meshes)
-      : source_(source), urdf_(source.file), packages_(packages), missing_meshes_(missing_meshes) {}
+  ModelBuilder(const XmlSource& source, const Packages& packages, const RobotOptions& options, Shapes shapes = Shapes::kCollision)
+      : source_(source), file_(source.file.string()), packages_(packages), options_(options), shapes_(shapes) {}
 
-  std::shared_ptr<RobotModel> build() {
+  UrdfRobot build() {
     tinyxml2::XMLDocument document;
-    tinyxml2::XMLElement& robot = load_robot_xml(source_, "URDF", document);
-    strip(robot);
-    keep_elements(robot);
+    const tinyxml2::XMLElement& robot = load_robot_xml(source_, "URDF", document);
+    check(robot);
     check_name(robot);
     check_names(robot, "link", links_);
     check_names(robot, "joint", joints_);
     check_tree(robot);
-    tinyxml2::XMLPrinter printer(nullptr, true);
-    robot.Accept(&printer);  // alone: what stands around it may read otherwise once it is printed
-    parsed_ = parse_quietly(printer.CStr(), urdf_.string());
-    model_->name = parsed_->getName();
-    model_->source = urdf_.string();
-    for_each_child(robot, "link", [&](tinyxml2::XMLElement& element) { add_link(element); });
-    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_joint(element); });
-    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) { add_mimic(element); });
-    model_->root_link = links_.at(parsed_->getRoot()->name);
-    return model_;
+    leave_out(robot);
+    model_->name = robot.Attribute("name");
+    model_->source = file_;
+    for_each_kept(robot, "link", links_, [&](const auto& element, const std::string& owner) { add_link(element, owner); });
+    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) { add_joint(element, owner); });
+    for_each_kept(robot, "joint", joints_, [&](const auto& element, const std::string& owner) { add_mimic(element, owner); });
+    model_->root_link = links_.at(root_);
+    model_->warnings = warnings_.list();
+    return {model_, std::move(left_out_)};
   }
 
+  [[nodiscard]] const ShapeSurvey& survey() const { return survey_; }
+
  private:
-  [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const {
-    return at_line(urdf_.string(), element.GetLineNum()) + ": " + element.Name() + " '" + element.Attribute("name") + "'";
+  using Index = std::map<std::string, int, std::less<>>;
+
+  [[nodiscard]] std::string at(const tinyxml2::XMLElement& element) const { return at_line(file_, element.GetLineNum()); }
+  [[nodiscard]] std::string where(const tinyxml2::XMLElement& element) const { return at(element) + ": " + owner(element); }
+  [[nodiscard]] static std::string owner(const tinyxml2::XMLElement& element) {
+    return std::string(element.Name()) + " '" + element.Attribute("name") + "'";
+  }
+
+  void check(const tinyxml2::XMLElement& robot) {
+    XmlElement format = urdf_format();
+    if (shapes_ == Shapes::kVisualWhereNoCollision) {
+      XmlElement& link = format.children.front();
+      link.children.push_back(visual_format());
+      std::erase(link.unread, std::string_view("visual"));
+    }
+    check_words(robot, format, file_, warnings_);
+    const char* const version = robot.Attribute("version");
+    if (version == nullptr) return;
+    for (const std::string_view known : {"1", "1.0", "1.1", "1.2"})
+      if (version == known) return;
+    warnings_.add(at(robot), "version '" + printable(std::string_view(version).substr(0, 20)) + "' of URDF is read as 1.2 is");
   }
 
   void check_name(const tinyxml2::XMLElement& element) const {
     const char* const name = element.Attribute("name");
     if (name == nullptr || !is_valid_name(name))
       bad_input(
-          at_line(urdf_.string(), element.GetLineNum()),
+          at(element),
           std::string("<") + element.Name() + "> " + (name == nullptr ? "has no name" : "has the name '" + std::string(name) + "'"),
           kValidName);
   }
 
-  /// urdfdom drops a link without a name and goes on. `index`: where each will stand in the model.
-  void check_names(tinyxml2::XMLElement& robot, const char* kind, std::map<std::string, int, std::less<>>& index) const {
+  void check_names(const tinyxml2::XMLElement& robot, const char* kind, Index& index) const {
     for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
       check_name(element);
       if (!index.emplace(element.Attribute("name"), static_cast<int>(index.size())).second)
@@ -189,30 +248,36 @@ class ModelBuilder {
       if (index.size() > kMostLinks)
         bad_input(where(element), "too many of its kind", "at most " + std::to_string(kMostLinks) + " links and joints");
     });
+    if (links_.empty()) bad_input(at(robot), "has no link", "a robot of at least one; of a .xacro what `xacro FILE` prints");
   }
 
-  /// urdfdom takes a link with two parents, and loops that hang on nothing. What is left to it is that there is one root.
-  void check_tree(tinyxml2::XMLElement& robot) const {
-    struct Up {
-      std::string parent;
-      const tinyxml2::XMLElement* joint;
-      int walk = -1;  ///< which walk towards the root came here first
-    };
-    std::map<std::string, Up, std::less<>> up_of;  // by child
-    for_each_child(robot, "joint", [&](tinyxml2::XMLElement& element) {
-      const auto link = [&](const char* kind) -> std::string {
-        const auto* const end = element.FirstChildElement(kind);
-        const char* const name = end == nullptr ? nullptr : end->Attribute("link");
-        return name == nullptr ? "" : name;
-      };
-      const std::string child = link("child");
-      if (!up_of.emplace(child, Up{link("parent"), &element}).second)
+  /// The link that a joint's <parent> or <child> names.
+  [[nodiscard]] std::string end_of(const tinyxml2::XMLElement& joint, const char* kind) const {
+    const auto* const end = joint.FirstChildElement(kind);
+    const char* const name = end == nullptr ? nullptr : end->Attribute("link");
+    if (name == nullptr) bad_input(where(joint), std::string("no <") + kind + " link=...>", "the names of two links");
+    if (links_.contains(name)) return name;
+    bad_input(where(joint), std::string(kind) + " names an unknown link '" + name + "', nearest is '" + nearest(name, links_) + "'",
+              "a link of this file");
+  }
+
+  [[nodiscard]] static std::string nearest(const std::string& name, const Index& index) {
+    std::vector<std::string> known;
+    for (const auto& [one, place] : index) known.push_back(one);
+    return nearest_name(name.substr(0, 200), known);
+  }
+
+  /// One root, above every link; one parent joint for all others.
+  void check_tree(const tinyxml2::XMLElement& robot) {
+    for_each_child(robot, "joint", [&](const tinyxml2::XMLElement& element) {
+      const std::string parent = end_of(element, "parent"), child = end_of(element, "child");
+      if (!up_of_.emplace(child, Up{parent, &element}).second)
         bad_input(where(element), "link '" + child + "' has another parent joint already", "a tree: one parent joint a link");
     });
     int walk = 0;
-    for (auto& [child, start] : up_of) {
+    for (auto& [child, start] : up_of_) {
       std::string_view link = child;
-      for (auto up = up_of.find(link); up != up_of.end(); up = up_of.find(link)) {
+      for (auto up = up_of_.find(link); up != up_of_.end(); up = up_of_.find(link)) {
         if (up->second.walk == walk)
           bad_input(where(*up->second.joint), "closes a loop at link '" + up->first + "'", "a tree: no link above itself");
         if (up->second.walk >= 0) break;
@@ -221,188 +286,282 @@ class ModelBuilder {
       }
       ++walk;
     }
+    for_each_child(robot, "link", [&](const tinyxml2::XMLElement& element) {
+      const std::string name = element.Attribute("name");
+      if (up_of_.contains(name)) return;
+      if (!root_.empty())
+        bad_input(where(element), "is a second root beside '" + root_ + "'", "a tree: one link alone without a parent joint");
+      root_ = name;
+    });
   }
 
-  void add_link(const tinyxml2::XMLElement& element) {
+  /// Takes the links of RobotOptions::without and what hangs from them, with the joints above each, out of `links_` and `joints_`.
+  void leave_out(const tinyxml2::XMLElement& robot) {
+    if (options_.without.empty()) return;
+    std::map<std::string, std::vector<std::string>, std::less<>> below;
+    for (const auto& [child, up] : up_of_) below[up.parent].push_back(child);
+    std::vector<std::string> open;
+    for (const std::string& name : options_.without) {
+      if (!links_.contains(name))
+        bad_input(file_, "robot.without: unknown link '" + name + "', nearest is '" + nearest(name, links_) + "'",
+                  "a link of this file");
+      if (name == root_) bad_input(file_, "robot.without: '" + name + "' carries all others", "a link below the root");
+      open.push_back(name);
+    }
+    while (!open.empty()) {
+      const std::string name = std::move(open.back());
+      open.pop_back();
+      if (links_.erase(name) == 0) continue;
+      const std::string joint = up_of_.find(name)->second.joint->Attribute("name");
+      joints_.erase(joint);
+      left_out_.insert({name, joint});
+      open.insert(open.end(), below[name].begin(), below[name].end());
+    }
+    for (const auto& [kind, index] : {std::pair("link", &links_), std::pair("joint", &joints_)}) {
+      int place = 0;
+      for_each_kept(robot, kind, *index, [&, &index = index](const auto& element, const std::string&) {
+        index->find(element.Attribute("name"))->second = place++;
+      });
+    }
+  }
+
+  template <class Visit>
+  void for_each_kept(const tinyxml2::XMLElement& robot, const char* kind, const Index& index, const Visit& visit) const {
+    for_each_child(robot, kind, [&](const tinyxml2::XMLElement& element) {
+      if (index.contains(std::string_view(element.Attribute("name")))) visit(element, owner(element));
+    });
+  }
+
+  void add_link(const tinyxml2::XMLElement& element, const std::string& owner) {
     Link link;
     link.name = element.Attribute("name");
-    for (const urdf::CollisionSharedPtr& collision : parsed_->getLink(link.name)->collision_array) {
-      if (++shapes_ > kMostShapes)
-        bad_input(where(element), "too many collision shapes", "at most " + std::to_string(kMostShapes) + " of a robot");
-      if (missing_meshes_ != nullptr) {
-        look_up_mesh(*collision->geometry, where(element));
-        continue;
-      }
-      link.collision.push_back({shape(*collision->geometry, where(element)), origin(collision->origin, where(element))});
-    }
+    if (const auto up = up_of_.find(link.name); up != up_of_.end())
+      link.parent_joint = joints_.at(up->second.joint->Attribute("name"));
+    const bool has_collision = element.FirstChildElement("collision") != nullptr;
+    for_each_child(element, "collision", [&](const tinyxml2::XMLElement& xml) {
+      ++survey_.collision;
+      add_shape(Element(xml, file_, owner), xml, shapes_ == Shapes::kCollision, link);
+    });
+    for_each_child(element, "visual", [&](const tinyxml2::XMLElement& xml) {
+      const auto* const geometry = xml.FirstChildElement("geometry");
+      survey_.visual_meshes += geometry != nullptr && geometry->FirstChildElement("mesh") != nullptr;
+      if (shapes_ == Shapes::kVisualWhereNoCollision && !has_collision) add_shape(Element(xml, file_, owner), xml, true, link);
+    });
     model_->links.push_back(std::move(link));
   }
 
-  void look_up_mesh(const urdf::Geometry& geometry, const std::string& at) const {
-    if (geometry.type != urdf::Geometry::MESH) return;
+  /// All but meshes is read, whether it is `wanted` or not; the names of meshes are looked up.
+  void add_shape(const Element& element, const tinyxml2::XMLElement& xml, bool wanted, Link& link) {
+    if (++shape_count_ > kMostShapes)
+      element.fail("too many collision shapes", "at most " + std::to_string(kMostShapes) + " of a robot");
+    PlacedShape placed;
+    placed.pose = element.origin();
+    const auto* const geometry = xml.FirstChildElement("geometry");
+    const auto* const kind = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+    if (kind == nullptr) element.fail("no geometry", "a <geometry> with a box, sphere, cylinder, capsule or mesh");
+    if (const auto* const other = kind->NextSiblingElement())
+      element.with(*other).fail(std::string("a second shape <") + other->Name() + "> in one <geometry>", "one");
+    const Element shape = element.with(*kind);
+    const std::string_view name = kind->Name();
+    if (name == "sphere")
+      placed.shape = Sphere{shape.length("radius")};
+    else if (name == "box")
+      placed.shape = Box{shape.lengths("size")};
+    else if (name == "cylinder")
+      placed.shape = Cylinder{shape.length("radius"), shape.length("length")};
+    else if (name == "capsule")
+      placed.shape = Capsule{shape.length("radius"), shape.length("length")};
+    else if (!read_mesh(shape, wanted, placed.shape))
+      return;
+    if (wanted) link.collision.push_back(std::move(placed));
+  }
+
+  /// Whether there is a mesh to place.
+  bool read_mesh(const Element& element, bool wanted, Shape& shape) {
+    const Vector3d scale = element.has("scale") ? Vector3d(element.numbers<3>("scale")) : Vector3d::Ones();
+    const std::string name = element.text("filename");
     try {
-      static_cast<void>(resolve_mesh_name(static_cast<const urdf::Mesh&>(geometry).filename, urdf_, packages_, at));
+      const std::filesystem::path file = resolve_mesh_name(name, source_.file, packages_, element.where());
+      if (!wanted) return false;
+      try {
+        shape = load_mesh(file, scale, meshes_);
+      } catch (const InputError& error) {
+        throw InputError(element.where() + ": " + error.what());
+      }
     } catch (const InputError& error) {
-      missing_meshes_->push_back(error.what());
+      if (wanted) throw;
+      survey_.missing_meshes.emplace_back(error.what());
+      return false;
     }
+    return true;
   }
 
-  Shape shape(const urdf::Geometry& geometry, const std::string& at) {
-    const auto positive = [&](double length, const char* what) {
-      if (!(length > 0 && length <= kMostMetres)) bad_input(at, std::string(what) + " is " + format_double(length), kLengthAllowed);
-      return length;
-    };
-    switch (geometry.type) {
-      case urdf::Geometry::SPHERE:
-        return Sphere{positive(static_cast<const urdf::Sphere&>(geometry).radius, "sphere radius")};
-      case urdf::Geometry::BOX: {
-        const Vector3d size = to_eigen(static_cast<const urdf::Box&>(geometry).dim);
-        for (const double length : size) positive(length, "box size");
-        return Box{size};
-      }
-      case urdf::Geometry::CYLINDER: {
-        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-        return Cylinder{positive(cylinder.radius, "cylinder radius"), positive(cylinder.length, "cylinder length")};
-      }
-      case urdf::Geometry::MESH: {
-        const auto& mesh = static_cast<const urdf::Mesh&>(geometry);
-        const std::filesystem::path file = resolve_mesh_name(mesh.filename, urdf_, packages_, at);
-        try {
-          return load_mesh(file, to_eigen(mesh.scale), meshes_);
-        } catch (const InputError& error) {
-          throw InputError(at + ": " + error.what());
-        }
-      }
-    }
-    bad_input(at, "unknown geometry", "box, sphere, cylinder or mesh");
-  }
-
-  void add_joint(const tinyxml2::XMLElement& element) {
-    const urdf::Joint& parsed = *parsed_->getJoint(element.Attribute("name"));
-    const std::string at = where(element);
+  void add_joint(const tinyxml2::XMLElement& xml, const std::string& owner) {
+    const Element element(xml, file_, owner);
     Joint joint;
-    joint.name = parsed.name;
-    joint.type = type(parsed, at);
-    joint.parent_link = links_.at(parsed.parent_link_name);
-    joint.child_link = links_.at(parsed.child_link_name);
-    joint.origin = origin(parsed.parent_to_joint_origin_transform, at);
+    joint.name = xml.Attribute("name");
+    joint.line = xml.GetLineNum();
+    joint.type = type(element);
+    joint.parent_link = links_.at(end_of(xml, "parent"));
+    joint.child_link = links_.at(end_of(xml, "child"));
+    joint.origin = element.origin();
     if (joint.movable()) {
-      const double length = to_eigen(parsed.axis).norm();
-      if (!(length > 1e-9)) bad_input(at, "axis is zero", "an axis of positive length on a joint that moves");
-      joint.axis = to_eigen(parsed.axis) / length;
-      read_limits(parsed, at, joint);
-      read_rates(element, at, joint);
+      if (const auto* const axis = xml.FirstChildElement("axis")) {
+        const Element at = element.with(*axis);
+        const Vector3d direction = at.numbers<3>("xyz");
+        const double length = direction.norm();
+        if (!(length > 1e-9) || !std::isfinite(length)) at.fail("axis has no direction", "an axis of positive length");
+        joint.axis = direction / length;
+      }
+      const auto* const limit = xml.FirstChildElement("limit");
+      if (limit != nullptr)
+        read_limits(element.with(*limit), joint);
+      else if (joint.type != Joint::Type::kContinuous)
+        element.fail("no <limit>", "a <limit> with lower and upper");
+      if (const auto* const safety = xml.FirstChildElement("safety_controller")) read_soft_limits(element.with(*safety), joint);
     }
-    model_->links[joint.child_link].parent_joint = static_cast<int>(model_->joints.size());
     model_->joints.push_back(std::move(joint));
   }
 
-  static Joint::Type type(const urdf::Joint& parsed, const std::string& at) {
-    switch (parsed.type) {
-      case urdf::Joint::FIXED:
-        return Joint::Type::kFixed;
-      case urdf::Joint::REVOLUTE:
-        return Joint::Type::kRevolute;
-      case urdf::Joint::CONTINUOUS:
-        return Joint::Type::kContinuous;
-      case urdf::Joint::PRISMATIC:
-        return Joint::Type::kPrismatic;
-      default:
-        bad_input(at,
-                  parsed.type == urdf::Joint::FLOATING ? "floating joint"
-                  : parsed.type == urdf::Joint::PLANAR ? "planar joint"
-                                                       : "unknown joint type",
-                  "fixed, revolute, continuous or prismatic");
+  Joint::Type type(const Element& element) {
+    const std::string name = element.has("type") ? element.text("type") : "";
+    if (name == "fixed") return Joint::Type::kFixed;
+    if (name == "revolute") return Joint::Type::kRevolute;
+    if (name == "continuous") return Joint::Type::kContinuous;
+    if (name == "prismatic") return Joint::Type::kPrismatic;
+    if (name == "floating" || name == "planar") {
+      warnings_.add(element.where(), "is " + name + ": it is held at its origin");
+      return Joint::Type::kFree;
+    }
+    element.fail(name.empty() ? "no joint type" : "unknown joint type '" + name + "'",
+                 "fixed, revolute, continuous, prismatic, floating or planar");
+  }
+
+  /// Rates of URDF 1.2 as well, whatever version the file says it is. What slows down a joint is not told from what speeds it up:
+  /// the smaller of acceleration and deceleration holds for both. 0 and infinite are none.
+  void read_limits(const Element& limit, Joint& joint) {
+    const auto rate = [&](const char* name, bool zero) {
+      if (!limit.has(name)) return 0.0;
+      const double value = limit.number(name, true);
+      if (!(value > 0 || (zero && value == 0)))
+        limit.fail(std::string("limit ") + name + " is " + format_double(value), zero ? "a number >= 0" : "a number > 0");
+      return std::isinf(value) ? 0.0 : value;
+    };
+    joint.velocity = rate("velocity", true);
+    joint.acceleration = rate("acceleration", false);
+    if (const double slowing = rate("deceleration", false); slowing > 0)
+      joint.acceleration = joint.acceleration > 0 ? std::min(joint.acceleration, slowing) : slowing;
+    joint.jerk = rate("jerk", false);
+    const double lower = limit.number_or("lower", 0), upper = limit.number_or("upper", 0);
+    if (!(lower <= upper)) limit.fail("limit lower is above upper", "lower <= upper");
+    if (joint.type != Joint::Type::kContinuous) {
+      joint.lower = lower;
+      joint.upper = upper;
+    } else if (lower < upper) {
+      warnings_.add(limit.where(), "is continuous: its limits from " + format_double(lower) + " to " + format_double(upper) +
+                                       " are not kept, a revolute joint's would be");
     }
   }
 
-  static void read_limits(const urdf::Joint& parsed, const std::string& at, Joint& joint) {
-    if (!parsed.limits) {
-      if (joint.type != Joint::Type::kContinuous) bad_input(at, "no <limit>", "a <limit> with lower and upper");
+  /// Those of a <safety_controller> that states none, as where it bounds the velocity alone, do not bound the joint; one that
+  /// states one of them has 0 for the other.
+  void read_soft_limits(const Element& safety, Joint& joint) {
+    if (!safety.has("soft_lower_limit") && !safety.has("soft_upper_limit")) return;
+    const double lower = safety.number_or("soft_lower_limit", 0), upper = safety.number_or("soft_upper_limit", 0);
+    if (!(lower <= upper)) safety.fail("soft_lower_limit is above soft_upper_limit", "lower <= upper");
+    if (!options_.soft_limits) return;
+    if (joint.type == Joint::Type::kContinuous) {
+      warnings_.add(safety.where(), "is continuous: its soft limits are not kept");
       return;
     }
-    joint.velocity = parsed.limits->velocity;
-    if (!(joint.velocity >= 0)) bad_input(at, "limit velocity is negative", "a number >= 0");
-    if (joint.type == Joint::Type::kContinuous) return;
-    joint.lower = parsed.limits->lower;
-    joint.upper = parsed.limits->upper;
-    if (!(joint.lower <= joint.upper)) bad_input(at, "limit lower is above upper", "lower <= upper");
+    const Joint::Range hard{joint.lower, joint.upper};
+    joint.lower = std::max(joint.lower, lower);
+    joint.upper = std::min(joint.upper, upper);
+    if (!(joint.lower <= joint.upper))
+      safety.fail("soft limits lie outside of the <limit>", "limits that overlap, or `limits.soft_limits: false`");
+    if (joint.lower != hard.lower || joint.upper != hard.upper) joint.hard = hard;
   }
 
-  /// Attributes of URDF 1.2, whatever version the file says it is. What slows down a joint is not told from what speeds it up: the
-  /// smaller of acceleration and deceleration holds for both.
-  static void read_rates(const tinyxml2::XMLElement& element, const std::string& at, Joint& joint) {
-    const auto* const limit = element.FirstChildElement("limit");
-    if (limit == nullptr) return;
-    const auto rate = [&](const char* name) {
-      const char* const text = limit->Attribute(name);
-      if (text == nullptr) return 0.0;
-      const auto value = to_number<double>(text);
-      if (!value || !(*value > 0)) bad_input(at, std::string("limit ") + name + " is '" + text + "'", "a number > 0");
-      return std::isinf(*value) ? 0.0 : *value;
-    };
-    joint.acceleration = rate("acceleration");
-    if (const double slowing = rate("deceleration"); slowing > 0)
-      joint.acceleration = joint.acceleration > 0 ? std::min(joint.acceleration, slowing) : slowing;
-    joint.jerk = rate("jerk");
-  }
-
-  void add_mimic(const tinyxml2::XMLElement& element) {
-    const std::string name = element.Attribute("name");
-    const urdf::JointMimicSharedPtr& mimic = parsed_->getJoint(name)->mimic;
-    Joint& joint = model_->joints[joints_.at(name)];
-    if (!mimic || !joint.movable()) return;
-    const auto found = joints_.find(mimic->joint_name);
+  void add_mimic(const tinyxml2::XMLElement& xml, const std::string& owner) {
+    const auto* const child = xml.FirstChildElement("mimic");
+    Joint& joint = model_->joints[static_cast<std::size_t>(joints_.at(xml.Attribute("name")))];
+    if (child == nullptr || !joint.movable()) return;
+    const Element mimic(*child, file_, owner);
+    const std::string name = mimic.text("joint");
+    const auto found = joints_.find(name);
     if (found == joints_.end())
-      bad_input(where(element), "mimics unknown joint '" + mimic->joint_name + "'", "the name of another joint");
+      mimic.fail(left_out_.contains(name) ? "mimics joint '" + name + "', which robot.without leaves out"
+                                          : "mimics unknown joint '" + name + "'",
+                 "the name of another joint");
     const int leader = found->second;
     // Leaders come before or after in the file, so follow the chain as far as it is known.
     for (int k = leader; k >= 0;) {
-      const Joint& next = model_->joints[k];
-      if (&next == &joint) bad_input(where(element), "mimics itself", "the name of another joint");
+      const Joint& next = model_->joints[static_cast<std::size_t>(k)];
+      if (&next == &joint) mimic.fail("mimics itself", "the name of another joint");
       k = next.mimic ? next.mimic->joint : -1;
     }
-    joint.mimic = Joint::Mimic{leader, mimic->multiplier, mimic->offset};
+    joint.mimic = Joint::Mimic{leader, mimic.number_or("multiplier", 1), mimic.number_or("offset", 0)};
   }
 
+  struct Up {
+    std::string parent;
+    const tinyxml2::XMLElement* joint;
+    int walk = -1;  ///< which walk towards the root came here first
+  };
+
   const XmlSource& source_;
-  const std::filesystem::path& urdf_;
+  const std::string file_;
   const Packages& packages_;
-  std::vector<std::string>* missing_meshes_;
-  urdf::ModelInterfaceSharedPtr parsed_;
+  const RobotOptions& options_;
+  const Shapes shapes_;
   std::shared_ptr<RobotModel> model_ = std::make_shared<RobotModel>();
   MeshCache meshes_;
-  std::size_t shapes_ = 0;
-  std::map<std::string, int, std::less<>> links_, joints_;  ///< where each stands in the model
+  std::size_t shape_count_ = 0;
+  Index links_, joints_;                          ///< where each stands in the model
+  std::map<std::string, Up, std::less<>> up_of_;  ///< what is above each link but the root
+  std::string root_;
+  std::set<std::string> left_out_;
+  XmlWarnings warnings_;
+  ShapeSurvey survey_;
 };
+
+std::shared_ptr<const RobotModel> with_srdf(UrdfRobot robot, const std::optional<XmlSource>& srdf) {
+  if (srdf) load_srdf(*srdf, *robot.model, robot.left_out);
+  return robot.model;
+}
 
 }  // namespace
 
-std::shared_ptr<RobotModel> load_urdf(const std::filesystem::path& urdf, const Packages& packages) {
+UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages, const RobotOptions& options) {
   const XmlSource source{urdf};
-  return ModelBuilder(source, packages, nullptr).build();
+  return ModelBuilder(source, packages, options).build();
 }
 
-std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
-                                                  const std::map<std::string, std::filesystem::path>& packages,
-                                                  std::vector<std::string>& missing_meshes) {
+std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf, const Packages& packages,
+                                                  const RobotOptions& options, ShapeSurvey& shapes) {
   const XmlSource source{urdf};
-  return ModelBuilder(source, packages, &missing_meshes).build();
+  ModelBuilder builder(source, packages, options, Shapes::kNone);
+  const UrdfRobot robot = builder.build();
+  shapes = builder.survey();
+  return robot.model;
+}
+
+std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf, const Packages& packages) {
+  const XmlSource source{urdf};
+  const RobotOptions options;
+  return ModelBuilder(source, packages, options, Shapes::kVisualWhereNoCollision).build().model;
 }
 
 std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
-                                             const std::map<std::string, std::filesystem::path>& packages) {
-  const std::shared_ptr<RobotModel> robot = load_urdf(urdf, packages);
-  if (!srdf.empty()) load_srdf({srdf}, *robot);
-  return robot;
+                                             const Packages& packages, const RobotOptions& options) {
+  return with_srdf(load_urdf(urdf, packages, options), srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
-std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf,
-                                              const std::map<std::string, std::filesystem::path>& packages) {
+std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf, const Packages& packages,
+                                              const RobotOptions& options) {
   const XmlSource source{"URDF text", urdf};
-  const std::shared_ptr<RobotModel> robot = ModelBuilder(source, packages, nullptr).build();
-  if (!srdf.empty()) load_srdf({"SRDF text", srdf}, *robot);
-  return robot;
+  return with_srdf(ModelBuilder(source, packages, options).build(),
+                   srdf.empty() ? std::nullopt : std::optional(XmlSource{"SRDF text", srdf}));
 }
 
 }  // namespace swivel::io

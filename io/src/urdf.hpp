@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <filesystem>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "mesh_name.hpp"
 #include "swivel/core/robot_model.hpp"
+#include "swivel/io/io.hpp"
 
 namespace swivel::io {
 
-/// The robot without its SRDF. Throws InputError.
-[[nodiscard]] std::shared_ptr<RobotModel> load_urdf(const std::filesystem::path& urdf, const Packages& packages);
+/// A robot without its SRDF, and the names of links and joints that its file has besides.
+struct UrdfRobot {
+  std::shared_ptr<RobotModel> model;
+  std::set<std::string> left_out;
+};
+
+/// Throws InputError.
+[[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages, const RobotOptions& options);
 
 }  // namespace swivel::io

@@ -36,14 +36,23 @@ class ShapeWriter {
       add_sphere(placed.pose.translation() + side * capsule->length / 2 * axis, capsule->radius);
   }
 
+  /// A visual shape, as a collision shape.
+  void copy(const tinyxml2::XMLElement& visual) {
+    tinyxml2::XMLElement& collision = add_collision();
+    for (const char* part : {"origin", "geometry"})
+      if (const auto* const child = visual.FirstChildElement(part)) collision.InsertEndChild(child->DeepClone(link_.GetDocument()));
+  }
+
  private:
   void add_sphere(const Vector3d& centre, double radius) {
     add_shape("sphere", centre, Vector3d::Zero()).SetAttribute("radius", csv_number(radius).c_str());
   }
+  tinyxml2::XMLElement& add_collision() {
+    last_ = link_.InsertAfterChild(last_, link_.GetDocument()->NewElement("collision"))->ToElement();
+    return *last_;
+  }
   tinyxml2::XMLElement& add_shape(const char* kind, const Vector3d& xyz, const Vector3d& rpy) {
-    tinyxml2::XMLDocument& document = *link_.GetDocument();
-    tinyxml2::XMLElement* const collision = document.NewElement("collision");
-    last_ = link_.InsertAfterChild(last_, collision)->ToElement();
+    tinyxml2::XMLElement* const collision = &add_collision();
     tinyxml2::XMLElement* const origin = collision->InsertNewChildElement("origin");
     origin->SetAttribute("xyz", numbers(xyz).c_str());
     origin->SetAttribute("rpy", numbers(rpy).c_str());
@@ -69,7 +78,10 @@ void move_names(tinyxml2::XMLElement& link, const std::filesystem::path& from, c
 
 }  // namespace
 
-std::string urdf_with_shapes(const std::filesystem::path& urdf, const ShapesInstead& instead, const std::filesystem::path& folder) {
+std::string urdf_with_shapes(const std::filesystem::path& urdf, const ShapesInstead& instead, const std::filesystem::path& folder,
+                             ShapesOf of) {
+  const bool visual = of == ShapesOf::kVisual;
+  const char* const kind = visual ? "visual" : "collision";
   tinyxml2::XMLDocument document;
   tinyxml2::XMLElement& robot = load_robot_xml({urdf}, "URDF", document);
   const std::filesystem::path from = std::filesystem::weakly_canonical(urdf).parent_path(),
@@ -79,14 +91,15 @@ std::string urdf_with_shapes(const std::filesystem::path& urdf, const ShapesInst
     if (from != to) move_names(*link, from, to);
     const auto shapes = instead.find(name == nullptr ? "" : name);
     if (shapes == instead.end()) continue;
-    tinyxml2::XMLElement* collision = link->FirstChildElement("collision");
+    tinyxml2::XMLElement* element = link->FirstChildElement(kind);
     for (const auto& others : shapes->second) {
-      if (collision == nullptr) break;
-      tinyxml2::XMLElement* const next = collision->NextSiblingElement("collision");
-      ShapeWriter writer(*link, *collision);
+      if (element == nullptr) break;
+      tinyxml2::XMLElement* const next = element->NextSiblingElement(kind);
+      ShapeWriter writer(*link, *element);
+      if (visual && others.empty()) writer.copy(*element);
       for (const PlacedShape& other : others) writer.add(other);
-      if (!others.empty()) link->DeleteChild(collision);
-      collision = next;
+      if (!visual && !others.empty()) link->DeleteChild(element);
+      element = next;
     }
   }
   tinyxml2::XMLPrinter printer;

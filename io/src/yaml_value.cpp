@@ -203,6 +203,9 @@ int documents_in(const std::string& text) {
 YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema) {
   const std::string name = file.string();
   const std::string text = read_file(file, "YAML file", kMostYamlBytes);
+  if (const std::size_t first = text.find_first_not_of(" \t\r\n"); first != std::string::npos && text[first] == '<')
+    bad_input(name, "is XML, as a URDF is, and no problem file",
+              "YAML with a robot and a path; `swivel info` describes the robot of a URDF");
   YAML::Node document;
   int documents = 0;
   try {

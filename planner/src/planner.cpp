@@ -291,6 +291,8 @@ struct Planner::Impl {
   void lay_out(const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
+    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain, problem.limits.joint_margin); !rest.empty())
+      throw InputError(rest);
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();
@@ -301,6 +303,8 @@ struct Planner::Impl {
     result.warnings = limit_warnings(robot->arm().chain);
     const std::vector<std::string> held = held_warnings(result.held);
     result.warnings.insert(result.warnings.end(), held.begin(), held.end());
+    const std::vector<std::string> of_files = file_warnings(*problem.model, robot->arm().chain);
+    result.warnings.insert(result.warnings.end(), of_files.begin(), of_files.end());
     result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());

@@ -86,14 +86,19 @@ void serialize(A& archive, Joint::Mimic& x) {
   archive(joint, multiplier, offset);
 }
 template <class A>
+void serialize(A& archive, Joint::Range& x) {
+  auto& [lower, upper] = x;
+  archive(lower, upper);
+}
+template <class A>
 void serialize(A& archive, Joint& x) {
-  auto& [name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic] = x;
-  archive(name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic);
+  auto& [name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic, hard, passive, line] = x;
+  archive(name, type, parent, child, origin, axis, lower, upper, velocity, acceleration, jerk, mimic, hard, passive, line);
 }
 template <class A>
 void serialize(A& archive, RobotModel& x) {
-  auto& [name, source, links, joints, root_link, has_srdf, disabled_pairs] = x;
-  archive(name, source, links, joints, root_link, has_srdf, disabled_pairs);
+  auto& [name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings] = x;
+  archive(name, source, links, joints, root_link, has_srdf, disabled_pairs, warnings);
 }
 template <class A>
 void serialize(A& archive, Waypoint& x) {

@@ -305,5 +305,115 @@ class Robots(WithFolder):
         self.assertGreaterEqual(self.ran, 200)
 
 
+class Honoured(WithFolder):
+    """What a URDF or SRDF says and the plan does not have: refused in a line, or said as a warning."""
+
+    PATH = "path: {waypoints: [{xyz: [0.5, -0.1, 0.4], rpy: [0, 3.1415926536, 0]}, {xyz: [0.5, 0.1, 0.4], rpy: [0, 3.1415926536, 0]}]}\n"
+
+    def files(self, urdf, robot="", more="", srdf=None):
+        self.urdf = self.folder / "robot.urdf"
+        self.urdf.write_text(urdf)
+        if srdf:
+            (self.folder / "robot.srdf").write_text(srdf)
+            robot += ", srdf: robot.srdf"
+        problem = self.folder / "problem.yaml"
+        problem.write_text(f"robot: {{urdf: robot.urdf, base_link: base_link, tip_link: tool0{robot}}}\n{self.PATH}{more}")
+        return problem
+
+    def warned(self, *arguments, **keywords):
+        done, _, result = self.plan(self.files(*arguments, **keywords))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        printed = [line for line in done.stderr.splitlines() if line.startswith("swivel: warning: ")]
+        self.assertEqual(printed, [f"swivel: warning: {warning}" for warning in result["warnings"]])
+        return [warning for warning in result["warnings"] if "robot pairs" not in warning and "no collision shape" not in warning]
+
+    def refused(self, done, *words):
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
+
+    def test_soft_limits(self):
+        safety = '<safety_controller soft_lower_limit="-1.5" soft_upper_limit="3" k_position="1" k_velocity="1"/>'
+        limits = r'(<joint name="joint_a2".*?<limit [^>]*/>)'
+        urdf = re.sub(limits, lambda m: m[1] + safety, IIWA, count=1, flags=re.S)
+        warnings = self.warned(urdf)
+        line = 1 + urdf[:urdf.index('<joint name="joint_a2"')].count("\n")
+        self.assertEqual(len(warnings), 1)
+        self.assertIn(f"robot.urdf:{line}: joint 'joint_a2' keeps the soft limits of a safety_controller: -1.5 to 2.0944 of -2.0944 to 2.0944 rad", warnings[0])
+        self.assertIn("`limits.soft_limits: false`", warnings[0])
+        self.assertIn("warning    " + str(self.urdf), run("info", self.urdf).stdout)
+        self.assertEqual(self.warned(urdf, more="limits: {soft_limits: false}\n"), [])
+        narrow = urdf.replace('soft_lower_limit="-1.5"', 'soft_lower_limit="1.9"')
+        self.assertEqual(run("plan", self.files(narrow)).returncode, 1)
+        self.assertEqual(run("plan", self.files(narrow, more="limits: {soft_limits: false}\n")).returncode, 0)
+
+    def test_empty_ranges(self):
+        urdf = re.sub(r'lower="[^"]*" upper="[^"]*"', "", IIWA)
+        problem = self.files(urdf)
+        line = 1 + urdf[:urdf.index("<joint")].count("\n")
+        self.refused(run("plan", problem), f"robot.urdf:{line}: joints 'joint_a1', 'joint_a2'", "'joint_a7' have an empty range in the URDF")
+        self.assertIn("have an empty range in the URDF", run("info", self.urdf).stdout)
+        one = re.sub(r'(<joint name="joint_a3".*?)lower="[^"]*" upper="[^"]*"', r'\1lower="0.5" upper="0.5"', IIWA, count=1, flags=re.S)
+        self.refused(run("plan", self.files(one)), "joint 'joint_a3' has an empty range in the URDF (lower = upper = 0.5 rad)", "robot.hold")
+        self.refused(run("plan", self.files(IIWA, more="limits: {joint_margin: 2.5}\n")), "'joint_a2', 'joint_a4'", "no range left by limits.joint_margin 2.5 rad", "less than 2.0")
+
+    def test_floating_joints(self):
+        above = '<link name="world"/>' + joint("free", "floating", "world", "base_link").replace('<link name="base_link"/>', "")
+        urdf = IIWA.replace("</robot>", above + joint("thing", "planar", "tool0", "part") + "</robot>")
+        for warnings in (self.warned(urdf), re.findall("^warning    (.*)$", run("info", self.urdf).stdout, re.M)):
+            self.assertEqual(len(warnings), 2, warnings)
+            self.assertRegex(warnings[0], r"robot.urdf:\d+: joint 'free': is floating: it is held at its origin")
+            self.assertIn("joint 'thing': is planar", warnings[1])
+        for text in (urdf, urdf.replace('"base_link"', '"first"')):  # whatever the base is called
+            self.files(text)
+            done = run("info", self.urdf)
+            self.assertRegex(done.stdout, "arm        (base_link|first) to tool0\n")
+            self.assertIn("class      S-R-S", done.stdout)
+        problem = self.files(urdf)
+        problem.write_text(problem.read_text().replace("base_link: base_link", "base_link: world"))
+        self.refused(run("plan", problem), "joint 'free' between 'world' and 'tool0' is floating or planar")
+
+    def test_links_left_out(self):
+        hand = '<link name="hand"><collision><geometry><mesh filename="absent.stl"/></geometry></collision></link>' + \
+            joint("mount", "fixed", "tool0", "hand").replace('<link name="hand"/>', "") + joint("grip", "prismatic", "hand", "finger")
+        urdf = IIWA.replace("</robot>", hand + "</robot>")
+        self.refused(run("plan", self.files(urdf)), "absent.stl")
+        srdf = '<robot name="r"><disable_collisions link1="finger" link2="link_7"/></robot>'
+        self.assertEqual(self.warned(urdf, robot=", without: [hand]", srdf=srdf), [])
+        self.refused(run("plan", self.files(urdf, robot=", without: [hnad]")), "robot.without: unknown link 'hnad', nearest is 'hand'")
+        self.assertIn("9 links, 8 joints", run("info", self.urdf, "--without", "hand").stdout)
+
+    def test_srdf(self):
+        srdf = (DATA / "robots/iiwa14.srdf").read_text()
+        more = '<disable_collisions link1="link_11" link2="link_2"/><passive_joint name="joint_9"/></robot>'
+        warnings = self.warned(IIWA, srdf=srdf.replace("</robot>", more))
+        self.assertEqual(len(warnings), 2, warnings)
+        self.assertRegex(warnings[0], r"robot\.srdf:\d+: names link 'link_11', which the robot does not have")
+        passive = srdf.replace("</robot>", '<passive_joint name="joint_a3"/></robot>')
+        self.refused(run("plan", self.files(IIWA, srdf=passive)), "joint 'joint_a3' is a passive_joint of the SRDF")
+
+    def test_words_of_other_programs(self):
+        warnings = self.warned(IIWA.replace('<link name="link_4">', '<link name="link_4"><colision/>'))
+        self.assertEqual(len(warnings), 1, warnings)
+        self.assertRegex(warnings[0], r"robot\.urdf:\d+: unknown element <colision> in <link>, nearest known is 'collision'")
+
+    def test_robots_without_shapes(self):
+        urdf = re.sub("<collision>.*?</collision>", "", IIWA, flags=re.S)
+        self.files(urdf)
+        self.assertIn("shapes     none for collision: the robot is kept clear of nothing\n", run("info", self.urdf).stdout)
+        self.files(urdf.replace('<link name="link_4">', '<link name="link_4"><visual><geometry><mesh filename="x.dae"/></geometry></visual>'))
+        self.assertIn("; `swivel fit --visual` fits capsules about its visual meshes\n", run("info", self.urdf).stdout)
+        self.assertNotIn("shapes ", run("info", DATA / "robots/iiwa14.urdf").stdout)
+
+    def test_files_of_the_wrong_kind(self):
+        problem = self.files(IIWA)
+        self.refused(run("info", problem), "is a problem file", "`swivel info --pairs ", "`swivel plan ")
+        self.refused(run("fit", problem), "is a problem file", "a URDF file")
+        self.refused(run("plan", self.urdf), "is XML", "`swivel info`")
+        problem.write_text(problem.read_text().replace("urdf: robot.urdf", "urdf: problem.yaml"))
+        self.refused(run("plan", problem), "problem.yaml:1: robot.urdf", "is a problem file")
+
+
 if __name__ == "__main__":
     unittest.main(verbosity=1)

@@ -182,7 +182,7 @@ TEST(Bounds, PairsAndShapesOfARobotEnd) {
   expect_message(input_error([&] { (void)load_robot(folder.write("a.urdf", balls + more)); }), {"link 'm'", "too many", "10000"});
 }
 
-/// urdfdom hands text of the file to printf as a format.
+/// What looks like a format of printf is text, in messages too.
 TEST(Bounds, TextOfARobotIsNoFormat) {
   const TempFolder folder;
   const std::string wrong =

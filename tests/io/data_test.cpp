@@ -44,6 +44,8 @@ TEST_F(SharedData, Sda5fAsItsAuthorsCheckedItIn) {
   EXPECT_EQ(robot->links.size(), 19u);
   EXPECT_EQ(robot->joints.size(), 18u);
   EXPECT_EQ(robot->disabled_pairs.size(), 58u);
+  ASSERT_EQ(robot->warnings.size(), 1u);  // a call of the macro that is expanded above it
+  EXPECT_NE(robot->warnings[0].find("sda5f_checked_in.urdf:415: element <xacro:motoman_sda5f>"), std::string::npos);
   EXPECT_EQ(count_collisions(*robot), 17u);
   const Joint& mimic = robot->joints[robot->find_joint("torso_joint_b2")];
   ASSERT_TRUE(mimic.mimic);

@@ -109,21 +109,182 @@ TEST(Robot, SeveralCollisionsAndEveryPrimitive) {
   EXPECT_TRUE(model->links[1].collision.empty());
 }
 
-TEST(Robot, WhatAPlannerDoesNotReadIsIgnored) {
+TEST(Robot, WhatAPlannerDoesNotReadMayBeWrong) {
   const TempFolder folder;
   const auto model = load_robot(folder.write(
       "r.urdf",
       "<robot name='r' xmlns:xacro='http://ros.org/wiki/xacro'>\n"
-      "<!-- twice the same material, no colour, an inertia without mass, a left-over macro -->\n"
+      "<!-- twice the same material, no colour, an inertia without mass -->\n"
       "<material name='green'><color rgba='0 1 0 1'/></material><material name='green'><color rgba='0 2 0 1'/></material>"
-      "<material name='none'/><xacro:arm/><gazebo reference='a'/><transmission name='t'><type>x</type></transmission>"
-      "<link name='a'><inertial/><collision><origin ryp='0 0 0'/><geometry><sphere radius='1'/></geometry>"
+      "<material name='none'/><gazebo reference='a'/><transmission name='t'><type>x</type></transmission>"
+      "<link name='a'><inertial/><inertial/><visual><origin ryp='0 0 0'/></visual><collision><geometry><sphere "
+      "radius='1'/></geometry>"
       "<material name='red'/></collision></link><link name='b'/>"
-      "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><dynamics damping='x'/><safety_controller/>"
+      "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><dynamics damping='x'/><safety_controller "
+      "k_velocity='5'/>"
       "<calibration rising='x'/><limit lower='0' upper='1'/></joint></robot>"));
   EXPECT_EQ(model->links[0].collision.size(), 1u);
   EXPECT_EQ(model->joints[0].velocity, 0);
   EXPECT_EQ(model->joints[0].upper, 1);
+  EXPECT_TRUE(model->warnings.empty());
+}
+
+std::shared_ptr<const RobotModel> one_joint(const std::string& type, const std::string& more, const RobotOptions& options = {}) {
+  return parse_robot(robot("<link name='a'/><link name='b'/>\n" + joint("j", type, "a", "b", more)), "", {}, options);
+}
+
+TEST(Robot, RotationsAndCapsulesOfUrdf11) {
+  const Matrix3d expected = one_joint("fixed", "<origin xyz='1 2 3' rpy='0.1 -0.2 0.3'/>")->joints[0].origin.linear();
+  const Quaterniond q(expected);
+  std::ostringstream text;
+  text.precision(17);
+  text << "<origin xyz='1 2 3' quat_xyzw='" << 2 * q.x() << ' ' << 2 * q.y() << ' ' << 2 * q.z() << ' ' << 2 * q.w() << "'/>";
+  const auto model = one_joint("fixed", text.str());
+  EXPECT_TRUE(model->joints[0].origin.linear().isApprox(expected, 1e-14));
+  EXPECT_EQ(model->joints[0].origin.translation(), Vector3d(1, 2, 3));
+  const auto capsule = parse_robot(
+      "<robot name='r' version='1.1'><link name='a'><collision><origin quat_xyzw='0 0 1 0'/>"
+      "<geometry><capsule radius='0.1' length='0.3'/></geometry></collision></link></robot>");
+  EXPECT_EQ(std::get<Capsule>(capsule->links[0].collision[0].shape).length, 0.3);
+  EXPECT_TRUE(capsule->warnings.empty());
+  const auto message = [](const char* origin) { return input_error([&] { (void)one_joint("fixed", origin); }); };
+  expect_message(message("<origin quat_xyzw='0 0 0 1' rpy='0 0 0'/>"), {"URDF text:4", "'j'", "rpy", "quat_xyzw"});
+  expect_message(message("<origin quat_xyzw='0 0 0 0'/>"), {"URDF text:4", "'j'", "no direction"});
+  expect_message(message("<origin quat_xyzw='0 0 1'/>"), {"URDF text:4", "'j'", "4 numbers"});
+}
+
+TEST(Robot, WhiteSpaceOfXml) {
+  const auto model = one_joint("revolute", "<origin xyz=' 1\t2\n\t3 '/><axis xyz='0\n0\t1'/><limit lower=' -1' upper='2\n'/>");
+  EXPECT_EQ(model->joints[0].origin.translation(), Vector3d(1, 2, 3));
+  EXPECT_EQ(model->joints[0].axis, Vector3d::UnitZ());
+  EXPECT_EQ(model->joints[0].lower, -1);
+}
+
+/// What could change geometry, limits or which joints move is refused at its line, with the word that was probably meant.
+TEST(Robot, WordsThatAreNotKnownAreRefused) {
+  const std::string limit = "<limit lower='0' upper='1'/>";
+  const struct {
+    const char* what;
+    std::string more;
+    std::vector<std::string> needles;
+  } cases[] = {
+      {"attribute of origin", limit + "\n<origin rpz='0 0 1'/>", {"URDF text:5", "'rpz'", "<origin>", "'rpy'"}},
+      {"attribute of limit", "\n<limit lower='0' uper='1'/>", {"URDF text:5", "'uper'", "'upper'"}},
+      {"attribute of axis", limit + "<axis xzy='0 0 1'/>", {"'xzy'", "'xyz'"}},
+      {"axis in its text", limit + "<axis>0 0 1</axis>", {"URDF text:4", "text in <axis>"}},
+      {"axis without xyz", limit + "<axis/>", {"URDF text:4", "'j'", "axis xyz is missing"}},
+      {"element of joint", limit + "<orgin xyz='0 0 1'/>", {"<orgin>", "'origin'"}},
+      {"two limits", limit + "\n" + limit, {"URDF text:5", "second <limit>", "line 4"}},
+      {"two origins", limit + "<origin xyz='0 0 1'/><origin xyz='0 0 2'/>", {"second <origin>"}},
+      {"an attribute twice", "<limit lower='0' upper='1' upper='2'/>", {"URDF text:4", "not XML"}},
+      {"xacro", limit + "<xacro:origin xyz='0 0 1'/>", {"xacro"}},
+      {"xacro in a number", "<limit lower='0' upper='${pi}'/>", {"'${pi}'", "xacro"}},
+      {"soft limits crossed",
+       limit + "<safety_controller soft_lower_limit='1' soft_upper_limit='0'/>",
+       {"'j'", "soft_lower_limit"}},
+      {"soft limits elsewhere", limit + "<safety_controller soft_lower_limit='2' soft_upper_limit='3'/>", {"'j'", "outside"}},
+  };
+  for (const auto& [what, more, needles] : cases) {
+    SCOPED_TRACE(what);
+    expect_message(input_error([&, &more = more] { (void)one_joint("revolute", more); }), needles);
+  }
+  const auto message = [](const std::string& body) { return input_error([&] { (void)parse_robot(robot(body)); }); };
+  const std::string ball = "<geometry><sphere radius='1'/></geometry>";
+  expect_message(message("<link name='a'><collision><xacro:body/></collision></link>"),
+                 {"URDF text:3", "<xacro:body>", "xacro did not run"});
+  expect_message(message("<link name='a'><collision>" + ball + ball + "</collision></link>"), {"second <geometry>"});
+  expect_message(
+      message("<link name='a'><collision><geometry><sphere radius='1'/>\n<box size='1 1 1'/></geometry></collision></link>"),
+      {"URDF text:4", "'a'", "second shape <box>"});
+  expect_message(message("<link name='a'><collision rpy='0 0 1'>" + ball + "</collision></link>"), {"'rpy'", "<collision>"});
+  expect_message(input_error([] { (void)parse_robot("<robot name='r'><link name='a'/></robot>\n<robot name='s'/>"); }),
+                 {"URDF text:2", "second element <robot>"});
+}
+
+/// What other programs keep in a file is not read, and that is said once for each kind.
+TEST(Robot, WordsThatAreNotKnownElsewhereAreWarnedOf) {
+  const auto model = parse_robot(
+      "<robot name='r' version='7' tesseract:make_convex='1' xmlns:tesseract='x'>\n<link name='a'>\n<colision/>\n<colision/></link>"
+      "<loop_joint/><xacro:gripper/>words<joint name='j' type='fixed'><parent link='a'/><child "
+      "link='b'/><drake:damper/></joint><link "
+      "name='b'/></robot>");
+  const std::vector<std::string> expected{
+      "URDF text:1: unknown attribute 'tesseract:make_convex' in <robot>: it is not read",
+      "URDF text:3: unknown element <colision> in <link>, nearest known is 'collision': it is not read (and 1 more of these)",
+      "URDF text:4: unknown element <loop_joint> in <robot>, nearest known is 'joint': it is not read",
+      "URDF text:4: element <xacro:gripper> in <robot> stands where xacro did not run: it is not read",
+      "URDF text:4: text in <robot>: it is not read",
+      "URDF text:4: unknown element <drake:damper> in <joint>: it is not read",
+      "URDF text:1: version '7' of URDF is read as 1.2 is"};
+  EXPECT_EQ(model->warnings, expected);
+  std::string many;
+  for (int k = 0; k < 1000; ++k) many += "<x" + std::to_string(k) + "/>";
+  const auto of_many = parse_robot(robot("<link name='a'>" + many + "</link>"))->warnings;
+  EXPECT_EQ(of_many.size(), 51u);
+  EXPECT_EQ(of_many.back(), "and 950 more that are not known");
+}
+
+TEST(Robot, SoftLimits) {
+  const auto soft = [](const char* type, const std::string& attributes, bool honoured = true) {
+    return one_joint(type, "<limit lower='-1' upper='2'/><safety_controller " + attributes + "/>", {{}, honoured});
+  };
+  const std::string narrower = "soft_lower_limit='-0.5' soft_upper_limit='3' k_position='10' k_velocity='10'";
+  const Joint kept = soft("revolute", narrower)->joints[0];
+  EXPECT_EQ(kept.lower, -0.5);
+  EXPECT_EQ(kept.upper, 2);
+  ASSERT_TRUE(kept.hard);
+  EXPECT_EQ(kept.hard->lower, -1);
+  EXPECT_EQ(kept.hard->upper, 2);
+  const Joint left_out = soft("revolute", narrower, false)->joints[0];
+  EXPECT_EQ(left_out.lower, -1);
+  EXPECT_FALSE(left_out.hard);
+  EXPECT_EQ(soft("revolute", "soft_upper_limit='1'")->joints[0].lower, 0);  // as URDF has it where one is absent
+  EXPECT_FALSE(soft("revolute", "soft_lower_limit='-1' soft_upper_limit='2'")->joints[0].hard);
+  EXPECT_FALSE(soft("revolute", "k_velocity='10'")->joints[0].hard);
+  const auto continuous = soft("continuous", narrower);
+  ASSERT_EQ(continuous->warnings.size(), 2u);  // its limits as well
+  EXPECT_NE(continuous->warnings[1].find("joint 'j': is continuous: its soft limits are not kept"), std::string::npos);
+}
+
+TEST(Robot, FreeJointsAreHeldAndSaid) {
+  for (const char* type : {"floating", "planar"}) {
+    const auto model = one_joint(type, "<origin xyz='0 0 1'/>");
+    EXPECT_EQ(model->joints[0].type, Joint::Type::kFree);
+    EXPECT_FALSE(model->joints[0].movable());
+    EXPECT_EQ(model->joints[0].origin.translation().z(), 1);
+    EXPECT_EQ(model->warnings,
+              std::vector<std::string>{"URDF text:4: joint 'j': is " + std::string(type) + ": it is held at its origin"});
+  }
+}
+
+TEST(Robot, LinksLeftOut) {
+  const TempFolder folder;
+  const std::string text =
+      robot("<link name='z'/>" + joint("to_hand", "revolute", "arm", "hand", kLimit) + "<link name='arm'/>" +
+            mesh_link("hand", "absent.stl") + joint("to_arm", "revolute", "z", "arm", kLimit) +
+            "<link name='finger'/><link name='eye'/>" + joint("to_finger", "prismatic", "hand", "finger", kLimit) +
+            joint("to_eye", "fixed", "arm", "eye"));
+  const auto load = [&](std::vector<std::string> without, const std::string& srdf = "") {
+    return parse_robot(text, srdf, {}, {std::move(without), true});
+  };
+  const auto model =
+      load({"hand"}, robot("<disable_collisions link1='hand' link2='arm'/><disable_collisions link1='eye' link2='arm'/>"
+                           "<passive_joint name='to_finger'/>"));
+  std::vector<std::string> names;
+  for (const Link& link : model->links) names.push_back(link.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"z", "arm", "eye"}));
+  ASSERT_EQ(model->joints.size(), 2u);
+  EXPECT_EQ(model->joints[0].name, "to_arm");
+  EXPECT_EQ(model->joints[1].child_link, 2);
+  EXPECT_EQ(model->links[2].parent_joint, 1);
+  EXPECT_TRUE(model->warnings.empty());
+  EXPECT_EQ(load({"hand", "eye", "finger"})->links.size(), 2u);
+  expect_message(input_error([&] { (void)load({}); }), {"absent.stl"});
+  expect_message(input_error([&] { (void)load({"hnad"}); }), {"robot.without", "'hnad'", "'hand'"});
+  expect_message(input_error([&] { (void)load({"z"}); }), {"robot.without", "'z'"});
+  const std::string mimics = robot("<link name='a'/><link name='b'/><link name='c'/>" + joint("j", "revolute", "a", "b", kLimit) +
+                                   joint("k", "revolute", "a", "c", std::string(kLimit) + "<mimic joint='j'/>"));
+  expect_message(input_error([&] { (void)parse_robot(mimics, "", {}, {{"b"}, true}); }), {"'k'", "'j'", "robot.without"});
 }
 
 TEST(Robot, NothingIsPrinted) {
@@ -166,12 +327,19 @@ TEST(Robot, PackagesInFoldersOfOtherNames) {
 
 TEST(Robot, KinematicsNeedNoMeshes) {
   const TempFolder folder;
-  std::vector<std::string> missing;
-  const auto model = load_kinematics(folder.write("r.urdf", robot(mesh_link("a", "package://pkg/box.stl"))), {}, missing);
+  const std::string ball =
+      "<link name='b'><visual><geometry><mesh filename='x.stl'/></geometry></visual>"
+      "<collision><geometry><sphere radius='1'/></geometry></collision></link>";
+  ShapeSurvey shapes;
+  const auto model =
+      load_kinematics(folder.write("r.urdf", robot(mesh_link("a", "package://pkg/box.stl") + ball + joint("j", "fixed", "a", "b"))),
+                      {}, {}, shapes);
   EXPECT_EQ(model->links.at(0).name, "a");
   EXPECT_TRUE(model->links.at(0).collision.empty());
-  ASSERT_EQ(missing.size(), 1u);
-  expect_message(missing.front(), {"link 'a'", "package://pkg/box.stl"});
+  EXPECT_EQ(shapes.collision, 2u);
+  EXPECT_EQ(shapes.visual_meshes, 1u);
+  ASSERT_EQ(shapes.missing_meshes.size(), 1u);
+  expect_message(shapes.missing_meshes.front(), {"link 'a'", "package://pkg/box.stl"});
 }
 
 TEST(Robot, PackagesFromTheMapGoFirst) {
@@ -250,6 +418,31 @@ TEST(Robot, TextsAreReadAsFilesAre) {
   EXPECT_EQ(parse_robot(with_mesh, {}, {{"pkg", box.parent_path()}})->links[0].collision.size(), 1u);
 }
 
+TEST(Robot, SrdfNamesThatTheRobotDoesNotHave) {
+  const std::string srdf = robot(
+      "<group name='g'><joint name='fixed_base'/><joint name='joint_1'/><joint name='jiont_2'/>\n<chain base_link='base_link' "
+      "tip_link='tip'/>"
+      "</group><virtual_joint name='fixed_base' type='fixed' parent_frame='world' child_link='base_link'/>\n"
+      "<disable_collisions link1='hand' link2='link_1'/>\n<disable_collisions link1='hand' link2='link_2'/>"
+      "<end_effector name='e' parent_link='hand' group='h'/>"
+      "<group_state name='s' group='g'><joint name='joint_9' value='0'/></group_state><joint_property joint_name='joint_8' "
+      "property_name='a' value='b'/><planning_pipeline/><passive_joint name='joint_3'/>");
+  const auto model = parse_robot(arm_urdf(), srdf);
+  const auto names = [](int line, const std::string& what) {
+    return "SRDF text:" + std::to_string(line) + ": names " + what + ", which the robot does not have";
+  };
+  const std::vector<std::string> expected{
+      "SRDF text:6: unknown element <planning_pipeline> in <robot>, nearest known is 'passive_joint': it is not read",
+      names(3, "joint 'jiont_2'"),
+      names(4, "link 'tip'"),
+      names(5, "link 'hand'") + " (and 2 more of these)",
+      names(6, "joint 'joint_9'"),
+      names(6, "joint 'joint_8'")};
+  EXPECT_EQ(model->warnings, expected);
+  EXPECT_TRUE(model->joints[2].passive);
+  EXPECT_FALSE(model->joints[1].passive);
+}
+
 TEST(Robot, SrdfDefaults) {
   const TempFolder folder;
   const fs::path urdf = folder.write("r.urdf", robot("<link name='a'/><link name='b'/><link name='c'/>" +
@@ -309,8 +502,7 @@ TEST(Robot, BadUrdf) {
        robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 0 0'/>")),
        {"r.urdf:5", "'j'", "axis"}},
       {"short axis", robot(ab + joint("j", "revolute", "a", "b", std::string(kLimit) + "<axis xyz='0 1'/>")), {"j"}},
-      {"floating", robot(ab + joint("j", "floating", "a", "b")), {"r.urdf:5", "'j'", "floating"}},
-      {"planar", robot(ab + joint("j", "planar", "a", "b")), {"r.urdf:5", "'j'", "planar"}},
+      {"no type", robot(ab + "<joint name='j'><parent link='a'/><child link='b'/></joint>"), {"r.urdf:5", "'j'", "no joint type"}},
       {"unknown type", robot(ab + joint("j", "hinge", "a", "b")), {"j", "hinge"}},
       {"mimic of nothing", robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='x'/>")), {"r.urdf:5", "'j'", "'x'"}},
       {"mimic of itself", robot(ab + joint("j", "continuous", "a", "b", "<mimic joint='j'/>")), {"r.urdf:5", "'j'", "itself"}},
@@ -355,6 +547,7 @@ TEST(Robot, BadSrdf) {
   } cases[] = {
       {"<robot>\n<disable_collisions link1='a'/></robot>", {"r.srdf:2", "link2"}},
       {"<robot>\n<disable_collisions link1='' link2='b'/></robot>", {"r.srdf:2", "link1"}},
+      {"<robot>\n<disable_collisions link1='a' link2='b' link3='c'/></robot>", {"r.srdf:2", "'link3'"}},
       {"<semantic/>", {"r.srdf:1", "robot"}},
       {"<robot", {"r.srdf", "not XML"}},
   };

@@ -18,10 +18,14 @@ struct Link {
 };
 
 struct Joint {
-  enum class Type { kFixed, kRevolute, kContinuous, kPrismatic };
+  /// kFree: a floating or planar joint of a URDF. The model holds it where its origin is, and no arm leads through it.
+  enum class Type { kFixed, kRevolute, kContinuous, kPrismatic, kFree };
   struct Mimic {
     int joint = -1;
     double multiplier = 1, offset = 0;
+  };
+  struct Range {
+    double lower, upper;
   };
   std::string name;
   Type type = Type::kFixed;
@@ -33,7 +37,11 @@ struct Joint {
   double acceleration = 0;            ///< rad/s^2 or m/s^2, of speeding up and slowing down; 0 where the file gives none
   double jerk = 0;                    ///< rad/s^3 or m/s^3; 0 where the file gives none
   std::optional<Mimic> mimic;
-  [[nodiscard]] bool movable() const { return type != Type::kFixed; }
+  /// What the <limit> of the URDF has, where the soft limits of its <safety_controller> are narrower and are `lower` and `upper`.
+  std::optional<Range> hard;
+  bool passive = false;  ///< no motor moves it, says the SRDF
+  int line = 0;          ///< where the URDF describes it; 0: nowhere
+  [[nodiscard]] bool movable() const { return type != Type::kFixed && type != Type::kFree; }
 };
 
 /// A robot as its URDF (and SRDF) describe it: a tree of links. Immutable once loaded. Source: io::load_robot.
@@ -45,6 +53,7 @@ struct RobotModel {
   int root_link = 0;
   bool has_srdf = false;
   std::vector<std::pair<std::string, std::string>> disabled_pairs;  ///< link names, from the SRDF; may name absent links
+  std::vector<std::string> warnings;  ///< what the files say and the model does not have, a sentence each, with file and line
 
   /// Index of a link or joint by name, -1 if there is none.
   [[nodiscard]] int find_link(const std::string& link_name) const;
