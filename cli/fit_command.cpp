@@ -21,6 +21,7 @@ struct FitArguments {
   std::filesystem::path out;
   std::vector<std::string> packages, links;
   int capsules = 3;
+  bool visual = false;
 };
 
 /// m^3 inside a closed mesh; none of another.
@@ -41,9 +42,23 @@ TriangleMesh placed(const TriangleMesh& mesh, const Pose& pose) {
   return result;
 }
 
+[[noreturn]] void refuse(const RobotModel& robot, const FitArguments& arguments,
+                         const std::map<std::string, std::filesystem::path>& packages) {
+  const char* const of_links = arguments.links.empty() ? "" : " of --link";
+  if (arguments.visual)
+    throw InputError(robot.source + ": no visual meshes" + of_links +
+                     " on links without collision shapes: allowed is a robot that has some");
+  io::ShapeSurvey shapes;
+  static_cast<void>(io::load_kinematics(arguments.urdf, packages, {}, shapes));
+  throw InputError(robot.source + ": no collision meshes" + of_links + ": allowed is a robot that has some" +
+                   (shapes.visual_meshes == 0 ? "" : ", or --visual, which fits capsules about its visual meshes"));
+}
+
 int run(const FitArguments& arguments) {
   io::InputFiles inputs;
-  const auto robot = io::load_robot(arguments.urdf, {}, parse_packages(arguments.packages));
+  const auto packages = parse_packages(arguments.packages);
+  const auto robot =
+      arguments.visual ? io::load_visual_shapes(arguments.urdf, packages) : io::load_robot(arguments.urdf, {}, packages);
   for (const std::string& name : arguments.links) require_known("--link", name, robot->links, "link", robot->source);
   io::OutputFiles outputs(inputs.files());
   outputs.add("--out", arguments.out);
@@ -56,10 +71,11 @@ int run(const FitArguments& arguments) {
       continue;
     for (std::size_t k = 0; k < link.collision.size(); ++k) {
       const auto* mesh = std::get_if<MeshPtr>(&link.collision[k].shape);
-      if (mesh == nullptr) continue;
-      const CapsuleFit fit = fit_capsules(placed(**mesh, link.collision[k].pose), arguments.capsules);
+      if (mesh == nullptr && !arguments.visual) continue;
       auto& of_link = instead[link.name];
       of_link.resize(link.collision.size());
+      if (mesh == nullptr) continue;
+      const CapsuleFit fit = fit_capsules(placed(**mesh, link.collision[k].pose), arguments.capsules);
       of_link[k] = fit.capsules;
       ++meshes;
       shapes += static_cast<int>(fit.capsules.size());
@@ -75,13 +91,12 @@ int run(const FitArguments& arguments) {
       text += line;
     }
   }
-  if (meshes == 0)
-    throw InputError(robot->source + ": no collision meshes" + (arguments.links.empty() ? "" : " of --link") +
-                     ": allowed is a robot that has some");
+  if (meshes == 0) refuse(*robot, arguments, packages);
   char line[200];
   std::snprintf(line, sizeof line, "%d meshes: %d spheres and capsules that contain them\n", meshes, shapes);
   text += line;
-  outputs.write("--out", io::urdf_with_shapes(arguments.urdf, instead, arguments.out.parent_path()));
+  outputs.write("--out", io::urdf_with_shapes(arguments.urdf, instead, arguments.out.parent_path(),
+                                              arguments.visual ? io::ShapesOf::kVisual : io::ShapesOf::kCollision));
   outputs.stage();
   if (!outputs.takes_standard_output()) std::fputs(text.c_str(), stdout);
   flush_standard_output();
@@ -100,6 +115,8 @@ void add_fit(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(1, 20))
       ->capture_default_str();
   command->add_option("--link", arguments->links, "fit these links alone");
+  command->add_flag("--visual", arguments->visual,
+                    "of links without collision shapes: about the visual meshes; other visual shapes are taken as they are");
   command->add_option("--packages", arguments->packages, kPackagesHelp);
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }

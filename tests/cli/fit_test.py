@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """`swivel fit`: capsules in place of meshes, read again from the file that it writes."""
 import math
+import re
 import unittest
 import xml.etree.ElementTree as xml
 
@@ -112,6 +113,29 @@ class Fit(WithFolder):
         self.assertEqual(run("fit", self.urdf, "--link", "link_2", "--out", out).returncode, 0)
         self.assertIn('filename="../wedge.obj"', out.read_text())
         self.assertIn("link_4 ", run("fit", out).stdout)
+
+    def test_visual_meshes_of_links_without_collision_shapes(self):
+        visual = self.mesh.replace("collision>", "visual>")
+        box = '<visual><origin xyz="0 0 0.1"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
+        self.text = re.sub('<link name="link_4">.*?</link>', f'<link name="link_4">{visual}{box}</link>', (DATA / "robots/iiwa14.urdf").read_text(), count=1, flags=re.S)
+        self.text = self.text.replace('<link name="link_5">', '<link name="link_5">' + visual)  # has collision shapes
+        self.urdf.write_text(self.text)
+        self.assertIn("or --visual, which fits capsules about its visual meshes", run("fit", self.urdf).stderr)
+        out = self.folder / "fitted.urdf"
+        done = run("fit", self.urdf, "--visual", "--out", out)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, r"^link_4 .*\n1 meshes")
+        fitted, others = self.shapes(out, "link_4")
+        self.assertGreaterEqual(len(fitted), 1)
+        self.assertEqual(len(others), 1)
+        self.assertIn('<box size="0.1 0.1 0.1"', others[0])
+        link = xml.parse(out).getroot().find("link[@name='link_4']")
+        self.assertEqual(len(link.findall("visual")), 2)
+        self.assertEqual(self.shapes(out, "link_5"), self.shapes(self.urdf, "link_5"))
+        self.assertEqual(run("plan", self.problem_of(out), "--quiet").returncode, 0)
+        done = run("fit", out, "--visual")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no visual meshes on links without collision shapes", done.stderr)
 
     def test_bad_input(self):
         without = self.folder / "without.urdf"
