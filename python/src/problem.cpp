@@ -292,31 +292,33 @@ void bind_robot(py::module_& m) {
       "base, tip: links that the arm reaches from and to; without them the first arm of seven joints that is found,\n"
       "with roll of six, as `swivel info` does. tool: pose of the tool in the tip link. hold: positions of other joints by\n"
       "name, rad or m. packages: name -> folder, for package:// names of meshes. roll: of arms of six joints whose tool may turn "
-      "about its own z axis.\n"
+      "about its own z axis. without: links left out, with all that they carry. soft_limits: whether joints keep the soft limits\n"
+      "of the URDF's <safety_controller>.\n"
       "Raises InputError.";
   py::class_<Robot> type(m, "Robot", "The arm that plans: a chain of a robot model, and what it carries.");
   make_copyable(type);
   type.def(pickling<Robot>());
   type.def(py::init([](const std::filesystem::path& urdf, const std::optional<std::filesystem::path>& srdf,
                        std::optional<std::string> base, std::optional<std::string> tip, const std::optional<Pose>& tool,
-                       std::map<std::string, double> hold, const Packages& packages, const std::optional<Roll>& roll) {
-             return make_robot(io::load_robot(urdf, srdf.value_or(""), packages),
+                       std::map<std::string, double> hold, const Packages& packages, const std::optional<Roll>& roll,
+                       std::vector<std::string> without, bool soft_limits) {
+             return make_robot(io::load_robot(urdf, srdf.value_or(""), packages, {std::move(without), soft_limits}),
                                {std::move(base), std::move(tip), tool, std::move(hold), roll});
            }),
            py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("base") = py::none(), py::arg("tip") = py::none(),
            py::arg("tool") = py::none(), py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-           py::arg("roll") = py::none(), keywords)
+           py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{}, py::arg("soft_limits") = true, keywords)
       .def_static(
           "from_string",
           [](const std::string& urdf, const std::optional<std::string>& srdf, std::optional<std::string> base,
              std::optional<std::string> tip, const std::optional<Pose>& tool, std::map<std::string, double> hold,
-             const Packages& packages, const std::optional<Roll>& roll) {
-            return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages),
+             const Packages& packages, const std::optional<Roll>& roll, std::vector<std::string> without, bool soft_limits) {
+            return make_robot(io::parse_robot(urdf, srdf.value_or(""), packages, {std::move(without), soft_limits}),
                               {std::move(base), std::move(tip), tool, std::move(hold), roll});
           },
           py::arg("urdf"), py::arg("srdf") = py::none(), py::kw_only(), py::arg("base") = py::none(), py::arg("tip") = py::none(),
           py::arg("tool") = py::none(), py::arg("hold") = std::map<std::string, double>{}, py::arg("packages") = Packages{},
-          py::arg("roll") = py::none(),
+          py::arg("roll") = py::none(), py::arg("without") = std::vector<std::string>{}, py::arg("soft_limits") = true,
           (std::string("The same of the texts of a URDF and an SRDF, as ROS 2's robot_description has them.\n") + keywords).c_str())
       .def_property_readonly(
           "name", [](const Robot& robot) { return robot.model->name; }, "Of the URDF.")

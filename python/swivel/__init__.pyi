@@ -91,6 +91,8 @@ class Robot:
         hold: Mapping[str, float] = {},
         packages: Mapping[str, _File] = {},
         roll: Roll | None = None,
+        without: Sequence[str] = [],
+        soft_limits: bool = True,
     ) -> None: ...
     @staticmethod
     def from_string(
@@ -103,6 +105,8 @@ class Robot:
         hold: Mapping[str, float] = {},
         packages: Mapping[str, _File] = {},
         roll: Roll | None = None,
+        without: Sequence[str] = [],
+        soft_limits: bool = True,
     ) -> Robot: ...
     @property
     def name(self) -> str: ...
