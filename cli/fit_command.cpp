@@ -49,7 +49,7 @@ TriangleMesh placed(const TriangleMesh& mesh, const Pose& pose) {
     throw InputError(robot.source + ": no visual meshes" + of_links +
                      " on links without collision shapes: allowed is a robot that has some");
   io::ShapeSurvey shapes;
-  static_cast<void>(io::load_kinematics(arguments.urdf, packages, {}, shapes));
+  static_cast<void>(io::load_kinematics(arguments.urdf, {}, packages, {}, shapes));
   throw InputError(robot.source + ": no collision meshes" + of_links + ": allowed is a robot that has some" +
                    (shapes.visual_meshes == 0 ? "" : ", or --visual, which fits capsules about its visual meshes"));
 }

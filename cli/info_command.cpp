@@ -153,7 +153,8 @@ int run(const InfoArguments& arguments) {
     throw InputError(arguments.urdf + ": is a problem file: allowed is a URDF file, or `swivel info --pairs " + arguments.urdf +
                      "` for the pairs of bodies and `swivel plan " + arguments.urdf + "` for its path");
   io::ShapeSurvey shapes;
-  const auto robot = io::load_kinematics(arguments.urdf, parse_packages(arguments.packages), {arguments.without, true}, shapes);
+  const auto robot =
+      io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages), {arguments.without, true}, shapes);
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
   for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
@@ -190,7 +191,7 @@ int run(const InfoArguments& arguments) {
   for (const std::string& warning : limit_warnings(arm.chain)) std::printf("warning    %s\n", warning.c_str());
   for (const std::string& warning : held_warnings(arm.held)) std::printf("warning    %s\n", warning.c_str());
   for (const std::string& warning : file_warnings(*robot, arm.chain)) std::printf("warning    %s\n", warning.c_str());
-  if (const std::string rest = joints_at_rest(*robot, arm.chain, 0); !rest.empty()) std::printf("warning    %s\n", rest.c_str());
+  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty()) std::printf("warning    %s\n", rest.c_str());
   return kOk;
 }
 
@@ -200,7 +201,7 @@ void add_info(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("info", "Describe an arm: class, dimensions, limits, what was fitted");
   auto arguments = std::make_shared<InfoArguments>();  // shared: lives as long as the callback that reads it
   command->add_option("robot", arguments->urdf, "URDF file; with --pairs a problem file")->required();
-  command->add_option("--srdf", arguments->srdf, "SRDF file; nothing of it is needed");
+  command->add_option("--srdf", arguments->srdf, "SRDF file: which joints are passive, and whether its names are the robot's");
   command->add_option("--packages", arguments->packages, kPackagesHelp);
   command->add_option("--without", arguments->without, "links left out, with all that they carry, as robot.without does");
   command->add_option("--base", arguments->base, "base link (default: the nearest called base_link or the like, else the root)");

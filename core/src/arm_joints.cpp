@@ -63,19 +63,11 @@ std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& cha
   return warnings;
 }
 
-std::string joints_at_rest(const RobotModel& robot, const Chain& chain, double joint_margin) {
-  Joints passive, empty, within_margin;
-  double widest_margin = 0;
+std::string joints_at_rest(const RobotModel& robot, const Chain& chain) {
+  Joints passive, empty;
   for_each_joint(robot, chain, [&](const Joint& joint, const JointLimit& limit) {
     if (joint.passive) passive.add(joint);
-    if (limit.continuous || limit.wide()) return;
-    if (!(limit.lower < limit.upper)) {
-      empty.add(joint);
-    } else if (!(limit.lower + joint_margin < limit.upper - joint_margin)) {
-      if (within_margin.count == 0 || limit.upper - limit.lower < 2 * widest_margin)
-        widest_margin = (limit.upper - limit.lower) / 2;
-      within_margin.add(joint);
-    }
+    if (!limit.continuous && !(limit.lower < limit.upper)) empty.add(joint);
   });
   if (passive.count > 0)
     return passive.sentence(robot, "is a passive_joint", "are passive_joints",
@@ -84,10 +76,6 @@ std::string joints_at_rest(const RobotModel& robot, const Chain& chain, double j
     return empty.sentence(robot, "has", "have",
                           " an empty range in the URDF (lower = upper = " + text(empty.first->lower) +
                               " rad): allowed is lower < upper, or robot.hold for a joint that stands still");
-  if (within_margin.count > 0)
-    return within_margin.sentence(
-        robot, "has", "have",
-        " no range left by limits.joint_margin " + text(joint_margin) + " rad: allowed is less than " + text(widest_margin));
   return {};
 }
 

@@ -73,9 +73,6 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       images = {limit.continuous ? -kPi : turn_within(limit), std::numeric_limits<double>::infinity(), 1};
     } else {
       const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
-      if (lower > upper)
-        throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[j] +
-                         "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
       const auto joint = static_cast<Eigen::Index>(j);
       images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.misfit[joint]);
     }

@@ -537,13 +537,13 @@ UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages,
   return ModelBuilder(source, packages, options).build();
 }
 
-std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf, const Packages& packages,
-                                                  const RobotOptions& options, ShapeSurvey& shapes) {
+std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf, const std::filesystem::path& srdf,
+                                                  const Packages& packages, const RobotOptions& options, ShapeSurvey& shapes) {
   const XmlSource source{urdf};
   ModelBuilder builder(source, packages, options, Shapes::kNone);
-  const UrdfRobot robot = builder.build();
+  UrdfRobot robot = builder.build();
   shapes = builder.survey();
-  return robot.model;
+  return with_srdf(std::move(robot), srdf.empty() ? std::nullopt : std::optional(XmlSource{srdf}));
 }
 
 std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf, const Packages& packages) {

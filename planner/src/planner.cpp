@@ -291,8 +291,7 @@ struct Planner::Impl {
   void lay_out(const Budget& budget, PlanResult& result) {
     Stopwatch watch;
     budget.tell(Stage::kLattice);
-    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain, problem.limits.joint_margin); !rest.empty())
-      throw InputError(rest);
+    if (const std::string rest = joints_at_rest(*problem.model, robot->arm().chain); !rest.empty()) throw InputError(rest);
     if (!layout) layout = std::make_unique<Layout>(*robot, problem, budget);
     layout->second.reset();
     result.time_ms["lattice"] = watch.lap();

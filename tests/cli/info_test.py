@@ -356,7 +356,11 @@ class Honoured(WithFolder):
         self.assertIn("have an empty range in the URDF", run("info", self.urdf).stdout)
         one = re.sub(r'(<joint name="joint_a3".*?)lower="[^"]*" upper="[^"]*"', r'\1lower="0.5" upper="0.5"', IIWA, count=1, flags=re.S)
         self.refused(run("plan", self.files(one)), "joint 'joint_a3' has an empty range in the URDF (lower = upper = 0.5 rad)", "robot.hold")
-        self.refused(run("plan", self.files(IIWA, more="limits: {joint_margin: 2.5}\n")), "'joint_a2', 'joint_a4'", "no range left by limits.joint_margin 2.5 rad", "less than 2.0")
+        self.refused(run("plan", self.files(IIWA, more="limits: {joint_margin: 2.5}\n")), "limits.joint_margin: leaves no range for joint 'joint_a2'")
+        six = self.folder / "six.yaml"
+        six.write_text((DATA / "problems/kr6_weld_pipe.yaml").read_text().replace("../", f"{DATA}/").replace("limits: {", "limits: {joint_margin: 4, "))
+        self.refused(run("plan", six), "limits.joint_margin: leaves no range for joint 'joint_1'")
+
 
     def test_floating_joints(self):
         above = '<link name="world"/>' + joint("free", "floating", "world", "base_link").replace('<link name="base_link"/>', "")
@@ -392,6 +396,7 @@ class Honoured(WithFolder):
         self.assertRegex(warnings[0], r"robot\.srdf:\d+: names link 'link_11', which the robot does not have")
         passive = srdf.replace("</robot>", '<passive_joint name="joint_a3"/></robot>')
         self.refused(run("plan", self.files(IIWA, srdf=passive)), "joint 'joint_a3' is a passive_joint of the SRDF")
+        self.assertIn("warning    " + str(self.urdf), run("info", self.urdf, "--srdf", self.folder / "robot.srdf").stdout)
 
     def test_words_of_other_programs(self):
         warnings = self.warned(IIWA.replace('<link name="link_4">', '<link name="link_4"><colision/>'))

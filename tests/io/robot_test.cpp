@@ -333,7 +333,7 @@ TEST(Robot, KinematicsNeedNoMeshes) {
   ShapeSurvey shapes;
   const auto model =
       load_kinematics(folder.write("r.urdf", robot(mesh_link("a", "package://pkg/box.stl") + ball + joint("j", "fixed", "a", "b"))),
-                      {}, {}, shapes);
+                      {}, {}, {}, shapes);
   EXPECT_EQ(model->links.at(0).name, "a");
   EXPECT_TRUE(model->links.at(0).collision.empty());
   EXPECT_EQ(shapes.collision, 2u);

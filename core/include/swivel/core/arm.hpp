@@ -93,9 +93,9 @@ struct Chain {
 [[nodiscard]] std::vector<std::string> limit_warnings(const Chain& chain);
 /// What a user should know of the files before the arm moves: RobotModel::warnings, and the arm's joints that keep soft limits.
 [[nodiscard]] std::vector<std::string> file_warnings(const RobotModel& robot, const Chain& chain);
-/// Says which joints of the arm cannot move: those that the SRDF calls passive, and those whose limits leave no range, or none but
-/// `joint_margin` (rad) from both ends. Empty where all can.
-[[nodiscard]] std::string joints_at_rest(const RobotModel& robot, const Chain& chain, double joint_margin);
+/// Says which joints of the arm cannot move: those that the SRDF calls passive, and those whose limits leave no range. Empty where
+/// all can.
+[[nodiscard]] std::string joints_at_rest(const RobotModel& robot, const Chain& chain);
 
 /// Where every link of the robot is at q = 0, and which joint of the chain moves it.
 struct LinkPlacement {

@@ -55,8 +55,9 @@ struct ShapeSurvey {
   std::vector<std::string> missing_meshes;  ///< a message for each mesh of a <collision> that is not found
 };
 
-/// Links and joints of a URDF without shapes: meshes are not read.
+/// Links and joints of a URDF (+ SRDF when not empty) without shapes: meshes are not read.
 [[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
+                                                                const std::filesystem::path& srdf,
                                                                 const std::map<std::string, std::filesystem::path>& packages,
                                                                 const RobotOptions& options, ShapeSurvey& shapes);
 
