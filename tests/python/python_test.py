@@ -528,6 +528,20 @@ class Robots(unittest.TestCase):
         self.assertTrue((robot.joint_limits[:, 0] < plan.joints.min(axis=0)).all())
         self.assertTrue((robot.joint_limits[:, 1] > plan.joints.max(axis=0)).all())
 
+    def test_links_left_out_and_soft_limits(self):
+        urdf = (ROBOTS / "iiwa14.urdf").read_text()
+        hand = '<link name="hand"/><joint name="mount" type="fixed"><parent link="tool0"/><child link="hand"/></joint></robot>'
+        safety = 'velocity="1.4835298641951802"/><safety_controller soft_lower_limit="-0.5" soft_upper_limit="0.5"/>'
+        urdf = urdf.replace("</robot>", hand).replace('velocity="1.4835298641951802"/>', safety, 1)
+        soft, hard = swivel.Robot.from_string(urdf), swivel.Robot.from_string(urdf, without=["hand"], soft_limits=False)
+        self.assertEqual(soft.joint_limits[0].tolist(), [-0.5, 0.5])
+        self.assertLess(hard.joint_limits[0, 0], -2.9)
+        self.assertEqual(set(soft.links) - set(hard.links), {"hand"})
+        plan = swivel.Planner(soft, square()).plan()
+        self.assertTrue(any("soft limits" in warning for warning in plan.warnings), plan.warnings)
+        with self.assertRaisesRegex(swivel.InputError, "nearest is 'hand'"):
+            swivel.Robot.from_string(urdf, without=["hnad"])
+
     def test_of_six_joints(self):
         problem = swivel.load_problem(PROBLEMS / "ur5e_deburr_edge.yaml")
         self.assertIsNotNone(problem.roll)
