@@ -41,13 +41,12 @@ class FailFirst {
 
 class Search {
  public:
-  Search(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, bool asks_costs)
+  Search(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options)
       : cost_to_go_(cost_to_go),
         verdicts_(cost_to_go.verdicts()),
         lattice_(cost_to_go.lattice()),
         validity_(validity),
         options_(options),
-        asks_costs_(asks_costs),
         fail_first_(lattice_.layers()) {}
 
   SearchOutcome run(SearchCounters& counters, const AskedFirst& first) {
@@ -63,7 +62,7 @@ class Search {
       if (counters.iterations == first_iteration) first_cost_ = cost_to_go_.best();
       counters.candidate = path;
       ++counters.iterations;
-      if (asks_costs_ && costs_more(path)) {
+      if (validity_.asks_costs() && costs_more(path)) {
         cost_to_go_.repair();
         continue;
       }
@@ -422,7 +421,6 @@ class Search {
   const Lattice& lattice_;
   Validity& validity_;
   PathFirstOptions options_;
-  bool asks_costs_;
   EarlierPaths earlier_;
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
@@ -444,11 +442,11 @@ class Search {
 
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
                          const AskedFirst& first) {
-  return Search(cost_to_go, validity, options, validity.asks_costs()).run(counters, first);
+  return Search(cost_to_go, validity, options).run(counters, first);
 }
 
 void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects) {
-  if (!suspects.empty()) Search(cost_to_go, validity, {}, false).ask_suspects(suspects);
+  if (!suspects.empty()) Search(cost_to_go, validity, {}).ask_suspects(suspects);
 }
 
 int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {
@@ -457,7 +455,7 @@ int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirs
     if (optimistic < 0) return -1;
     const std::int64_t removed = cost_to_go.verdicts().removed();
     cost_to_go.sweep(optimistic);
-    if (!Search(cost_to_go, validity, options, false).run(counters, {}).path.empty()) return optimistic;  // at whatever cost
+    if (!Search(cost_to_go, validity, options).run(counters, {}).path.empty()) return optimistic;
     if (cost_to_go.verdicts().removed() == removed)
       throw std::logic_error("a round of the search removed nothing: it would never end");
   }

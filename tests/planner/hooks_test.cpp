@@ -189,6 +189,9 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
       }
       ASSERT_EQ(words(result.diagnosis.cause), words(results[0].diagnosis.cause)) << who;
       ASSERT_EQ(result.diagnosis.removed, results[0].diagnosis.removed) << who;
+      ASSERT_EQ(result.partial.size(), results[0].partial.size()) << who;
+      for (std::size_t i = 0; i < result.partial.size(); ++i)
+        ASSERT_EQ(result.partial[i].q, results[0].partial[i].q) << who << " row " << i;
       if (!truth.solved) {
         ASSERT_EQ(result.diagnosis.reached_layer.value_or(-1), truth.deepest) << who;
         ASSERT_NE(result.diagnosis.cause.kind, Cause::Kind::kNone) << who;
@@ -241,6 +244,64 @@ TEST(Hooks, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(confirmed, count / 80);
   EXPECT_GT(refused, asked / 20);
   EXPECT_LT(lazy_costs, eager_costs);
+}
+
+/// How far the tool comes, and how, hangs neither on what one planner planned before nor on threads: remembered failures may end
+/// every path before any cost is asked.
+TEST(Hooks, PartialPathsAreTheSameWhateverWasPlannedBefore) {
+  const std::uint64_t base = seed("Hooks.Partial");
+  TestRobot panda = data_robot("panda_like");
+  panda.tip_link = "flange";
+  const std::vector<TestRobot> robots{data_robot("iiwa14"), panda, data_robot("sda5f"), windings_robot()};
+  int infeasible = 0, rows = 0, costs_mattered = 0;
+  const int count = trials(40);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    problem.limits.step_error.reset();
+    problem.limits.arm_slope = Limits().arm_slope;
+    problem.limits.joint_step = 1;
+    problem.resolution.arc = 0.4;
+    problem.start.reset();
+    SceneObject wall;  // about the last pose
+    wall.name = "wall";
+    wall.shape = Sphere{0.1};
+    wall.pose.translation() = waypoints_in_base(problem).back().position;
+    problem.scene.push_back(wall);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    std::optional<PlanResult> first;
+    for (const auto& [kind, threads] : {std::pair(PlannerKind::kLazy, 1), std::pair(PlannerKind::kParallel, 1),
+                                        std::pair(PlannerKind::kParallel, 3), std::pair(PlannerKind::kEagerDp, 1)}) {
+      Planner planner(problem);
+      for (int time = 0; time < 3; ++time) {
+        PlanOptions options = options_for(kind);
+        options.threads = threads;
+        options.evidence.layers = true;
+        Random of_cost(base + static_cast<std::uint64_t>(trial));
+        options.hooks.cost = std::make_shared<WaveCost>(of_cost, -0.999, 1.0);
+        const PlanResult result = planner.plan(options);
+        if (!first) first = result;
+        const std::string who = what + " planner " + result.planner + " plan " + std::to_string(time);
+        ASSERT_EQ(result.status, first->status) << who;
+        ASSERT_EQ(result.partial.size(), first->partial.size()) << who;
+        for (std::size_t i = 0; i < result.partial.size(); ++i) ASSERT_EQ(result.partial[i].q, first->partial[i].q) << who;
+        ASSERT_EQ(result.diagnosis.cause, first->diagnosis.cause) << who;
+        ASSERT_EQ(result.diagnosis.removed, first->diagnosis.removed) << who;
+        ASSERT_EQ(result.diagnosis.without_it, first->diagnosis.without_it) << who;
+      }
+    }
+    if (first->status != PlanStatus::kInfeasible) continue;
+    ++infeasible;
+    rows += static_cast<int>(first->partial.size());
+    const PlanResult plain = plan(problem, options_for(PlannerKind::kLazy));
+    costs_mattered += !std::equal(plain.partial.begin(), plain.partial.end(), first->partial.begin(), first->partial.end(),
+                                  [](const TrajectoryRow& a, const TrajectoryRow& b) { return a.q == b.q; });
+  }
+  std::printf("%d problems without a path, %d rows of the way there; in %d of them costs changed it\n", infeasible, rows,
+              costs_mattered);
+  EXPECT_GE(infeasible, at_least(count / 2));
+  EXPECT_GE(costs_mattered, at_least(count / 8));
 }
 
 TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
