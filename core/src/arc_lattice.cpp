@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "start.hpp"
@@ -493,7 +494,7 @@ double ArcLattice::phi(int layer, int slot) const {
   return arc_angle(chain(), point(layer, slot).q);
 }
 
-std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std::vector<int>& slots) const {
+ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
   Rows rows;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const Config& q = point(static_cast<int>(i), slots[i]).q;
@@ -504,24 +505,51 @@ std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std:
     for (Config& q : rows) q += turns;
     rows.front() = *problem_.start;
   }
+  return rows;
+}
+
+ArcLattice::Fit ArcLattice::fit(std::size_t j, const Rows& rows) const {
+  const auto at = static_cast<Eigen::Index>(j);
+  double least = rows[0][at], most = least;
+  for (const Config& q : rows) {
+    least = std::min(least, q[at]);
+    most = std::max(most, q[at]);
+  }
+  const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
+  const auto keeps = [&](double turn) { return least + turn >= lower && most + turn <= upper; };
+  Fit fit;
+  if (problem_.start) {
+    if (keeps(0)) fit = {0.0, true};
+    return fit;
+  }
+  double turns = std::ceil((lower - rows[0][at]) / kTwoPi), nearest = std::numeric_limits<double>::infinity(), fitting = nearest;
+  each_image(j, rows[0][at], [&](double image) {
+    const double off = off_middle(j, image), turn = kTwoPi * turns++;
+    const bool kept = keeps(turn);
+    if (off < nearest) nearest = off, fit.nearest = kept;
+    if (kept && off < fitting) fitting = off, fit.turn = turn;
+  });
+  return fit;
+}
+
+std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std::vector<int>& slots) const {
+  Rows rows = followed(slots);
   Joints failed{};
   for (std::size_t j = 0; j < kDof; ++j) {
     if (!circles()[j]) continue;
-    const auto at = static_cast<Eigen::Index>(j);
-    double least = rows[0][at], most = least;
-    for (const Config& q : rows) {
-      least = std::min(least, q[at]);
-      most = std::max(most, q[at]);
-    }
-    const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
-    const double turn = problem_.start ? 0 : kTwoPi * std::ceil((lower - least) / kTwoPi);
-    if (least + turn < lower || most + turn > upper)
-      failed[j] = true;
-    else
-      for (Config& q : rows) q[at] += turn;
+    const auto turn = fit(j, rows).turn;
+    failed[j] = !turn;
+    for (Config& q : rows) q[static_cast<Eigen::Index>(j)] += turn.value_or(0);
   }
   if (std::find(failed.begin(), failed.end(), true) != failed.end()) return failed;
   return rows;
+}
+
+ArcLattice::Joints ArcLattice::off_nearest(const std::vector<int>& slots) const {
+  const Rows rows = followed(slots);
+  Joints off{};
+  for (std::size_t j = 0; j < kDof; ++j) off[j] = circles()[j] && !fit(j, rows).nearest;
+  return off;
 }
 
 ArcLattice ArcLattice::with_windings(const Joints& joints) const {
@@ -539,13 +567,12 @@ ArcLattice ArcLattice::with_windings(const Joints& joints) const {
       for (std::size_t j = 0; j < kDof && !(i == 0 && problem_.start); ++j) {
         if (!joints[j] || !circles()[j]) continue;
         const auto at = static_cast<Eigen::Index>(j);
-        const double lower = chain().limit[j].lower + limits().joint_margin, upper = chain().limit[j].upper - limits().joint_margin;
         std::vector<Config> more;
-        for (const Config& q : images) {
-          Config image = q;
-          for (image[at] += kTwoPi * std::ceil((lower - q[at]) / kTwoPi); image[at] <= upper; image[at] += kTwoPi)
-            more.push_back(image);
-        }
+        for (const Config& q : images)
+          each_image(j, q[at], [&](double value) {
+            more.push_back(q);
+            more.back()[at] = value;
+          });
         images.swap(more);
       }
       for (const Config& q : images) {

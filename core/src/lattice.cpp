@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "swivel/core/angle.hpp"
 #include "swivel/core/input_error.hpp"
@@ -81,6 +82,9 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     for (double& weight : roll_weights_) most_costly = std::max(most_costly, kPi * (weight *= cost_.roll));
   }
   cost_unit_ = power_of_two_from(most_costly);
+  steps_ = 0x1p24 / cost_unit_;
+  const double heaviest = *std::max_element(cost_scale_.begin(), cost_scale_.end());
+  for (std::size_t k = 0; k < kDof; ++k) middle_weight_[k] = heaviest > 0 ? std::max(cost_scale_[k], 0.01 * heaviest) : 1;
   set_row_step_bounds(step_bounds_along(chain, path, limits_, problem.resolution));
 }
 
@@ -144,6 +148,21 @@ bool Lattice::row_step_allowed(int layer, const Config& delta) const {
 
 double Lattice::rounded_cost(double cost) const {
   return rounded(cost, cost_unit_);
+}
+
+double Lattice::off_middle(const Config& q) const {
+  double sum = 0;
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const double x = q[static_cast<Eigen::Index>(j)];
+    if (chain_->limit[j].continuous || chain_->limit[j].wide()) continue;
+    double least = off_middle(j, x);
+    if (continuous_[j]) {
+      least = std::numeric_limits<double>::infinity();
+      each_image(j, x, [&](double image) { least = std::min(least, off_middle(j, image)); });
+    }
+    sum += least;
+  }
+  return sum;
 }
 
 double Lattice::roll_weight(int layer) const {

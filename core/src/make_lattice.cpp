@@ -64,9 +64,9 @@ std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& 
   return rows;
 }
 
-bool has_path_joints(const Lattice& lattice, const std::vector<int>& slots) {
+bool keeps_nearest_turns(const Lattice& lattice, const std::vector<int>& slots) {
   const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice);
-  return !slots.empty() && (!arcs || std::holds_alternative<ArcLattice::Rows>(arcs->unwrap(slots)));
+  return !arcs || arcs->off_nearest(slots) == ArcLattice::Joints{};
 }
 
 std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots) {
@@ -82,7 +82,7 @@ std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<i
 
 std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots) {
   const auto& arcs = dynamic_cast<const ArcLattice&>(lattice);
-  return std::make_unique<ArcLattice>(arcs.with_windings(std::get<ArcLattice::Joints>(arcs.unwrap(slots))));
+  return std::make_unique<ArcLattice>(arcs.with_windings(arcs.off_nearest(slots)));
 }
 
 }  // namespace swivel

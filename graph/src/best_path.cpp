@@ -79,7 +79,6 @@ struct Visitor : boost::default_astar_visitor {
   std::int64_t* expansions;
   Visitor(EarlierPaths* paths, std::int64_t* count) : earlier(paths), expansions(count) {}
   void examine_vertex(Vertex v, const ImplicitLattice& g) const {
-    if (v == g.root()) return;
     const CostToGo& values = g.values();
     if (++*expansions % 16 == 0) values.budget().poll();
     // An exception is the one way out of a Boost.Graph search.
@@ -124,28 +123,29 @@ bool EarlierPaths::holds_from(int layer, Earlier& earlier, const CostToGo& cost_
 
 SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier) {
   const TraceSpan span("best path");
-  if (cost_to_go.best() == kUnreachable) return {};
-  if (cost_to_go.best() >= EarlierPaths::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
+  const int first = cost_to_go.first_slot();
+  if (first < 0) return {};
+  const double cost = cost_to_go.at(0, first);
+  if (cost >= EarlierPaths::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
   const ImplicitLattice graph(cost_to_go);
   Records records;
   records.reserve(static_cast<std::size_t>(4 * cost_to_go.goal_layer() + 64));
-  const Vertex root = graph.root();
+  const Vertex start = graph.vertex(0, first);
   const auto heuristic = [&](Vertex v) -> Estimate {
-    if (v == root) return {cost_to_go.best(), 0};
     const std::int64_t depth = graph.layer_of(v);
     return {graph.cost_to_go(v), (cost_to_go.goal_layer() - depth) * graph.width() + graph.slot_of(v)};
   };
-  record(records, root).distance = 0;
-  record(records, root).rank = {cost_to_go.best(), 0};
+  record(records, start).distance = 0;
+  record(records, start).rank = {cost, heuristic(start).tie};
   try {
-    boost::astar_search_no_init(graph, root, heuristic, Visitor(earlier, &expansions),
+    boost::astar_search_no_init(graph, start, heuristic, Visitor(earlier, &expansions),
                                 Field<Vertex, &Record::predecessor>{&records}, Field<Rank, &Record::rank>{&records},
                                 Field<double, &Record::distance>{&records}, ImplicitCostMap{},
                                 Field<boost::default_color_type, &Record::color>{&records},
                                 Field<std::size_t, &Record::index>{&records}, Compare{}, Combine{}, Rank{}, Rank{0, 0});
   } catch (const Found& found) {
     SlotPath path;
-    for (Vertex v = found.last; v != root; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));
+    for (Vertex v = found.last; v >= 0; v = records.at(v).predecessor) path.push_back(graph.slot_of(v));
     std::reverse(path.begin(), path.end());
     if (found.then) path.insert(path.end(), found.then->begin() + static_cast<std::ptrdiff_t>(path.size()), found.then->end());
     return path;

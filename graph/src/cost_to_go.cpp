@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/graph/cost_to_go.hpp"
 
+#include "best_start.hpp"
 #include "explicit_cost_to_go.hpp"
 #include "grid_cost_to_go.hpp"
 #include "roll_cost_to_go.hpp"
@@ -36,6 +37,11 @@ void CostToGo::sweep(int goal_layer) {
 void CostToGo::repair() {
   save_unremoved();
   compute_removals();
+}
+
+int CostToGo::first_slot() {
+  return best_start(
+      lattice(), lattice().slots(0), best(), [&](int slot) { return at(0, slot); }, [&](int slot) { return config(0, slot); });
 }
 
 void CostToGo::remove_edge(int layer, int a, int b) {

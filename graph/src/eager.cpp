@@ -6,6 +6,7 @@
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <boost/iterator/transform_iterator.hpp>
 
+#include "best_start.hpp"
 #include "swivel/core/timeline.hpp"
 #include "valid_nodes.hpp"
 
@@ -118,16 +119,18 @@ std::vector<double> costs_to_go(const Graph& graph, const Budget& budget, EagerO
   return distance;
 }
 
-/// Smallest slots first among equal costs: vertices of a layer are numbered in slot order.
-SlotPath extract(const Built& built, const ValidNodes& valid, const std::vector<double>& distance, double& cost) {
-  Vertex at = 0;
+/// From the node that the answer begins at, smallest slots first among equal costs: vertices of a layer are numbered in slot order.
+SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& valid, const std::vector<double>& distance,
+                 double& cost) {
   cost = kUnreachable;
-  for (std::size_t k = 0; k < valid.layers[0].size(); ++k)
-    if (distance[built.first[0] + k] < cost) {
-      at = built.first[0] + k;
-      cost = distance[at];
-    }
-  if (cost == kUnreachable) return {};
+  const auto of_start = [&](int k) { return distance[built.first[0] + static_cast<std::size_t>(k)]; };
+  const int starts = static_cast<int>(valid.layers[0].size());
+  for (int k = 0; k < starts; ++k) cost = std::min(cost, of_start(k));
+  const int first =
+      best_start(lattice, starts, cost, of_start, [&](int k) { return valid.layers[0][static_cast<std::size_t>(k)].q; });
+  if (first < 0) return {};
+  Vertex at = built.first[0] + static_cast<std::size_t>(first);
+  cost = distance[at];
   SlotPath path;
   for (std::size_t layer = 0;; ++layer) {
     path.push_back(valid.layers[layer][at - built.first[layer]].slot);
@@ -163,7 +166,7 @@ void eager_search(const Lattice& lattice, Validity& validity, const Budget& budg
   const ValidNodes valid = find_valid_nodes(lattice, validity, budget, outcome.ik_nodes);
   const Built built = build(lattice, valid, validity, budget, outcome);
   const std::vector<double> distance = costs_to_go(built.graph, budget, outcome);
-  outcome.path = extract(built, valid, distance, outcome.cost);
+  outcome.path = extract(lattice, built, valid, distance, outcome.cost);
   if (outcome.path.empty()) outcome.deepest = deepest_layer(built, valid, budget);
 }
 

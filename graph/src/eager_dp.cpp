@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "best_start.hpp"
 #include "swivel/graph/eager.hpp"
 #include "valid_nodes.hpp"
 
@@ -78,8 +79,11 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
     }
     value.swap(here);
   }
-  const auto least = std::min_element(value.begin(), value.end());  // the first among equals
-  if (least == value.end() || *least == kUnreachable) {
+  const double least = value.empty() ? kUnreachable : *std::min_element(value.begin(), value.end());
+  int at = best_start(
+      lattice, static_cast<int>(value.size()), least, [&](int k) { return value[static_cast<std::size_t>(k)]; },
+      [&](int k) { return valid.layers[0][static_cast<std::size_t>(k)].q; });
+  if (at < 0) {
     try {
       outcome.deepest = deepest_layer(lattice, valid, validity, budget, outcome.edges);
     } catch (const Stopped&) {  // that there is no path stays known
@@ -87,8 +91,7 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
     }
     return;
   }
-  outcome.cost = *least;
-  int at = static_cast<int>(least - value.begin());
+  outcome.cost = value[static_cast<std::size_t>(at)];
   for (std::size_t i = 0; i < valid.layers.size(); ++i) {
     outcome.path.push_back(valid.layers[i][static_cast<std::size_t>(at)].slot);
     if (i + 1 < valid.layers.size()) at = best[i][static_cast<std::size_t>(at)];

@@ -15,9 +15,10 @@ namespace swivel {
 /// Cost-to-go of a grid in vector code, windowed, all sheet pairs.
 ///
 /// Extent::kBounded leaves out what cannot matter: nodes that CoarseBound proves to lie on no path of cost `limit` or less. best()
-/// is exact then as well, and so is at() on every best path: as long as best() <= limit no path that matters is missing, and where
-/// it comes to be more, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for goals before the last
-/// layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is left.
+/// is exact then as well, and so is at() on every best path: as long as no cost that is coarsely best() exceeds the limit no path
+/// that matters is missing, and where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
+/// goals before the last layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is
+/// left.
 ///
 /// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they are
 /// wanted again: that takes less time than a fresh page of memory.

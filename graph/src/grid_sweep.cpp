@@ -170,16 +170,16 @@ void GridCostToGo::limit_by_reach() {
   by_reach_ = true;
   for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);  // which are not in it
   if (!by_reach_) return;
-  limit_ = (1 + reach_.slack) * reach_.best;
+  limit_ = lattice_->most_alike((1 + reach_.slack) * reach_.best);
   reach_.slack *= 2;
 }
 
 bool GridCostToGo::raise_limit() {
   if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
-    const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : best();
+    const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : lattice_->most_alike(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     for (const double share : {0.03, 0.25, 1.5}) {  // most problems stop at the first: 2 to 10 % of the lattice
-      limit_ = least * (1 + share);
+      limit_ = lattice_->most_alike(least * (1 + share));
       if (limit_ > passed && (found == kUnreachable || found <= limit_)) return true;
     }
   }
@@ -189,7 +189,7 @@ bool GridCostToGo::raise_limit() {
 }
 
 void GridCostToGo::raise_limit_until_exact() {
-  while (limit_ != kUnreachable && !(best() <= limit_)) {
+  while (limit_ != kUnreachable && !(lattice_->most_alike(best()) <= limit_)) {
     if (!raise_limit()) return clear_values();
     sweep_once();
   }

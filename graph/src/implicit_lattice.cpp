@@ -17,12 +17,6 @@ ImplicitLattice::ImplicitLattice(CostToGo& cost_to_go, double slack) : cost_to_g
 const std::vector<ImplicitLattice::Edge>& ImplicitLattice::expand(Vertex v) const {
   edges_.clear();
   const double bound = cost_to_go(v) + slack_;
-  if (v == root()) {
-    for (int slot = 0; slot < cost_to_go_->lattice().slots(0); ++slot)
-      if (cost_to_go_->at(0, slot) != kUnreachable && cost_to_go_->at(0, slot) <= bound)
-        edges_.push_back({v, vertex(0, slot), 0.0});
-    return edges_;
-  }
   const int layer = layer_of(v);
   if (layer >= cost_to_go_->goal_layer()) return edges_;
   cost_to_go_->steps(layer, slot_of(v), bound, steps_);

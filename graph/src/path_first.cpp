@@ -68,7 +68,7 @@ class Search {
       }
       fail_first_.next_round();
       const std::int64_t removed = verdicts_.removed();
-      if (valid(path)) return {path, cost_to_go_.best()};
+      if (valid(path)) return {path, cost_to_go_.at(0, path.front())};
       if (bars_a_layer()) return {};
       if (verdicts_.removed() == removed) throw std::logic_error("a round of the search removed nothing: it would never end");
       cost_to_go_.repair();

@@ -181,7 +181,8 @@ struct Planner::Impl {
     ToolPath path;
     Searched first;  // by every plan
     bool coaxial;    // first, whose having no path is not the last word
-    /// After it by the last plan: where its path left the limits of joints taken as circles, or a coaxial one had none.
+    /// After it by the last plan: where its path left the limits of joints taken as circles in their nearest turns, or a coaxial
+    /// one had none.
     std::optional<Searched> second;
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
@@ -308,7 +309,8 @@ struct Planner::Impl {
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());
   }
-  /// Paths that do not stay within the limits of joints taken as circles are none: those joints' values are told apart then.
+  /// A path on which a joint taken as a circle cannot begin in the turn nearest to the middle of its range is no answer yet: the
+  /// values of such joints are told apart then.
   Found search(const EdgeRule& rule, const PlanOptions& options, const Budget& budget, PlanResult& result) {
     was_eager = is_eager(options);
     // What a caller's states cost may hang on joint 7.
@@ -322,7 +324,7 @@ struct Planner::Impl {
     }
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
-      if (!found.decided || found.outcome.path.empty() || has_path_joints(lattice, found.outcome.path)) return found;
+      if (!found.decided || found.outcome.path.empty() || keeps_nearest_turns(lattice, found.outcome.path)) return found;
       layout->second = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
       result.lattice.nodes = layout->second->lattice->nodes();
       found = search(*layout->second, false, rule, options, budget, result);

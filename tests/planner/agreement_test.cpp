@@ -62,7 +62,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   // Whose own bodies are near each other, and no SRDF says so.
   const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")), without_srdf(data_robot("iiwa14"))};
   int reduced = 0, near_motions = 0;
-  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0;
+  int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0, chosen = 0;
   std::int64_t certified = 0, lazy_fcl_calls = 0;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
@@ -95,6 +95,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
     obstacles += !problem.scene.empty();
     if (truth.solved) {
       ++solved;
+      chosen += truth.chosen;
       ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
       const PreparedRobot robot(problem);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
@@ -127,7 +128,9 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
       count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
       static_cast<long long>(lazy_fcl_calls));
-  std::printf("%d problems with reduced pairs, of which %d solved with motions\n", reduced, near_motions);
+  std::printf("%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among equal costs\n", reduced,
+              near_motions, chosen);
+  EXPECT_GE(chosen, at_least(count / 32));
   EXPECT_GE(reduced, at_least(count / 24));
   EXPECT_GE(near_motions, at_least(3));
   EXPECT_GE(solved, at_least(count / 4));

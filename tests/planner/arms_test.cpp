@@ -56,7 +56,7 @@ Problem random_task(const TestRobot& robot, Random& random) {
 TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   const std::uint64_t base = seed("Arms");
   const auto robots = arms();
-  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0, sampled = 0;
+  int solved = 0, infeasible = 0, wound = 0, started = 0, continuous = 0, obstacles = 0, sampled = 0, chosen = 0;
   const int count = trials(120);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -104,13 +104,23 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     }
     ++solved;
     ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
+    for (std::size_t i = 0; i < truth.slots.size(); ++i) {
+      const Config off = results[0].trajectory[i].q - lattice.point(static_cast<int>(i), truth.slots[i]).q;
+      for (std::size_t j = 0; j < kDof; ++j)
+        if (!chain.limit[j].continuous) {
+          ASSERT_LT(std::abs(off[static_cast<Eigen::Index>(j)]), 1e-9) << what << " row " << i;
+        }
+    }
+    chosen += truth.chosen;
     const CheckResult check = check_trajectory(robot, problem, results[0].trajectory);
     ASSERT_TRUE(check.passed) << what << ": " << (check.failures.empty() ? "" : check.failures[0]);
     ASSERT_NEAR(check.cost, results[0].cost, 1e-9) << what;
     wound += results[0].lattice.nodes != circles.nodes();
   }
-  std::printf("%d problems: %d solved (%d with windings), %d infeasible, %d with a start, %d continuous, %d with obstacles\n",
-              count, solved, wound, infeasible, started, continuous, obstacles);
+  std::printf(
+      "%d problems: %d solved (%d with windings, %d whose start was chosen among equal costs), %d infeasible, %d with a start, %d "
+      "continuous, %d with obstacles\n",
+      count, solved, wound, chosen, infeasible, started, continuous, obstacles);
   EXPECT_GE(solved, at_least(count / 4));
   EXPECT_GE(infeasible, at_least(count / 20));
   EXPECT_GE(started, at_least(count / 10));

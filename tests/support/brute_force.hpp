@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "answer_order.hpp"
 #include "plain_edge_rule.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/hooks.hpp"
@@ -18,13 +19,14 @@ struct Answer {
   bool solved = false;
   double cost = 0;
   std::vector<int> slots;
+  bool chosen = false;  // the start is not the first of the least cost: another costs as much but for rounding
   int deepest = -1;
   std::vector<int> empty;  // layers without a valid node
 };
 
-/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; ties by slot. Cost and
-/// ties of the nodes, everything else of the rows.
-/// `in_window`: whether slots a and b of neighbouring layers may be joined. Hooks are asked about one state or motion at a time.
+/// The definition: every pair of nodes of neighbouring layers, own steps, plain edge rule; dynamic program; the order of answers.
+/// Cost and order of the nodes, everything else of the rows. `in_window`: whether slots a and b of neighbouring layers may be
+/// joined. Hooks are asked about one state or motion at a time.
 inline Answer brute_force(const Lattice& lattice, const World& world, const EdgeRule& rule,
                           const std::function<bool(int layer, int a, int b)>& in_window, const Hooks& hooks = {}) {
   World::Query query(world);
@@ -118,11 +120,11 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       }
     }
   Answer answer;
-  const auto best = std::min_element(g[0].begin(), g[0].end());
-  answer.cost = best == g[0].end() ? kNone : *best;
-  answer.solved = answer.cost != kNone;
+  int slot = first_of_answer(lattice, g[0], [&](int k) { return *nodes[0][static_cast<std::size_t>(k)]; });
+  answer.solved = slot >= 0;
+  answer.cost = answer.solved ? g[0][static_cast<std::size_t>(slot)] : kNone;
   if (answer.solved) {
-    int slot = static_cast<int>(best - g[0].begin());
+    answer.chosen = slot != std::min_element(g[0].begin(), g[0].end()) - g[0].begin();
     for (std::size_t i = 0; i < layers; ++i) {
       answer.slots.push_back(slot);
       slot = next[i][static_cast<std::size_t>(slot)];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -40,9 +41,12 @@ class ArcLattice final : public ExplicitLattice {
 
   using Rows = std::vector<Config>;
   using Joints = std::array<bool, kDof>;
-  /// The rows of a path in the first winding, joint by joint, that keeps all of them inside the limits; or the joints that have
-  /// none.
+  /// The rows of a path: each circle turned as a whole so that all rows are inside its limits, the first one as near to the middle
+  /// of its range as can be, the lower of two as near. Or the joints of which no turn keeps the limits.
   [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
+  /// The circles that leave their limits along a path where their first row is turned nearest to the middle of their range, whether
+  /// another turn keeps the limits or not.
+  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const;
   /// The same nodes with each value of these joints that lies within the limits as a node of its own: they are circles no more.
   [[nodiscard]] ArcLattice with_windings(const Joints& joints) const;
   /// What with_windings() was called with, from the lattice without on.
@@ -58,6 +62,15 @@ class ArcLattice final : public ExplicitLattice {
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
                       const Budget& budget);
   ArcLattice(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem, Layers&& layers);
+
+  /// A path's rows as they follow from the first, without jumps; from the given start, where there is one.
+  [[nodiscard]] Rows followed(const std::vector<int>& slots) const;
+  struct Fit {
+    std::optional<double> turn;  // rad, by which all rows stay inside the limits, the first as near to the middle as can be
+    bool nearest = false;        // they do in the turn in which the first is nearest to the middle
+  };
+  /// Of circle j.
+  [[nodiscard]] Fit fit(std::size_t j, const Rows& rows) const;
 
   LockMethod method_;
   Problem problem_;  // for with_windings

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "swivel/core/angle.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/budget.hpp"
 #include "swivel/core/pose_shift.hpp"
@@ -186,6 +188,17 @@ class Lattice {
   [[nodiscard]] double cost_unit() const { return cost_unit_; }
   /// A cost of up to 2048 units, rounded as edge_cost() is.
   [[nodiscard]] double rounded_cost(double cost) const;
+  // --- the order of answers: coarse cost, off_middle() and slot of the first node; then cost, then slots (docs/model.md)
+  /// What a path costs, in whole steps of 2^-24 units, rounded to the nearest. Mirrored branches cost the same but for rounding
+  /// far below such a step, so their coarse costs are equal.
+  [[nodiscard]] double coarse_cost(double cost) const { return std::round(cost * steps_); }
+  /// No cost with the same coarse cost is larger.
+  [[nodiscard]] double most_alike(double cost) const { return (coarse_cost(cost) + 0.5) / steps_; }
+  /// How far joints are from the middles of their ranges: the sum over the joints of distance times weight, in the same steps,
+  /// each rounded. The weight is cost_scale(), but at least a hundredth of the largest, and 1 where all are 0. A joint without a
+  /// range (continuous, or of over 64 turns) counts nothing. A bounded joint that is taken as a circle counts at the image within
+  /// its limits that is nearest to the middle.
+  [[nodiscard]] double off_middle(const Config& q) const;
   /// Whether nodes cost something by themselves, besides the edges to and from them.
   [[nodiscard]] virtual bool has_node_costs() const { return false; }
   /// What one costs, >= 0 and rounded.
@@ -207,6 +220,16 @@ class Lattice {
   /// Largest move of each joint on each step of a path; one entry where all are the same.
   [[nodiscard]] static std::vector<Config> step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
                                                              const Resolution& resolution);
+  /// Calls visit(x) for the values of bounded joint j that differ from q by whole turns and lie within its limits, lowest first.
+  template <class Visit>
+  void each_image(std::size_t j, double q, const Visit& visit) const {
+    const double lower = chain_->limit[j].lower + limits_.joint_margin, upper = chain_->limit[j].upper - limits_.joint_margin;
+    for (double x = q + kTwoPi * std::ceil((lower - q) / kTwoPi); x <= upper; x += kTwoPi) visit(x);
+  }
+  /// What a bounded joint's value counts in off_middle().
+  [[nodiscard]] double off_middle(std::size_t j, double x) const {
+    return std::round(middle_weight_[j] * std::abs(x - (chain_->limit[j].lower + chain_->limit[j].upper) / 2) * steps_);
+  }
   /// Of every step.
   void set_row_step_bounds(std::vector<Config> bounds);
   /// The larger of the second-order estimates at both ends of an edge is within limits().step_error. Asked only where that is set.
@@ -220,7 +243,8 @@ class Lattice {
 
  private:
   std::array<double, kDof> cost_scale_{};
-  double cost_unit_ = 1;
+  double cost_unit_ = 1, steps_ = 1;  // of coarse costs, in 1: 2^24 / unit
+  std::array<double, kDof> middle_weight_{};
   std::vector<double> roll_weights_;  // by layer; empty where the roll costs nothing
   Config misfit_;
   std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each

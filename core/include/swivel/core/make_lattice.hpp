@@ -32,8 +32,9 @@ namespace swivel {
 /// the lattice takes bounded joints of more than a turn as circles and their values leave the limits along this path.
 [[nodiscard]] std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots);
 
-/// Whether path_joints() is not empty; takes less time where no joint is taken as a circle.
-[[nodiscard]] bool has_path_joints(const Lattice& lattice, const std::vector<int>& slots);
+/// Whether the joints of a path keep their limits where each joint that the lattice takes as a circle begins in the turn nearest to
+/// the middle of its range. Such a path, where it is the best of the lattice, is the answer.
+[[nodiscard]] bool keeps_nearest_turns(const Lattice& lattice, const std::vector<int>& slots);
 
 /// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie
 /// between those of the lattice (Lattice::has_layers_between).
@@ -44,8 +45,8 @@ namespace swivel {
   return chain.roll ? row.q[kDof - 1] : row.roll;
 }
 
-/// Where path_joints() is empty: the same nodes with the values of those joints told apart, in which paths of such joints stay
-/// within their limits.
+/// Where not keeps_nearest_turns(): the same nodes with the values of those joints told apart, so that each value is a node within
+/// the limits.
 [[nodiscard]] std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots);
 
 }  // namespace swivel

@@ -39,10 +39,15 @@ class CostToGo {
   /// Cost-to-go with every node of `goal_layer` as a goal; verdicts are kept.
   void sweep(int goal_layer);
   [[nodiscard]] int goal_layer() const { return goal_; }
-  /// Exact on every best path; kUnreachable where none is known.
+  /// Exact on every best path from a node of layer 0 whose coarse cost (Lattice) is that of best(); kUnreachable where none is
+  /// known.
   [[nodiscard]] virtual double at(int layer, int slot) const = 0;
   /// Least over layer 0, exact; kUnreachable when no path is left.
   [[nodiscard]] virtual double best() const = 0;
+
+  /// The slot of layer 0 that the best path begins at, by the order of answers: of the nodes whose coarse cost is that of best(),
+  /// the one nearest to the middle of the joints' ranges, the first of them; -1 when no path is left.
+  [[nodiscard]] int first_slot();
 
   /// What has been asked, what is removed, what nodes cost: values follow at the next repair().
   [[nodiscard]] Verdicts& verdicts() { return verdicts_; }
@@ -92,7 +97,7 @@ class CostToGo {
 };
 
 /// kBounded may leave out nodes that a lower bound proves to lie on no best path: they then read as unreachable, or as costlier
-/// than they are. best() and every best path are exact all the same.
+/// than they are. best(), first_slot() and every best path are exact all the same.
 enum class Extent { kWhole, kBounded };
 /// The cost-to-go of a lattice: of a grid (SrsLattice) in vector code, of an explicit lattice by plain loops and always whole, of a
 /// RollLattice layer by layer over rolls and arm angles. What `retired`, of any lattice, had allocated serves again: pages fresh from the system take a quarter of a plan that meets obstacles.

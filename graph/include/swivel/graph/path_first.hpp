@@ -37,9 +37,9 @@ class EarlierPaths {
   std::deque<Earlier> earlier_;  // the last one first
 };
 
-/// Least-cost path from layer 0 to the goal layer over what CostToGo has not removed, smallest slots first among equals:
-/// Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer, until it follows an earlier path, where some are
-/// given. Empty when there is none.
+/// The best path from layer 0 to the goal layer over what CostToGo has not removed: from CostToGo::first_slot() on the least cost,
+/// smallest slots first among equals. Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer, until it follows
+/// an earlier path, where some are given. Empty when there is none.
 [[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier = nullptr);
 
 struct SearchOutcome {
@@ -78,7 +78,7 @@ struct Suspect {
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
 /// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
 /// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
-/// least-cost path, and the smallest in slot order among equals; when none is left, or a layer has no node left, what is removed
+/// answer, the first in the order of answers (docs/model.md); when none is left, or a layer has no node left, what is removed
 /// proves that none exists. Then the cost-to-go may not have followed yet. `first` is asked about before the first path, all at
 /// once: what it holds changes the work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
@@ -89,7 +89,8 @@ struct Suspect {
 void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects);
 
 /// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
-/// the cost-to-go with that layer as its goal. Throws Stopped.
+/// the cost-to-go with that layer as its goal, and the best valid path there, in the order of answers, as the last candidate of
+/// `counters`: whatever was asked before. Throws Stopped.
 [[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                       SearchCounters& counters);
 

@@ -13,10 +13,10 @@
 
 namespace swivel {
 
-/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * (most slots of a layer) + slot,
-/// one more vertex (the root) before layer 0. Edges are made when asked for, over what CostToGo has not removed, and only those
-/// whose cost plus cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of optimal
-/// paths).
+/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * (most slots of a layer) + slot.
+/// The best path begins at vertex(0, CostToGo::first_slot()). Edges are made when asked for, over what CostToGo has not removed,
+/// and only those whose cost plus cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of
+/// optimal paths).
 class ImplicitLattice {
  public:
   using Vertex = std::int64_t;
@@ -28,15 +28,13 @@ class ImplicitLattice {
 
   explicit ImplicitLattice(CostToGo& cost_to_go, double slack = 0);
 
-  [[nodiscard]] Vertex root() const { return cost_to_go_->lattice().layers() * width_; }
   [[nodiscard]] Vertex vertex(int layer, int slot) const { return layer * width_ + slot; }
   [[nodiscard]] int layer_of(Vertex v) const { return static_cast<int>(v / width_); }
   [[nodiscard]] int slot_of(Vertex v) const { return static_cast<int>(v % width_); }
   /// Most slots of a layer.
   [[nodiscard]] std::int64_t width() const { return width_; }
-  [[nodiscard]] double cost_to_go(Vertex v) const {
-    return v == root() ? cost_to_go_->best() : cost_to_go_->at(layer_of(v), slot_of(v));
-  }
+  [[nodiscard]] double cost_to_go(Vertex v) const { return cost_to_go_->at(layer_of(v), slot_of(v)); }
+  [[nodiscard]] std::int64_t vertices() const { return cost_to_go_->lattice().layers() * width_; }
   [[nodiscard]] const CostToGo& values() const { return *cost_to_go_; }
 
   /// The edges that leave v. Valid until the next call: a search looks at one vertex's edges at a time.
@@ -67,11 +65,11 @@ inline std::size_t out_degree(ImplicitLattice::Vertex v, const ImplicitLattice& 
   return g.expand(v).size();
 }
 inline std::size_t num_vertices(const ImplicitLattice& g) {
-  return static_cast<std::size_t>(g.root()) + 1;
+  return static_cast<std::size_t>(g.vertices());
 }
 inline std::pair<boost::counting_iterator<ImplicitLattice::Vertex>, boost::counting_iterator<ImplicitLattice::Vertex>> vertices(
     const ImplicitLattice& g) {
-  return {boost::counting_iterator<ImplicitLattice::Vertex>(0), boost::counting_iterator<ImplicitLattice::Vertex>(g.root() + 1)};
+  return {boost::counting_iterator<ImplicitLattice::Vertex>(0), boost::counting_iterator<ImplicitLattice::Vertex>(g.vertices())};
 }
 
 /// Edge costs as a readable property map.
