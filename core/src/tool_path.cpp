@@ -15,6 +15,10 @@ namespace swivel {
 namespace {
 
 constexpr double kMergedShare = 0.5;  // of the tolerances, for what lies between the ends of segments that are made one
+constexpr double kSame = 1e-9;        // m and rad: two poses nearer than that are one
+/// How far a waypoint may lie from the straight segment between its neighbours, m and rad, so that it is no corner. A row of a
+/// trajectory may be 1e-6 off the path (check.cpp): one that meets all waypoints then passes.
+constexpr PathSmoothing kCollinear{5e-7, 5e-7};
 
 /// Axis times angle of the short arc from a to b, in a's frame.
 Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
@@ -23,6 +27,50 @@ Vector3d short_arc(const Quaterniond& a, const Quaterniond& b) {
   const double sine = d.vec().norm();
   if (sine < 1e-300) return Vector3d::Zero();
   return d.vec() * (2 * std::atan2(sine, d.w()) / sine);
+}
+
+/// Axis times angle of the turn from a to b, in a's frame: the short arc. A half turn of a tool that is free to turn about its z
+/// axis, about that axis, is taken right-handed: either way the z axis stands still. None of any other half turn.
+std::optional<Vector3d> turn_between(const Quaterniond& a, const Quaterniond& b, bool turns_freely) {
+  constexpr double kAboutZ = 1e-6;  // sine of the angle between the axis of the turn and the tool's z axis
+  const Vector3d turn = short_arc(a, b);
+  const double angle = turn.norm();
+  if (angle <= kPi - kSame) return turn;
+  if (!turns_freely || turn.head<2>().norm() > kAboutZ * angle) return std::nullopt;
+  return turn.z() < 0 ? -turn : turn;
+}
+
+/// Cuts 0 ... n - 1 into runs as long as they may be, one after the other: `fits(first, count)` says whether `count` from `first`
+/// on may be one run. Calls `end(first, count)` for each run; what is left over begins the next one. O(n log n) questions.
+template <class Fits, class End>
+void cut_into_runs(std::size_t n, const Fits& fits, const End& end) {
+  for (std::size_t first = 0; first < n;) {
+    const std::size_t all = n - first;
+    std::size_t good = 1, bad = all + 1;  // so many go, and do not
+    while (bad - good > 1) {
+      const std::size_t count = bad > all ? std::min(2 * good, all) : (good + bad) / 2;
+      (fits(first, count) ? good : bad) = count;
+    }
+    first = end(first, good);
+  }
+}
+
+/// Whether the poses between the ends of some are within the tolerances of the straight segment that joins the ends, each where
+/// its travel says. `travel` and `position`, `orientation` of pose k; `turn`: from the first to the last, in the first one's frame.
+template <class Travel, class Position, class Orientation>
+bool straight_between(std::size_t first, std::size_t last, const Travel& travel, const Position& position,
+                      const Orientation& orientation, const Vector3d& turn, const PathSmoothing& within) {
+  const double angle = turn.norm(), span = travel(last) - travel(first);
+  const Vector3d begin = position(first), way = position(last) - begin;
+  const Eigen::Matrix3d from = orientation(first);
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const double t = (travel(k) - travel(first)) / span;
+    if ((begin + t * way - position(k)).norm() > within.position) return false;
+    Eigen::Matrix3d rotated = from;
+    if (angle > 0) rotated = rotated * Eigen::AngleAxisd(t * angle, turn / angle).toRotationMatrix();
+    if (Eigen::AngleAxisd(rotated.transpose() * orientation(k)).angle() > within.angle) return false;
+  }
+  return true;
 }
 
 /// Ends linear in between.
@@ -40,8 +88,7 @@ Quaterniond turned(const Quaterniond& a, const Vector3d& rotation, double t) {
 }  // namespace
 
 ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
-                   const Budget& budget, const std::optional<PathSmoothing>& smooth) {
-  constexpr double kSame = 1e-9;
+                   const Budget& budget, const std::optional<PathSmoothing>& smooth, bool turns_freely) {
   constexpr double kMostLayers = 2e6;  // 1 mm over 2 km; each holds about 1 kB
   const auto pose = [](const Vector3d& p, const Quaterniond& q) {
     Pose X;
@@ -49,37 +96,61 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     X.translation() = p;
     return X;
   };
+  const auto travel_of = [&](double length, double angle) { return std::max(length, angle * resolution.ds / resolution.dalpha); };
   if (waypoints.empty()) throw InputError(source + ": path: no waypoints: allowed are at least two");
-  layers_.push_back({0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
-  Waypoint from = waypoints[0];
-  const auto window_of = [](const Waypoint& waypoint) { return waypoint.roll.value_or(PathLayer().window); };
-  layers_.back().window = window_of(from);
-  double s = 0;
+  // The poses that differ, each with its row and with the travel up to it.
+  struct Stop {
+    Waypoint waypoint;
+    int row = 0;
+    double travel = 0;
+  };
+  std::vector<Stop> stops{{waypoints[0]}};
   for (std::size_t k = 1; k < waypoints.size(); ++k) {
-    const Waypoint& to = waypoints[k];
-    const double length = (to.position - from.position).norm();
-    const Vector3d rotation = short_arc(from.orientation, to.orientation);
-    const double angle = rotation.norm();
+    const Waypoint &from = stops.back().waypoint, &to = waypoints[k];
+    const double length = (to.position - from.position).norm(), angle = short_arc(from.orientation, to.orientation).norm();
     if (length <= kSame && angle <= kSame) {
       ++merged_;
       if (to.roll) {  // both hold
-        Roll& window = layers_.back().window;
-        window = {std::max(window.lower, to.roll->lower), std::min(window.upper, to.roll->upper)};
-        if (!(window.lower <= window.upper))
+        std::optional<Roll>& window = stops.back().waypoint.roll;
+        if (!window) window = PathLayer().window;
+        window = Roll{std::max(window->lower, to.roll->lower), std::min(window->upper, to.roll->upper)};
+        if (!(window->lower <= window->upper))
           throw InputError(source + ": path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
                            " are one pose, but their rolls have nothing in common: allowed are roll_min and roll_max that overlap");
       }
       continue;
     }
-    if (angle > kPi - kSame)
+    if (!turn_between(from.orientation, to.orientation, turns_freely))
       throw InputError(source + ": path: waypoint " + std::to_string(k) +
-                       ": turns by 180 deg from the one before: which way is undefined: allowed is less");
+                       ": turns by 180 deg from the one before: which way is undefined: allowed is less, by a waypoint in "
+                       "between; or, where it turns about the tool's z axis alone, path.roll: free");
+    stops.push_back({to, static_cast<int>(k), stops.back().travel + travel_of(length, angle)});
+  }
+  // A waypoint with a window of its own bends what the roll may be, if not the path.
+  const auto one_segment = [&](std::size_t first, std::size_t count) {
+    if (waypoints[0].roll) return false;
+    const auto turn = turn_between(stops[first].waypoint.orientation, stops[first + count].waypoint.orientation, turns_freely);
+    return turn && straight_between(
+                       first, first + count, [&](std::size_t k) { return stops[k].travel; },
+                       [&](std::size_t k) -> const Vector3d& { return stops[k].waypoint.position; },
+                       [&](std::size_t k) { return stops[k].waypoint.orientation.toRotationMatrix(); }, *turn, kCollinear);
+  };
+  const auto window_of = [](const Waypoint& waypoint) { return waypoint.roll.value_or(PathLayer().window); };
+  layers_.push_back({0.0, pose(waypoints[0].position, waypoints[0].orientation), 0, 0, 0, Vector3d::Zero()});
+  layers_.back().window = window_of(stops[0].waypoint);
+  waypoints_.push_back({0, 0});
+  double s = 0;
+  cut_into_runs(stops.size() - 1, one_segment, [&](std::size_t first, std::size_t count) {
+    const Waypoint &from = stops[first].waypoint, &to = stops[first + count].waypoint;
+    const double length = (to.position - from.position).norm();
+    const Vector3d rotation = *turn_between(from.orientation, to.orientation, turns_freely);
+    const double angle = rotation.norm();
     const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
     if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
       throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) +
                        " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
-    const double begun = layers_.back().travel, travel = std::max(length, angle * resolution.ds / resolution.dalpha);
+    const double begun = layers_.back().travel, travel = travel_of(length, angle);
     segments_.push_back({static_cast<int>(layers_.size()) - 1, begun, layers_.back().tool, (to.position - from.position) / travel,
                          rotation / travel, 0});
     for (int step = 1; step <= steps; ++step) {
@@ -90,7 +161,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       previous.step_rotation = rotation / steps;
       const double t = static_cast<double>(step) / steps;
       if (step == steps)
-        layers_.push_back({s + length, pose(to.position, to.orientation), static_cast<int>(k), 0, 0, Vector3d::Zero()});
+        layers_.push_back({s + length, pose(to.position, to.orientation), stops[first + count].row, 0, 0, Vector3d::Zero()});
       else
         layers_.push_back({s + t * length,
                            pose(from.position + t * (to.position - from.position), turned(from.orientation, rotation, t)), -1, 0, 0,
@@ -98,9 +169,13 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
       layers_.back().travel = begun + t * travel;
     }
     layers_.back().window = window_of(to);
+    for (std::size_t k = first + 1; k <= first + count; ++k) {
+      const double share = (stops[k].travel - stops[first].travel) / (stops[first + count].travel - stops[first].travel);
+      waypoints_.push_back({begun + share * travel, stops[k].row});
+    }
     s += length;
-    from = to;
-  }
+    return first + count;
+  });
   if (waypoints[0].roll) spread_windows();
   if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
   if (smooth) {
@@ -111,48 +186,35 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     const auto pose_of = [&](std::size_t k) -> const Pose& { return k < n ? segments_[k].start : layers_.back().tool; };
     // Straight over `count` segments; none where a waypoint between is too far from it.
     const auto straight = [&](std::size_t first, std::size_t count) -> std::optional<Segment> {
+      const auto orientation = [&](std::size_t k) -> Eigen::Matrix3d { return pose_of(k).linear(); };
+      const auto position = [&](std::size_t k) -> Vector3d { return pose_of(k).translation(); };
+      const auto turn = turn_between(Quaterniond(orientation(first)), Quaterniond(orientation(first + count)), turns_freely);
+      const PathSmoothing within{kMergedShare * smooth->position, kMergedShare * smooth->angle};
+      if (!turn || !straight_between(first, first + count, travel, position, orientation, *turn, within)) return std::nullopt;
       Segment segment = segments_[first];
       const double span = travel(first + count) - segment.travel;
-      segment.velocity = (pose_of(first + count).translation() - segment.start.translation()) / span;
-      segment.rotation = short_arc(Quaterniond(segment.start.linear()), Quaterniond(pose_of(first + count).linear())) / span;
-      const double turning = segment.rotation.norm();
-      for (std::size_t k = first + 1; k < first + count; ++k) {
-        const double x = travel(k) - segment.travel;
-        const Vector3d there = segment.start.translation() + x * segment.velocity;
-        if ((there - pose_of(k).translation()).norm() > kMergedShare * smooth->position) return std::nullopt;
-        Eigen::Matrix3d rotated = segment.start.linear();
-        if (turning > 0) rotated = rotated * Eigen::AngleAxisd(x * turning, segment.rotation / turning).toRotationMatrix();
-        if (Eigen::AngleAxisd(rotated.transpose() * pose_of(k).linear()).angle() > kMergedShare * smooth->angle)
-          return std::nullopt;
-      }
+      segment.velocity = (position(first + count) - position(first)) / span;
+      segment.rotation = *turn / span;
+      segment.merged = count > 1;
       return segment;
     };
     std::vector<std::size_t> begins;  // the first of those that each is made of
-    for (std::size_t first = 0; first < n;) {
+    const auto fits = [&](std::size_t first, std::size_t count) { return straight(first, count).has_value(); };
+    cut_into_runs(n, fits, [&](std::size_t first, std::size_t count) {
       budget.poll();
-      merged.push_back(segments_[first]);
+      merged.push_back(count > 1 ? *straight(first, count) : segments_[first]);
       begins.push_back(first);
-      const std::size_t all = n - first;
-      std::size_t good = 1, bad = all + 1;  // so many go, and do not
-      while (bad - good > 1) {
-        const std::size_t count = bad > all ? std::min(2 * good, all) : (good + bad) / 2;
-        if (auto segment = straight(first, count)) {
-          good = count;
-          merged.back() = *segment;
-        } else {
-          bad = count;
-        }
-      }
-      first += good;
+      first += count;
       // What is left over, before a corner or the end, may be so short that there would be no room beside it: halves of both.
       const std::size_t before = begins.size() < 2 ? first : begins[begins.size() - 2], middle = (before + first) / 2;
-      if (before == first || 2 * (first - begins.back()) >= begins.back() - before) continue;
+      if (before == first || 2 * (first - begins.back()) >= begins.back() - before) return first;
       const auto one = straight(before, middle - before), other = straight(middle, first - middle);
-      if (!one || !other) continue;
+      if (!one || !other) return first;
       *(merged.end() - 2) = *one;
       merged.back() = *other;
       begins.back() = middle;
-    }
+      return first;
+    });
     rounded_ = merged.size() < n;
     segments_.swap(merged);
   }
@@ -170,11 +232,7 @@ void ToolPath::find_corners(const PathSmoothing& smooth) {
     const double end = k + 1 < segments_.size() ? segments_[k + 1].travel : layers_.back().travel;
     const double bend = (after.velocity - before.velocity).norm(), twist = (after.rotation - before.rotation).norm();
     if (bend <= kStraight && twist <= kStraight) continue;
-    const auto merged = [&](std::size_t segment) {
-      const int last = segment + 1 < segments_.size() ? segments_[segment + 1].layer : size() - 1;
-      return layer(last).waypoint > layer(segments_[segment].layer).waypoint + 1;
-    };
-    const double share = merged(k - 1) || merged(k) ? 1 - kMergedShare : 1;
+    const double share = before.merged || after.merged ? 1 - kMergedShare : 1;
     double reach = 0.5 * std::min(after.travel - before.travel, end - after.travel);
     if (bend > kStraight) reach = std::min(reach, share * smooth.position / (kDeviation * bend));
     if (twist > kStraight) reach = std::min(reach, share * smooth.angle / (kDeviation * twist));
@@ -193,6 +251,17 @@ std::size_t ToolPath::segment_of(int step) const {
   const auto after = std::upper_bound(segments_.begin(), segments_.end(), step,
                                       [](int layer, const Segment& segment) { return layer < segment.layer; });
   return static_cast<std::size_t>(after - segments_.begin()) - 1;
+}
+
+std::array<int, 2> ToolPath::waypoints_along(double from, double to) const {
+  const double first = std::max(from, layers_.front().travel) - kSame, last = to + kSame;
+  std::array<int, 2> rows{-1, -1};
+  const auto begin = std::lower_bound(waypoints_.begin(), waypoints_.end(), first,
+                                      [](const Place& place, double travel) { return place.travel < travel; });
+  const auto end =
+      std::upper_bound(begin, waypoints_.end(), last, [](double travel, const Place& place) { return travel < place.travel; });
+  if (begin != end) rows = {begin->row, (end - 1)->row};
+  return rows;
 }
 
 int ToolPath::step_at(double travel) const {
@@ -353,8 +422,8 @@ double roll_between(const Pose& pose, const Pose& tool) {
 
 ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
                       const std::optional<PathSmoothing>& otherwise) {
-  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget,
-                problem.smooth ? problem.smooth : otherwise);
+  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget, problem.smooth ? problem.smooth : otherwise,
+                problem.roll && problem.roll->circle());
   if (problem.start) {
     Pose tool = chain.tool(*problem.start);
     if (chain.free_roll) {  // it stands turned as it likes

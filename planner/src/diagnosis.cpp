@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -358,10 +359,8 @@ void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vecto
   EmptyLayers& run = runs.back();
   run.last = layer;
   run.last_s = at.s;
-  if (at.waypoint >= 0) {
-    if (run.first_waypoint < 0) run.first_waypoint = at.waypoint;
-    run.last_waypoint = at.waypoint;
-  }
+  const auto waypoints = lattice.path().waypoints_along(lattice.path().layer(run.first).travel, at.travel);
+  run.first_waypoint = waypoints[0], run.last_waypoint = waypoints[1];
   const auto by = cause.by();
   if (!by) return;
   if (*by < run.cause.by().value_or(*by)) run.cause = cause;
@@ -381,8 +380,10 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   }
   const ToolPath& tool_path = lattice.path();
   diagnosis.at_s = tool_path.layer(next).s;
-  for (int layer = 0; layer < lattice.layers() && diagnosis.waypoints[1] < 0; ++layer)
-    if (const int waypoint = tool_path.layer(layer).waypoint; waypoint >= 0) diagnosis.waypoints[layer < next ? 0 : 1] = waypoint;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity(), kBefore = 1e-8;  // m
+  const double travel = tool_path.layer(next).travel;
+  diagnosis.waypoints = {tool_path.waypoints_along(-kInfinity, travel - kBefore)[1],
+                         tool_path.waypoints_along(travel, kInfinity)[0]};
   for (int layer = 0; layer < lattice.layers() && diagnosis.holds() != Diagnosis::Holds::kEveryResolution; ++layer) {
     if (layer % 64 == 0) budget.poll();
     const PathLayer& at = tool_path.layer(layer);

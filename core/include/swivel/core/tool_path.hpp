@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -19,7 +20,7 @@ struct Chain;
 struct PathLayer {
   double s = 0;                               ///< arc length from the first waypoint, m; may repeat where the path only turns
   Pose tool = Pose::Identity();               ///< tool in base
-  int waypoint = -1;                          ///< 0-based row of the path where this layer is one, else -1
+  int waypoint = -1;                          ///< 0-based row of the path where this layer is a corner or an end, else -1
   double step_length = 0;                     ///< m to the next layer
   double step_angle = 0;                      ///< rad to the next layer
   Vector3d step_rotation = Vector3d::Zero();  ///< axis * angle of that step, in the tool frame of this layer
@@ -32,8 +33,10 @@ struct PathLayer {
   }
 };
 
-/// Waypoints cut into layers: position linear, orientation slerp on the short arc; every waypoint is a layer, so corners are never
-/// cut. docs/model.md "Tool path"; paper Eq. (1)-(4).
+/// Waypoints cut into layers: position linear, orientation slerp on the short arc; every waypoint at which the path bends is a
+/// layer, so corners are never cut. A waypoint within 5e-7 (m and rad) of the straight segment through its neighbours is none: the
+/// same line has the same layers, whatever number of waypoints it is written with. Waypoints with windows of the roll all are
+/// layers. docs/model.md "Tool path"; paper Eq. (1)-(4).
 ///
 /// With smoothing the tool follows a curve instead, twice continuously differentiable in `travel`: about each corner the velocity
 /// (of position and of rotation, per metre of travel) goes from the one, a, to the other, b, by a + (b - a) (3 z^2 - 2 z^3), z from
@@ -41,14 +44,17 @@ struct PathLayer {
 /// polyline; only the poses differ.
 class ToolPath {
  public:
-  /// Throws InputError: fewer than two distinct waypoints, a turn of 180 deg between neighbours, more layers than fit in memory.
-  /// Throws Stopped.
+  /// `turns_freely`: the tool may stand turned about its z axis as it likes, so that a half turn about that axis is the
+  /// right-handed one. Throws InputError: fewer than two distinct waypoints, another turn of 180 deg between neighbours, more
+  /// layers than fit in memory. Throws Stopped.
   ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& resolution, const std::string& source,
-           const Budget& budget = {}, const std::optional<PathSmoothing>& smooth = {});
+           const Budget& budget = {}, const std::optional<PathSmoothing>& smooth = {}, bool turns_freely = false);
 
   [[nodiscard]] int size() const { return static_cast<int>(layers_.size()); }
   [[nodiscard]] const PathLayer& layer(int i) const { return layers_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] int merged_waypoints() const { return merged_; }
+  /// Rows of the first and the last waypoint whose travel lies within from ... to, layers or not; -1 both where there is none.
+  [[nodiscard]] std::array<int, 2> waypoints_along(double from, double to) const;
   /// Tool pose at step parameter t of the step that starts at layer i; t in [0, 1] lies on the path, beyond that the step's own
   /// motion continued (what a one-sided derivative at a corner needs).
   [[nodiscard]] Pose at(int i, double t) const;
@@ -100,6 +106,12 @@ class ToolPath {
     Pose start = Pose::Identity();
     Vector3d velocity = Vector3d::Zero(), rotation = Vector3d::Zero();  // per metre of travel; rotation in the tool's frame
     double reach = 0;                                                   // of the corner at its start
+    bool merged = false;                                                // of several, within the tolerances of smoothing
+  };
+  /// Of a waypoint.
+  struct Place {
+    double travel = 0;
+    int row = 0;
   };
   void find_corners(const PathSmoothing& smooth);
   void spread_windows();
@@ -113,6 +125,7 @@ class ToolPath {
   bool begins_on_layer_ = true;
   bool begins_aside_ = false;  // layer 0 is off the curve
   std::vector<Segment> segments_;
+  std::vector<Place> waypoints_;  // but for repeated ones
   std::vector<Corner> corners_;
   bool rounded_ = false;
   double rounding_ = 0;
