@@ -22,6 +22,7 @@ constexpr Limit kLimits[] = {
     {Advice::Change::kJointMargin, "joint_margin", "joint margin", "deg", kDegrees},
     {Advice::Change::kManipulability, "manipulability", "manipulability", "", 1},
     {Advice::Change::kArmSlope, "arm_slope", "arm slope", "rad/m", 1},
+    {Advice::Change::kRollSlope, "roll_slope", "roll slope", "rad/m", 1},
     {Advice::Change::kJointStep, "joint_step", "joint step", "rad", 1},
     {Advice::Change::kToolSpeed, "tool_speed", "tool speed", "m/s", 1},
     {Advice::Change::kToolTurnSpeed, "tool_turn_speed", "tool turn speed", "rad/s", 1},

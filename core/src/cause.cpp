@@ -38,6 +38,7 @@ const char* Cause::unit() const {
     case Kind::kAngleError:
     case Kind::kStepError:
     case Kind::kArmSlope:
+    case Kind::kRollSlope:
       return "rad";
     default:
       return "";
@@ -46,8 +47,8 @@ const char* Cause::unit() const {
 
 bool Cause::same_thing(const Cause& other) const {
   return kind == other.kind && side == other.side && joint == other.joint && other_joints == other.other_joints &&
-         (object.empty() ? bodies == other.bodies : true) && object == other.object && between_layers == other.between_layers &&
-         check == other.check;
+         unwinds == other.unwinds && (object.empty() ? bodies == other.bodies : true) && object == other.object &&
+         between_layers == other.between_layers && check == other.check;
 }
 
 const char* to_string(Cause::Kind kind) {
@@ -66,6 +67,8 @@ const char* to_string(Cause::Kind kind) {
       return "contact";
     case Cause::Kind::kArmSlope:
       return "arm_slope";
+    case Cause::Kind::kRollSlope:
+      return "roll_slope";
     case Cause::Kind::kJointStep:
       return "joint_step";
     case Cause::Kind::kSpeed:
@@ -103,6 +106,8 @@ std::string words(const Cause& cause) {
       return cause.bodies[0] + " - " + cause.bodies[1] + (cause.between_layers ? " between layers" : "");
     case Cause::Kind::kArmSlope:
       return "arm slope";
+    case Cause::Kind::kRollSlope:
+      return "roll slope";
     case Cause::Kind::kJointStep:
       return "joint step";
     case Cause::Kind::kSpeed:
@@ -118,7 +123,7 @@ std::string words(const Cause& cause) {
     case Cause::Kind::kNone:
       break;
   }
-  return "";
+  return "not known: time was up";
 }
 
 std::string figures(const Cause& cause, std::optional<double> most) {
@@ -132,12 +137,17 @@ std::string figures(const Cause& cause, std::optional<double> most) {
              " mm";
     case Cause::Kind::kLimit:
       return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
-             formatted("%.2f deg", kDegrees * *cause.limit);
+             formatted("%.2f deg", kDegrees * *cause.limit) +
+             (cause.unwinds ? ": at the end of its range, it would have to unwind by a turn" : "");
     case Cause::Kind::kPair:
       return of("%.3g mm apart, asked %.3g mm", kMillimetres);
     case Cause::Kind::kContact:
       return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
+    case Cause::Kind::kRollSlope:
+      return cause.joint + formatted(": %.3g rad in %.3g mm, allowed %.3g rad: roll_slope %.3g rad/m", *cause.value,
+                                     kMillimetres * *cause.over, *cause.limit, *cause.limit / *cause.over);
     case Cause::Kind::kJointStep:
+      return cause.joint + ": " + of("%.3g rad in one layer, allowed %.3g rad: of a layer, so a smaller ds may help", 1);
     case Cause::Kind::kSpeed:
       return cause.joint + ": " + of("%.3g rad, allowed %.3g rad", 1);
     case Cause::Kind::kPathError:

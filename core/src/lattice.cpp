@@ -90,12 +90,11 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
 
 std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
                                                const Resolution& resolution) {
-  const bool timed = limits.tool_speed || limits.tool_turn_speed;
-  Config bound = Config::Constant(limits.joint_step);
-  if (chain.roll) bound[kDof - 1] = std::min(kPi, limits.roll_slope * resolution.ds);
-  std::vector<Config> bounds(timed ? static_cast<std::size_t>(path.size()) - 1 : 1, bound);
-  for (int i = 0; timed && i + 1 < path.size(); ++i) {
+  const bool timed = limits.tool_speed || limits.tool_turn_speed, differ = timed || chain.roll;
+  std::vector<Config> bounds(differ ? static_cast<std::size_t>(path.size()) - 1 : 1, Config::Constant(limits.joint_step));
+  for (int i = 0; differ && i + 1 < path.size(); ++i) {
     const PathLayer& layer = path.layer(i);
+    if (chain.roll) bounds[static_cast<std::size_t>(i)][kDof - 1] = roll_step_bound(path, i, limits, resolution);
     double dt = 0;
     if (limits.tool_speed) dt = std::max(dt, layer.step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, layer.step_angle / *limits.tool_turn_speed);
@@ -144,6 +143,12 @@ bool Lattice::step_allowed(int layer, const Config& delta) const {
 
 bool Lattice::row_step_allowed(int layer, const Config& delta) const {
   return within(delta, row_step_bound(layer));
+}
+
+std::optional<Lattice::RollStep> Lattice::roll_step(int layer, int, const Config& q0, int, const Config& q1) const {
+  if (!chain_->roll) return std::nullopt;
+  const double change = std::abs(delta(q0, q1)[kDof - 1]), most = row_step_bound(layer)[kDof - 1];
+  return RollStep{change, most, most / limits_.roll_slope, change <= most};
 }
 
 double Lattice::rounded_cost(double cost) const {
@@ -196,6 +201,11 @@ bool Lattice::follows_path(int layer, int a, const Config& q0, int b, const Conf
   if (limits_.tool_angle_error && !stays_within(angle_deviation(*chain_, *path_, layer, q0, move), *limits_.tool_angle_error))
     return false;
   return keeps_step_error(layer, a, b);
+}
+
+double roll_step_bound(const ToolPath& path, int step, const Limits& limits, const Resolution& resolution) {
+  const double travel = path.layer(step + 1).travel - path.layer(step).travel;
+  return std::min(kPi, limits.roll_slope * std::max(travel, resolution.ds / 2));
 }
 
 std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0, const Config& delta) {

@@ -138,6 +138,7 @@ class RollRedundancy final : public Redundancy {
         // Without nodes, which refinement has no use for.
         lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
         planes_(carried_planes(arm, path, budget)),
+        roll_slope_(problem.limits.roll_slope),
         most_change_(problem.limits.roll_slope * problem.resolution.ds) {
     const Roll& free = *chain.free_roll;
     if (!free.circle()) range_ = {free.lower, free.upper};
@@ -170,6 +171,10 @@ class RollRedundancy final : public Redundancy {
     }
   }
   [[nodiscard]] double most_change() const override { return most_change_; }
+  [[nodiscard]] double most_change_on(int step) const override {
+    constexpr double kRounding = 1e-9;  // rad
+    return roll_slope_ * (lattice_.path().layer(step + 1).travel - lattice_.path().layer(step).travel) + kRounding;
+  }
   [[nodiscard]] std::vector<int> jumps(const std::vector<TrajectoryRow>& rows) const override { return changes_of_branch(rows); }
   [[nodiscard]] double singular_sine(const Config& q) const override { return nearest_sine(*arm_, q); }
   [[nodiscard]] double step_error(int, const TrajectoryRow&, const TrajectoryRow&) const override {
@@ -180,7 +185,7 @@ class RollRedundancy final : public Redundancy {
   const SrsArm* arm_;
   ExplicitLattice lattice_;
   std::vector<ArmPlane> planes_;
-  double most_change_;
+  double roll_slope_, most_change_;
   Range range_;
 };
 

@@ -285,9 +285,19 @@ PoseShift RollLattice::rows_apart(int layer, int group, const Config& q) const {
 }
 
 bool RollLattice::in_window(int layer, int a, int b) const {
-  if (branch(layer, a) != branch(layer + 1, b)) return false;
   const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
-  if (!std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))) return false;
+  return std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b)) && in_arm_window(layer, a, b);
+}
+
+std::optional<Lattice::RollStep> RollLattice::roll_step(int layer, int a, const Config&, int b, const Config&) const {
+  const std::vector<int>& rolls = near(layer, rank_of(layer, a), true);
+  const double change = roll(layer + 1, b) - roll(layer, a);
+  return RollStep{std::abs(circle_ ? wrap_angle(change) : change), limits_.roll_slope * way(layer), way(layer),
+                  std::binary_search(rolls.begin(), rolls.end(), rank_of(layer + 1, b))};
+}
+
+bool RollLattice::in_arm_window(int layer, int a, int b) const {
+  if (branch(layer, a) != branch(layer + 1, b)) return false;
   const int angles = at_roll(0).angles(), window = phi_window(layer), to = at_roll(0).angle_of(b % width_);
   if (layer == 0 && start_) {
     const double cell = -kPi + kTwoPi * to / angles;
@@ -385,11 +395,14 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
     between.q = *to;
     const Config move = *to - from;
     const double to_roll = roll_at(i + 1, *to, i + 1 == last ? roll + droll : chosen(i + 1, t));
-    const double most_turn = limits_.roll_slope * (whole_->layer(i + 1).travel - whole_->layer(i).travel);
+    const double travel = whole_->layer(i + 1).travel - whole_->layer(i).travel, most_turn = limits_.roll_slope * travel;
+    const double turned = std::abs(wrap_angle(to_roll - from_roll));
     const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
-    if (!((move.cwiseAbs().array() <= bound.array()).all()) ||
-        ((last_joint_ || windows_of_roll_) && !(std::abs(wrap_angle(to_roll - from_roll)) <= most_turn + 1e-9))) {
+    if (!((move.cwiseAbs().array() <= bound.array()).all())) {
       between.fault = Between::Fault::kStep;
+    } else if ((last_joint_ || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
+      between.fault = Between::Fault::kRollSlope;
+      between.roll = {turned, most_turn, travel, false};
     } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
       between.fault = Between::Fault::kPathError;
     } else if (limits_.tool_angle_error && !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {

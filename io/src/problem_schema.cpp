@@ -130,7 +130,7 @@ Schema resolution() {
   return section("resolution",
                  {
                      {"ds", number(kLength), "m", otherwise(d.ds),
-                      "longest step along the path: each segment is divided into equal ones, and every waypoint is a layer"},
+                      "longest step along the path: each straight stretch is divided into equal ones, and every corner is a layer"},
                      {"dphi", number(kTurn), "rad", otherwise(d.dphi), "widest step of the arm angle"},
                      {"dalpha", number(kPositive), "rad", otherwise(d.dalpha), "widest step of tool rotation"},
                      {"arcs", one_of({"false", "true"}), "", otherwise("false"),
@@ -169,7 +169,8 @@ Schema limits() {
           {"joint_margin", number(kNonNegative), "rad", otherwise(d.joint_margin), "distance kept from both limits of each joint"},
           {"soft_limits", one_of({"true", "false"}), "", otherwise("true"),
            "joints keep the soft limits of their `<safety_controller>` in the URDF, where these are narrower"},
-          {"joint_step", number(kPositive), "rad", otherwise(d.joint_step), "largest move of a joint between neighbouring layers"},
+          {"joint_step", number(kPositive), "rad", otherwise(d.joint_step),
+           "largest move of a joint between neighbouring layers, whatever their distance: a smaller `ds` allows more"},
           {"arm_slope", number(kPositive), "rad/m", otherwise(d.arm_slope), "largest change of the arm angle along the path"},
           {"roll_slope", number(kPositive), "rad/m", otherwise(d.roll_slope), "the same of `path.roll`"},
           {"manipulability", number(kNonNegative), "", otherwise(d.manipulability),

@@ -64,6 +64,7 @@ Json cause_json(const Cause& cause) {
   return {{"cause", to_string(cause.kind)},
           {"joint", text_or_null(cause.joint)},
           {"other_joints", cause.other_joints},
+          {"unwinds", cause.unwinds},
           {"side", text_or_null(to_string(cause.side))},
           {"bodies", cause.bodies[0].empty() ? Json(nullptr) : Json(cause.bodies)},
           {"between_layers", cause.between_layers},
@@ -72,6 +73,7 @@ Json cause_json(const Cause& cause) {
           {"by", or_null(cause.by())},
           {"value", or_null(cause.value)},
           {"limit", or_null(cause.limit)},
+          {"over", or_null(cause.over)},
           {"unit", text_or_null(cause.unit())}};
 }
 

@@ -33,11 +33,13 @@ Schema cause() {
       "cause",
       {
           key("cause",
-              one_of({"reach", "singular", "limit", "manipulability", "pair", "contact", "arm_slope", "joint_step", "speed",
-                      "path_error", "angle_error", "step_error", "check"}),
+              one_of({"reach", "singular", "limit", "manipulability", "pair", "contact", "arm_slope", "roll_slope", "joint_step",
+                      "speed", "path_error", "angle_error", "step_error", "check"}),
               "`pair`: two bodies nearer than they must keep; `contact`: they touch; `check`: of the program that plans"),
-          key("joint", or_null(text()), "of limits, steps and speeds"),
+          key("joint", or_null(text()), "of limits, steps and speeds; of `roll_slope` the roll"),
           key("other_joints", boolean(), "every node has several joints beyond their limits, of which this is the furthest"),
+          key("unwinds", boolean(),
+              "of `limit`: the joint can follow only beyond the end of its range, where it would have to unwind by a turn"),
           key("side", or_null(side()), "of limits; of `reach`: too near or too far"),
           key("bodies", or_null(bodies()), "of pairs: their names"),
           key("between_layers", boolean(), "whether they meet on motions only"),
@@ -47,6 +49,7 @@ Schema cause() {
               "how much is missed at the node or motion that misses least; `null` where it was not measured", "`unit`"),
           key("value", or_null(number()), "what was found there", "`unit`"),
           key("limit", or_null(number()), "what is asked for", "`unit`"),
+          key("over", or_null(number()), "of `roll_slope`: the length of path for which `limit` is allowed", "m"),
           key("unit", or_null(one_of({"m", "rad"})), "of these three"),
       }));
 }
@@ -130,8 +133,9 @@ Schema diagnosis() {
           key("reached_layer", or_null(integer()), "the furthest that a valid path comes; `null` where the first layer is empty"),
           key("reached_s", or_null(number()), "the same along the path", "m"),
           key("reason", text(),
-              "what ends every path, in words, as in a campaign's CSV; empty where time ran out before it was found"),
-          key("cause", cause(), "the same as values, [below](#cause); `null` where `reason` is empty"),
+              "what ends every path, in words, as in a campaign's CSV; `not known: time was up` where time ran out before it was "
+              "found"),
+          key("cause", cause(), "the same as values, [below](#cause); `null` where it is not known"),
           key("at_s", or_null(number()), "s of the layer past the furthest one", "m"),
           key("waypoints", list(or_null(integer()), 2), "rows of the path, from 0, before and after it"),
           key("without_it", or_null(integer()),

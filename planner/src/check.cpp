@@ -58,7 +58,7 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
     if (limits.tool_speed) dt = std::max(dt, path.layer(i).step_length / *limits.tool_speed);
     if (limits.tool_turn_speed) dt = std::max(dt, path.layer(i).step_angle / *limits.tool_turn_speed);
     Config bound = Config::Constant(limits.joint_step);
-    if (chain.roll) bound[kDof - 1] = std::min(kPi, limits.roll_slope * problem.resolution.ds);
+    if (chain.roll) bound[kDof - 1] = roll_step_bound(path, i, limits, problem.resolution);
     for (std::size_t j = 0; dt > 0 && j < joints; ++j) {
       double& joint = bound[static_cast<Eigen::Index>(j)];
       joint = std::min(joint, chain.limit[j].velocity * dt);

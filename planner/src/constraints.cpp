@@ -117,6 +117,9 @@ Cause Constraints::cause(int constraint) const {
     cause.limit = limits.manipulability;
   } else if (constraint == kArmSlope) {
     cause.kind = Cause::Kind::kArmSlope;
+  } else if (constraint == kRollSlope) {
+    cause.kind = Cause::Kind::kRollSlope;
+    cause.joint = lattice_.chain().roll ? lattice_.chain().joint_names.back() : "roll";
   } else if (constraint == kJointStep) {
     cause.kind = Cause::Kind::kJointStep;
     cause.limit = limits.joint_step;
@@ -179,7 +182,8 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   ++moves_;
   const Config &qa = from.q, &qb = to.q;
   Violations found{*this, waived, until};
-  if (!lattice_.in_window(layer, a, b)) found.add(kArmSlope);
+  if (!lattice_.in_arm_window(layer, a, b)) found.add(kArmSlope);
+  if (const auto roll = lattice_.roll_step(layer, a, qa, b, qb); roll && !roll->allowed) found.add(kRollSlope);
   const Config delta = lattice_.delta(qa, qb);
   const Limits& limits = lattice_.limits();
   if (lattice_.has_layers_between()) {
@@ -187,17 +191,11 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     return found.uncounted ? of(kCount) - 1 : found.set;
   }
   const Config& bound = lattice_.row_step_bound(layer);
-  const auto add_steps = [&](const Config& moved, const Config& more) {
-    for (int k = 0; k < kDof; ++k) {
-      if (!(std::abs(moved[k]) <= limits.joint_step + more[k])) found.add(kJointStep);
-      if (bound[k] < limits.joint_step && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
-    }
-  };
   if (!lattice_.row_step_allowed(layer, delta)) {
-    add_steps(delta, Config::Zero());
+    add_steps(qa, delta, bound, Config::Zero(), found);
   } else if (lattice_.has_own_rows()) {  // nodes must keep a bound of their own
     const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
-    if (a_node && b_node) add_steps(lattice_.delta(*a_node, *b_node), 2 * lattice_.misfit());
+    if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.misfit(), found);
   }
   if (found.done()) return found.set;
   moves_ += 10;
@@ -224,6 +222,27 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   return found.uncounted ? of(kCount) - 1 : found.set;  // all: none of them alone would help
 }
 
+std::optional<int> Constraints::run_out(int k, const Config& from, const Config& moved) const {
+  if (lattice_.continuous()[static_cast<std::size_t>(k)] || std::abs(moved[k]) <= kPi) return std::nullopt;
+  const double near = wrap_angle(moved[k]), there = from[k] + near;
+  const auto [lower, upper] = limits_of(k);
+  if (std::abs(near) > lattice_.limits().joint_step || (there >= lower && there <= upper)) return std::nullopt;
+  return limit(k, there > upper);
+}
+
+void Constraints::add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more,
+                            Violations& found) const {
+  const double joint_step = lattice_.limits().joint_step;
+  for (int k = 0; k < (lattice_.chain().roll ? kDof - 1 : kDof); ++k) {
+    if (const auto limit = run_out(k, from, moved)) {
+      found.add(*limit);
+      continue;
+    }
+    if (!(std::abs(moved[k]) <= joint_step + more[k])) found.add(kJointStep);
+    if (bound[k] < joint_step && !(std::abs(moved[k]) <= bound[k] + more[k])) found.add(kSpeed);
+  }
+}
+
 /// Of the rows between and the moves from one to the next as well: the first that is at fault says what is violated.
 void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found) {
   using Fault = Lattice::Between::Fault;
@@ -243,8 +262,14 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
     case Fault::kManipulability:
       found.add(kManipulability);
       return;
-    case Fault::kStep:
-      found.add(kJointStep);
+    case Fault::kStep: {
+      const Config& from = between.rows.empty() ? qa : between.rows.back();
+      add_steps(from, between.q - from, Config::Constant(lattice_.limits().joint_step), Config::Zero(), found);
+      if (found.set == 0) found.add(kSpeed);
+      return;
+    }
+    case Fault::kRollSlope:
+      found.add(kRollSlope);
       return;
     case Fault::kPathError:
       found.add(kPathError);
@@ -300,7 +325,20 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
 
 Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) const {
   Cause cause = this->cause(constraint);
+  if (cause.kind == Cause::Kind::kRollSlope) {
+    auto roll = *lattice_.roll_step(layer, a, qa, b, qb);
+    if (roll.allowed && lattice_.has_layers_between()) roll = lattice_.between(layer, a, qa, b, qb).roll;  // on the way
+    cause.value = roll.change, cause.limit = roll.most, cause.over = roll.over;
+    return cause;
+  }
   if (lattice_.has_layers_between()) {
+    if (cause.kind == Cause::Kind::kLimit) {
+      const Lattice::Between between = lattice_.between(layer, a, qa, b, qb);
+      const Config& from = between.rows.empty() ? qa : between.rows.back();
+      const int k = constraint / 2;
+      cause.unwinds = between.fault == Lattice::Between::Fault::kStep;
+      cause.value = cause.unwinds ? from[k] + wrap_angle(between.q[k] - from[k]) : between.q[k];
+    }
     cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
     return cause;
   }
@@ -310,16 +348,21 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed: {
       const Config& bound = lattice_.row_step_bound(layer);
+      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // the roll keeps another limit
       Eigen::Index k = 0;
       if (cause.kind == Cause::Kind::kJointStep)
-        delta.cwiseAbs().maxCoeff(&k);
+        delta.head(joints).cwiseAbs().maxCoeff(&k);
       else
-        delta.cwiseAbs().cwiseQuotient(bound).maxCoeff(&k);
+        delta.head(joints).cwiseAbs().cwiseQuotient(bound.head(joints)).maxCoeff(&k);
       cause.joint = lattice_.chain().joint_names[static_cast<std::size_t>(k)];
       cause.value = std::abs(delta[k]);
       if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
       break;
     }
+    case Cause::Kind::kLimit:  // the joint has run out of turns: a node beyond its limits is no end of a move
+      cause.unwinds = true;
+      cause.value = qa[constraint / 2] + wrap_angle(delta[constraint / 2]);
+      break;
     case Cause::Kind::kPathError:
       cause.value = most_of(path_deviation(lattice_.chain(), lattice_.path(), layer, qa, delta));
       break;

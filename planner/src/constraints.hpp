@@ -38,11 +38,15 @@ class Constraints {
 
   /// Joint k of 0 ... 6 at its lower (0) or upper (1) limit.
   static constexpr int limit(int k, bool upper) { return 2 * k + (upper ? 1 : 0); }
-  static constexpr int kManipulability = 2 * kDof, kArmSlope = kManipulability + 1, kJointStep = kArmSlope + 1,
-                       kSpeed = kJointStep + 1, kPathError = kSpeed + 1, kAngleError = kPathError + 1, kStepError = kAngleError + 1,
-                       kCheck = kStepError + 1, kFirstPair = kCheck + 1,
+  static constexpr int kManipulability = 2 * kDof, kArmSlope = kManipulability + 1, kRollSlope = kArmSlope + 1,
+                       kJointStep = kRollSlope + 1, kSpeed = kJointStep + 1, kPathError = kSpeed + 1, kAngleError = kPathError + 1,
+                       kStepError = kAngleError + 1, kCheck = kStepError + 1, kFirstPair = kCheck + 1,
                        kCount = 63;  // one bit is left to those who use the sets
   static constexpr ConstraintSet of(int constraint) { return ConstraintSet{1} << constraint; }
+  /// Those that a move violates by its joints alone, which takes no question of bodies to find out.
+  static constexpr bool told_by_steps(int constraint) {
+    return constraint < kManipulability || (constraint >= kArmSlope && constraint <= kSpeed);
+  }
   /// Those that come between a node and its continuation on the same sheet, rather than between sheets.
   static constexpr bool bars_nodes(int constraint) { return constraint <= kManipulability || constraint >= kCheck; }
   /// -1 once too many have been met to be told apart.
@@ -91,6 +95,11 @@ class Constraints {
   [[nodiscard]] int met(const BodyPair& pair);
   [[nodiscard]] std::pair<double, double> limits_of(int k) const;
   void add_other_pairs(const Config& q, const Level& level, Violations& found);
+  /// What a move between rows violates by its size; `bound`: what each joint may move; `more`: by how much both may be exceeded.
+  void add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more, Violations& found) const;
+  /// Of a joint step: whether only a turn of the joint makes it so large, since the end of its range lies between. Which limit
+  /// then.
+  [[nodiscard]] std::optional<int> run_out(int k, const Config& from, const Config& moved) const;
   void edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
 

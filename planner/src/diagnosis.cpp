@@ -301,7 +301,7 @@ class Inspector {
           const ConstraintSet violated =
               constraints_.edge(layer, a.slot, {a.q, true, 0}, slot, {b->q, true, 0}, 0, Constraints::Until::kFirst);
           const int first = std::countr_zero(violated);
-          edges += first != Constraints::kJointStep && first != Constraints::kSpeed;
+          edges += !Constraints::told_by_steps(first);
           if (violated == 0) continue;
           Cause cause = constraints_.cause(first);
           cause.between_layers = first >= Constraints::kCheck;

@@ -111,7 +111,7 @@ class Judge {
     ++edges_asked;
     const Limits& limits = lattice_->limits();
     const Config move = b.q - a.q;
-    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > redundancy_->most_change()) return false;
+    if (!lattice_->step_allowed(layer, move) || std::abs(b.phi - a.phi) > redundancy_->most_change_on(layer)) return false;
     const auto within = [](const std::array<double, 3>& deviation, double limit) {
       return std::all_of(deviation.begin(), deviation.end(), [limit](double x) { return x <= limit; });
     };

@@ -39,6 +39,7 @@ std::optional<Witnesses::About> Witnesses::about(const Cause& cause) const {
     case Cause::Kind::kReach:
     case Cause::Kind::kSingular:
     case Cause::Kind::kManipulability:
+    case Cause::Kind::kRollSlope:
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed:
     case Cause::Kind::kPathError:
@@ -154,7 +155,11 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
   const Config moved = move.to - move.from;
   switch (cause.kind) {
     case Cause::Kind::kJointStep:
-      return !(moved.cwiseAbs().maxCoeff() <= limits.joint_step);
+      return !(moved.head(lattice_.chain().roll ? kDof - 1 : kDof).cwiseAbs().maxCoeff() <= limits.joint_step);
+    case Cause::Kind::kRollSlope: {
+      const auto roll = lattice_.roll_step(layer, a, move.from, b, move.to);
+      return roll && !roll->allowed;
+    }
     case Cause::Kind::kSpeed:
       return !lattice_.row_step_allowed(layer, moved);
     case Cause::Kind::kPathError:
@@ -192,6 +197,8 @@ std::optional<Cause> Witnesses::of_fault(const Lattice::Between& between) const 
       return of_kind(Cause::Kind::kManipulability);
     case Fault::kStep:
       return of_kind(Cause::Kind::kJointStep);
+    case Fault::kRollSlope:
+      return of_kind(Cause::Kind::kRollSlope);
     case Fault::kPathError:
       return of_kind(Cause::Kind::kPathError);
     case Fault::kAngleError:
@@ -258,8 +265,8 @@ int Witnesses::of_edge(int layer, int a, int b, int likely) {
     return witness >= 0 &&
            removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
   };
-  for (const Cause::Kind kind :
-       {Cause::Kind::kJointStep, Cause::Kind::kSpeed, Cause::Kind::kPathError, Cause::Kind::kAngleError, Cause::Kind::kStepError})
+  for (const Cause::Kind kind : {Cause::Kind::kRollSlope, Cause::Kind::kJointStep, Cause::Kind::kSpeed, Cause::Kind::kPathError,
+                                 Cause::Kind::kAngleError, Cause::Kind::kStepError})
     if (const Cause cause = of_kind(kind); removes_move(cause, {}, layer, a, b, *asked)) return number(cause);
   if (removes(likely)) return likely;
   if (lattice_.limits().edges == EdgeMode::kContinuous)

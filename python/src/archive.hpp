@@ -200,8 +200,8 @@ void serialize(A& archive, LatticeInfo& x) {
 }
 template <class A>
 void serialize(A& archive, Cause& x) {
-  auto& [kind, side, joint, other_joints, bodies, between_layers, object, value, limit, check] = x;
-  archive(kind, side, joint, other_joints, bodies, between_layers, object, value, limit, check);
+  auto& [kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit, over, check] = x;
+  archive(kind, side, joint, other_joints, unwinds, bodies, between_layers, object, value, limit, over, check);
 }
 template <class A>
 void serialize(A& archive, EmptyLayers& x) {

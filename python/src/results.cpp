@@ -279,6 +279,8 @@ void bind_verdicts(py::module_& m) {
           "joint", [](const Cause& c) { return or_none(c.joint); }, "Of limits, steps and speeds.")
       .def_readonly("other_joints", &Cause::other_joints,
                     "Every node has several joints beyond their limits; `joint` is the furthest.")
+      .def_readonly("unwinds", &Cause::unwinds,
+                    "Of a limit: the joint can follow only beyond the end of its range, where it would have to unwind by a turn.")
       .def_property_readonly(
           "bodies", [](const Cause& c) { return bodies_of(c.bodies); }, "Of pairs: two names.")
       .def_readonly("between_layers", &Cause::between_layers)
@@ -286,6 +288,7 @@ void bind_verdicts(py::module_& m) {
           "object", [](const Cause& c) { return or_none(c.object); }, "A scene object that several bodies come too near to.")
       .def_readonly("value", &Cause::value, "What it is where it misses least, in `unit`; None where it was not measured.")
       .def_readonly("limit", &Cause::limit, "What is allowed, in `unit`.")
+      .def_readonly("over", &Cause::over, "Of the roll's slope: the length of path for which `limit` is allowed, m.")
       .def_property_readonly("unit", &Cause::unit, "'m', 'rad' or ''.")
       .def_property_readonly(
           "check", [](const Cause& c) { return or_none(c.check); }, "Name of the caller's own check.")

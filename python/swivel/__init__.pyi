@@ -375,6 +375,7 @@ class CauseKind:
     PAIR: ClassVar[CauseKind]
     CONTACT: ClassVar[CauseKind]
     ARM_SLOPE: ClassVar[CauseKind]
+    ROLL_SLOPE: ClassVar[CauseKind]
     JOINT_STEP: ClassVar[CauseKind]
     SPEED: ClassVar[CauseKind]
     PATH_ERROR: ClassVar[CauseKind]
@@ -394,6 +395,7 @@ class Change:
     JOINT_MARGIN: ClassVar[Change]
     MANIPULABILITY: ClassVar[Change]
     ARM_SLOPE: ClassVar[Change]
+    ROLL_SLOPE: ClassVar[Change]
     JOINT_STEP: ClassVar[Change]
     TOOL_SPEED: ClassVar[Change]
     TOOL_TURN_SPEED: ClassVar[Change]
@@ -427,6 +429,8 @@ class Cause:
     @property
     def other_joints(self) -> bool: ...
     @property
+    def unwinds(self) -> bool: ...
+    @property
     def bodies(self) -> tuple[str, str] | None: ...
     @property
     def between_layers(self) -> bool: ...
@@ -436,6 +440,8 @@ class Cause:
     def value(self) -> float | None: ...
     @property
     def limit(self) -> float | None: ...
+    @property
+    def over(self) -> float | None: ...
     @property
     def unit(self) -> str: ...
     @property

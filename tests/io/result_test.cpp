@@ -141,8 +141,10 @@ TEST(Result, Infeasible) {
   EXPECT_EQ(diagnosis["reached_layer"], 12);
   EXPECT_EQ(diagnosis["reached_s"], 0.34);
   EXPECT_EQ(diagnosis["reason"], "joint j5");
-  EXPECT_EQ(diagnosis["cause"], Json::parse(R"({"cause": "limit", "joint": "j5", "other_joints": false, "side": "lower",
-      "bodies": null, "between_layers": false, "object": null, "check": null, "by": 0.5, "value": -2.5, "limit": -2.0, "unit": "rad"})"));
+  EXPECT_EQ(diagnosis["cause"],
+            Json::parse(R"({"cause": "limit", "joint": "j5", "other_joints": false, "unwinds": false, "side": "lower",
+      "bodies": null, "between_layers": false, "object": null, "check": null, "by": 0.5, "value": -2.5, "limit": -2.0, "over": null,
+      "unit": "rad"})"));
   EXPECT_EQ(diagnosis["waypoints"], Json({3, 4}));
   EXPECT_EQ(diagnosis["without_it"], 20);
   EXPECT_EQ(diagnosis["empty_layers"][0]["layers"], Json({13, 14}));

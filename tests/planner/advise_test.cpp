@@ -45,6 +45,9 @@ Problem followed(Problem problem, const Advice& advice) {
     case Change::kArmSlope:
       limits.arm_slope = share;
       break;
+    case Change::kRollSlope:
+      limits.roll_slope = share;
+      break;
     case Change::kJointStep:
       limits.joint_step = share;
       break;

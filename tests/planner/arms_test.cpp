@@ -274,8 +274,8 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     const ToolPath path = problem_path(problem, chain);
     const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
     const ArcLattice lattice = circles.with_windings(circles.circles());
-    const double most_turn = std::min(kPi, problem.limits.roll_slope * problem.resolution.ds);
     const auto turns_slowly = [&](int layer, int a, int b) {
+      const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
       return std::abs(std::remainder(lattice.point(layer + 1, b).q[6] - lattice.point(layer, a).q[6], kTwoPi)) <= most_turn;
     };
     const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), turns_slowly, hooks);

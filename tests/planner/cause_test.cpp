@@ -39,8 +39,9 @@ std::vector<Cause> all_causes(const Problem& problem, const World& world, const 
       cause.joint = chain.joint_names[k];
       cause.side = side;
     }
-  for (const Cause::Kind kind : {Cause::Kind::kManipulability, Cause::Kind::kArmSlope, Cause::Kind::kJointStep,
-                                 Cause::Kind::kPathError, Cause::Kind::kAngleError, Cause::Kind::kStepError})
+  for (const Cause::Kind kind :
+       {Cause::Kind::kManipulability, Cause::Kind::kArmSlope, Cause::Kind::kRollSlope, Cause::Kind::kJointStep,
+        Cause::Kind::kPathError, Cause::Kind::kAngleError, Cause::Kind::kStepError})
     add(kind);
   for (const SceneObject& object : problem.scene) add(Cause::Kind::kPair).object = object.name;  // more than any pair with it
   for (const BodyPair& pair : world.pairs())
@@ -106,6 +107,12 @@ TEST(Cause, WithoutItPathsGoOn) {
   EXPECT_GE(confirmed + none_exists, 0.95 * infeasible);
   EXPECT_GE(together_confirmed, 0.9 * together);
   EXPECT_GE(named, wanted / 3);
+}
+
+/// A cause that was not found in time says so, and is not silent.
+TEST(Cause, OfADiagnosisThatEndsBeforeItIsKnownSaysSo) {
+  EXPECT_EQ(words(Cause{}), "not known: time was up");
+  EXPECT_EQ(figures(Cause{}), "");
 }
 
 TEST(Cause, OfExperimentAFromItsGivenStartIsTheLimitOfJoint5) {

@@ -43,6 +43,9 @@ inline std::optional<Problem> without(const Cause& cause, Problem problem) {
     case Cause::Kind::kArmSlope:
       limits.arm_slope = 1e6;
       return problem;
+    case Cause::Kind::kRollSlope:
+      limits.roll_slope = 1e6;
+      return problem;
     case Cause::Kind::kJointStep:
       limits.joint_step = 3;
       return problem;

@@ -18,6 +18,7 @@ struct Advice {
     kJointMargin,     ///< limits.joint_margin
     kManipulability,  ///< limits.manipulability
     kArmSlope,        ///< limits.arm_slope
+    kRollSlope,       ///< limits.roll_slope
     kJointStep,       ///< limits.joint_step
     kToolSpeed,       ///< limits.tool_speed
     kToolTurnSpeed,   ///< limits.tool_turn_speed

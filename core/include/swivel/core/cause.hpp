@@ -18,6 +18,7 @@ struct Cause {
     kPair,            ///< two bodies nearer than they must keep
     kContact,         ///< two bodies that touch: no smaller clearance would help
     kArmSlope,        ///< moves that exist change the arm angle by more than allowed
+    kRollSlope,       ///< they turn the tool about its z axis by more than limits.roll_slope allows
     kJointStep,       ///< by more than limits.joint_step
     kSpeed,           ///< faster than a joint can, at the tool speed asked
     kPathError,       ///< limits.tool_path_error
@@ -28,16 +29,19 @@ struct Cause {
   enum class Side { kNone, kLower, kUpper };
 
   Kind kind = Kind::kNone;
-  Side side = Side::kNone;            ///< of kReach and kLimit
-  std::string joint;                  ///< of kLimit, kJointStep and kSpeed
-  bool other_joints = false;          ///< of kLimit: every node has several joints beyond their limits; `joint` is the furthest
+  Side side = Side::kNone;    ///< of kReach and kLimit
+  std::string joint;          ///< of kLimit, kRollSlope, kJointStep and kSpeed
+  bool other_joints = false;  ///< of kLimit: every node has several joints beyond their limits; `joint` is the furthest
+  /// Of kLimit: the joint stands within its range, but can follow only beyond the end of it: it would have to unwind by a turn.
+  bool unwinds = false;
   std::array<std::string, 2> bodies;  ///< of kPair and kContact
   bool between_layers = false;        ///< of those and of kCheck: on motions only
   std::string object;  ///< of those: a scene object that several bodies come too near to; `bodies` is one pair of them
   /// What it is at the node or edge that misses least, and what is allowed: rad for joints and angles, else m; of manipulability
   /// without a unit. None where it was not measured.
   std::optional<double> value, limit;
-  std::string check;  ///< of kCheck: its name
+  std::optional<double> over;  ///< of kRollSlope: the travel for which `limit` is allowed, m
+  std::string check;           ///< of kCheck: its name
 
   bool operator==(const Cause&) const = default;
 
@@ -53,7 +57,8 @@ struct Cause {
 [[nodiscard]] const char* to_string(Cause::Kind kind);
 /// "lower", "upper"; "" of none.
 [[nodiscard]] const char* to_string(Cause::Side side);
-/// One phrase: "no IK", "singular", "joint <name>", "joint limits", "<body> - <body>", "joint step", ...; "" of none.
+/// One phrase: "no IK", "singular", "joint <name>", "joint limits", "<body> - <body>", "joint step", ...; "not known: time was up"
+/// of none.
 [[nodiscard]] std::string words(const Cause& cause);
 /// By how much, for people: "out of reach by 3 mm", "0.4 deg beyond -117.00 deg"; "" where it was not measured. `most`: of several
 /// places, the most that it misses by; the least is the cause's own.

@@ -96,14 +96,31 @@ class Lattice {
   [[nodiscard]] virtual bool has_layers_between() const { return false; }
   /// The path whose layers are the rows of a trajectory: path(), and where has_layers_between() the one with those as well.
   [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
+  /// How far a move turns the tool about its z axis, and what limits.roll_slope allows over its travel.
+  struct RollStep {
+    double change = 0, most = 0;  ///< rad
+    double over = 0;              ///< m
+    bool allowed = true;
+  };
   /// The rows between row qa (slot a) and row qb (slot b of the next layer), as far as they exist and keep all but clearance; and
   /// what the next row, or the move to it, does not keep.
   struct Between {
-    enum class Fault : std::uint8_t { kNone, kNoIk, kSingular, kLimit, kManipulability, kStep, kPathError, kAngleError };
+    enum class Fault : std::uint8_t {
+      kNone,
+      kNoIk,
+      kSingular,
+      kLimit,
+      kManipulability,
+      kStep,
+      kRollSlope,
+      kPathError,
+      kAngleError
+    };
     std::vector<Config> rows;
     Fault fault = Fault::kNone;
     std::uint8_t joints = 0;    ///< of kLimit: bit k: joint k is outside its limits
     Config q = Config::Zero();  ///< of the row at fault, where it has joints; of a move, where it leads to
+    RollStep roll;              ///< of kRollSlope
   };
   [[nodiscard]] virtual Between between(int layer, int a, const Config& qa, int b, const Config& qb) const;
 
@@ -152,13 +169,18 @@ class Lattice {
   };
   /// Whether the two may be joined as far as slots tell.
   [[nodiscard]] virtual bool in_window(int layer, int a, int b) const = 0;
+  /// The same as far as anything but the roll tells.
+  [[nodiscard]] virtual bool in_arm_window(int layer, int a, int b) const { return in_window(layer, a, b); }
+  /// Of a tool that may stand turned: by how much the move from row q0 (slot a) to row q1 (slot b) turns it. None of other tools.
+  [[nodiscard]] virtual std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b, const Config& q1) const;
   /// Replaces `out` by the runs of slots b for which in_window(layer, a, b).
   virtual void successors(int layer, int a, std::vector<SlotRun>& out) const = 0;
   /// q1 - q0, on the circle for continuous joints.
   [[nodiscard]] Config delta(const Config& q0, const Config& q1) const;
   /// Every |delta| within step_bound().
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
-  /// Largest |delta_j| allowed on the step from `layer`: joint_step and speed limits, widened by twice the misfit.
+  /// Largest |delta_j| allowed on the step from `layer`: joint_step, speed limits and, of the roll of an arm of six joints, what
+  /// roll_slope allows (roll_step_bound()); widened by twice the misfit.
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
@@ -249,6 +271,10 @@ class Lattice {
   Config misfit_;
   std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each
 };
+
+/// By how much limits.roll_slope lets the roll of an arm of six joints change on a step, rad: over the step's travel, and over half
+/// of resolution.ds where a stretch of the path is shorter than that, since nodes that lie `arc` apart express no less.
+[[nodiscard]] double roll_step_bound(const ToolPath& path, int step, const Limits& limits, const Resolution& resolution);
 
 /// Distance of the tool from its straight step, at t = 1/4, 1/2, 3/4 of a joint-linear move, m.
 [[nodiscard]] std::array<double, 3> path_deviation(const Chain& chain, const ToolPath& path, int layer, const Config& q0,

@@ -31,6 +31,11 @@ class Redundancy {
   virtual void label(std::vector<TrajectoryRow>& rows) const = 0;
   /// Of the coordinate from a layer to the next, rad: what the lattice's window allows.
   [[nodiscard]] virtual double most_change() const = 0;
+  /// The same on one step, where it is less.
+  [[nodiscard]] virtual double most_change_on(int step) const {
+    static_cast<void>(step);
+    return most_change();
+  }
   /// Whether the coordinate is the roll of the tool.
   [[nodiscard]] virtual bool is_roll() const { return false; }
   /// What the coordinate may be at a layer, rad.

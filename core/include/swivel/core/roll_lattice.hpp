@@ -99,6 +99,9 @@ class RollLattice final : public Lattice {
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
+  [[nodiscard]] bool in_arm_window(int layer, int a, int b) const override;
+  /// From knot to knot; what the rows between turn is a matter of between().
+  [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b, const Config& q1) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
   [[nodiscard]] bool has_layers_between() const override { return true; }
   [[nodiscard]] Between between(int layer, int a, const Config& qa, int b, const Config& qb) const override;
