@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <numeric>
 #include <utility>
 
 #include "swivel/core/input_error.hpp"
@@ -43,6 +44,8 @@ LimitPlace place_of(Change change) {
       return place_of(&Limits::manipulability);
     case Change::kArmSlope:
       return place_of(&Limits::arm_slope);
+    case Change::kRollSlope:
+      return place_of(&Limits::roll_slope);
     case Change::kJointStep:
       return place_of(&Limits::joint_step);
     case Change::kToolSpeed:
@@ -62,6 +65,24 @@ LimitPlace place_of(Change change) {
 bool relaxed_downwards(Change change) {
   return change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability ||
          change == Change::kToolSpeed || change == Change::kToolTurnSpeed;
+}
+
+/// In what order changes are tried, the dear ones last: those that leave the lattice as large as it is, a tool that may turn, more
+/// edges, more nodes, and more edges by far.
+int dearness(Change change) {
+  switch (change) {
+    case Change::kFreeRoll:
+      return 1;
+    case Change::kArmSlope:
+    case Change::kRollSlope:
+      return 2;
+    case Change::kFiner:
+      return 3;
+    case Change::kJointStep:
+      return 4;
+    default:
+      return 0;
+  }
 }
 
 class Adviser {
@@ -87,15 +108,30 @@ class Adviser {
     move(problem_.path_frame);
     // Last, since it says something about the process, too.
     if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs) try_once({.change = Change::kFreeRoll});
-    std::stable_sort(tried_.begin(), tried_.end(), [](const Advice& a, const Advice& b) {
+    try_all();
+    std::stable_sort(advice_.begin(), advice_.end(), [](const Advice& a, const Advice& b) {
       if (a.outcome != b.outcome) return a.outcome < b.outcome;
       return a.outcome == Outcome::kFurther && a.reached_s > b.reached_s;
     });
-    return std::move(tried_);
+    return std::move(advice_);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  /// What by_cause() and run() have proposed: the dear trials last, and each for a third of the time that is left at most, so that
+  /// no one trial keeps others from being tried.
+  void try_all() {
+    std::vector<std::size_t> order(advice_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return dearness(advice_[a].change) < dearness(advice_[b].change); });
+    for (const std::size_t k : order) {
+      const Clock::time_point now = Clock::now();
+      trial_end_ = now + (end_ - now) / 3;
+      (this->*trials_[k])(advice_[k]);
+    }
+  }
 
   void by_cause(const Cause& cause) {
     switch (cause.kind) {
@@ -126,6 +162,10 @@ class Adviser {
         break;
       case Cause::Kind::kArmSlope:
         relax(Change::kArmSlope);
+        break;
+      case Cause::Kind::kRollSlope:
+        relax(Change::kRollSlope);
+        free_roll();
         break;
       case Cause::Kind::kJointStep:
         finer();
@@ -165,7 +205,8 @@ class Adviser {
     return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
   }
 
-  [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(end_ - Clock::now()).count(); }
+  /// Of the trial that is on.
+  [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(trial_end_ - Clock::now()).count(); }
 
   /// Plans the problem with the change; an outcome of kUnknown where the time is up.
   void plan_changed(Advice& advice) {
@@ -223,50 +264,58 @@ class Adviser {
     }
   }
 
-  [[nodiscard]] bool known(const Advice& advice) const {
-    return std::any_of(tried_.begin(), tried_.end(),
-                       [&](const Advice& other) { return other.change == advice.change && other.object == advice.object; });
+  using Trial = void (Adviser::*)(Advice&);
+  void propose(Advice advice, Trial trial) {
+    const bool known = std::any_of(advice_.begin(), advice_.end(), [&](const Advice& other) {
+      return other.change == advice.change && other.object == advice.object;
+    });
+    if (known) return;
+    advice_.push_back(std::move(advice));
+    trials_.push_back(trial);
   }
 
-  void try_once(Advice advice) {
-    if (known(advice)) return;
-    plan_changed(advice);
-    tried_.push_back(std::move(advice));
-  }
+  void try_once(Advice advice) { propose(std::move(advice), &Adviser::plan_changed); }
 
-  /// First the limit as far off as makes sense; where that solves, the strictest value that does, to a sixteenth of the way.
   void relax(Change change) {
     Advice advice{.change = change};
     advice.from = place_of(change).get(problem_.limits);
-    if (!advice.from || known(advice) || (relaxed_downwards(change) && *advice.from <= 0)) return;
+    if (!advice.from || (relaxed_downwards(change) && *advice.from <= 0)) return;
+    propose(std::move(advice), &Adviser::plan_relaxed);
+  }
+
+  /// First the limit as far off as makes sense; where that solves, the strictest value that does, to a sixteenth of the way.
+  void plan_relaxed(Advice& advice) {
     constexpr double kFactor = 8;
+    const Change change = advice.change;
     const bool to_zero = change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability;
     double strict = *advice.from;
     advice.to = to_zero ? 0 : relaxed_downwards(change) ? strict / kFactor : strict * kFactor;
     plan_changed(advice);
-    if (advice.outcome == Outcome::kSolved)
-      for (int k = 0; k < 4; ++k) {
-        Advice stricter = advice;
-        stricter.to = (strict + *advice.to) / 2;
-        plan_changed(stricter);
-        if (stricter.outcome == Outcome::kSolved)
-          advice = stricter;
-        else if (stricter.outcome == Outcome::kUnknown)
-          break;
-        else
-          strict = *stricter.to;
-      }
-    tried_.push_back(std::move(advice));
+    if (advice.outcome != Outcome::kSolved) return;
+    for (int k = 0; k < 4; ++k) {
+      Advice stricter = advice;
+      stricter.to = (strict + *advice.to) / 2;
+      plan_changed(stricter);
+      if (stricter.outcome == Outcome::kSolved)
+        advice = stricter;
+      else if (stricter.outcome == Outcome::kUnknown)
+        break;
+      else
+        strict = *stricter.to;
+    }
+  }
+
+  void move(const std::string& name) {
+    if (!is_object(name) || (problem_.start && name == problem_.path_frame)) return;
+    propose({.change = Change::kMoveObject, .object = name}, &Adviser::plan_moved);
   }
 
   /// The shortest way along an axis of the base by which the object helps: 5, 10, 20 mm.
-  void move(const std::string& name) {
-    Advice best{.change = Change::kMoveObject, .object = name};
-    if (!is_object(name) || known(best) || (problem_.start && name == problem_.path_frame)) return;
+  void plan_moved(Advice& best) {
     for (double way = Advice::kMostMove / 4; way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
       for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {1.0, -1.0}) {
-          Advice moved{.change = Change::kMoveObject, .object = name};
+          Advice moved{.change = Change::kMoveObject, .object = best.object};
           moved.offset[axis] = sign * way;
           plan_changed(moved);
           if (moved.outcome == Outcome::kUnknown) break;
@@ -276,15 +325,15 @@ class Adviser {
           if (better) best = std::move(moved);
         }
     if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();  // of no one way
-    tried_.push_back(std::move(best));
   }
 
   const Problem& problem_;
   const PlanResult& result_;
   PlanOptions options_;
   Planner trial_;
-  Clock::time_point end_;
-  std::vector<Advice> tried_;
+  Clock::time_point end_, trial_end_;
+  std::vector<Advice> advice_;  // in the order in which those that do as well are told
+  std::vector<Trial> trials_;   // of each
 };
 
 }  // namespace
