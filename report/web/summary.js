@@ -19,7 +19,7 @@ export function verdict(host, { result, rows, map }, jump) {
     const claim = { every_resolution: 'No path at any resolution', exact_tool: 'No path for a tool that follows exactly' }[d?.holds] ?? 'No path at this resolution';
     const none = claim + (held.length ? ` with ${held.map(({ joint, position, unit }) => `${joint} held at ${number(position)} ${unit}`).join(', ')}` : '');
     say(!d || d.reached_layer === null ? `${none}: the first layer has no valid node${d?.reason ? ` (${d.reason})` : ''}.`
-      : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), where ${d.reason} stops it.`);
+      : `${none}: every one ends by layer ${d.reached_layer} of ${map.layers - 1} (s = ${number(d.reached_s)} m), ${d.cause ? `where ${d.reason} stops it` : `why is ${d.reason}`}.`);
     if (d?.unreachable) say(`no joints within their limits reach ${d.unreachable.waypoint === null ? `layer ${d.unreachable.layer}` : `waypoint ${d.unreachable.waypoint}`}`, d.unreachable.s);
     if (helps.length) say(`What would help: ${helps[0].words}${helps.length > 1 ? `, or one of ${helps.length - 1} more` : ''}`);
     else say(result.advice ? 'Nothing that was tried helps' : 'What would help is planned with --advise 1');
