@@ -32,9 +32,11 @@ template <class... Values>
 
 class Completion {
  public:
+  /// `of_motion`: rows are samples in time, which stand anywhere between layers.
   Completion(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows, const Stated& stated,
-             const Budget& budget)
+             bool of_motion, const Budget& budget)
       : stated_(stated),
+        of_motion_(of_motion),
         budget_(budget),
         chain_(robot.arm().chain),
         class_(robot.arm_class()),
@@ -181,7 +183,8 @@ class Completion {
     return in_order;
   }
 
-  /// A row that has a layer's pose stands at the layer, unless other rows are so near that they might as well.
+  /// A row that has a layer's pose stands at the layer, unless it is of a motion, or other rows are so near that they might as
+  /// well.
   void move_to_layer(std::size_t k) {
     const double layer = std::round(place_[k]);
     if (place_[k] == layer || !places_.fits_at(tools_[k], layer)) return;
@@ -191,7 +194,7 @@ class Completion {
              Eigen::AngleAxisd(tools_[k].linear().transpose() * tools_[other].linear()).angle() < kNear;
     };
     const bool at_end = (k == 0 && layer == 0) || (k + 1 == rows_.size() && layer == path_.size() - 1);
-    const bool alone = (k == 0 || !is_near(k - 1)) && (k + 1 == rows_.size() || !is_near(k + 1));
+    const bool alone = !of_motion_ && (k == 0 || !is_near(k - 1)) && (k + 1 == rows_.size() || !is_near(k + 1));
     if (at_end || alone || std::abs(place_[k] - layer) * path_.layer(static_cast<int>(layer)).step_length <= kSameS)
       place_[k] = layer;
   }
@@ -281,6 +284,7 @@ class Completion {
 
   static constexpr double kSameS = 1e-9;  // m
   Stated stated_;
+  bool of_motion_;
   const Budget& budget_;
   const Chain& chain_;
   const ArmClass& class_;
@@ -301,12 +305,13 @@ namespace {
 
 /// On the problem's own path; or on the rounded one of motions, where more of the rows are on that.
 std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Problem& problem,
-                                          const std::vector<TrajectoryRow>& rows, const Stated& stated, const Budget& budget) {
+                                          const std::vector<TrajectoryRow>& rows, const Stated& stated, bool of_motion,
+                                          const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
-  auto own = std::make_unique<Completion>(robot, problem, rows, stated, budget);
+  auto own = std::make_unique<Completion>(robot, problem, rows, stated, of_motion, budget);
   if (problem.smooth || own->off_path() == 0) return own;
-  auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated, budget);
+  auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated, of_motion, budget);
   return rounded->off_path() < own->off_path() ? std::move(rounded) : std::move(own);
 }
 
@@ -314,14 +319,14 @@ std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Prob
 
 std::vector<TrajectoryRow> complete_rows(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows,
                                          const Stated& stated, const Budget& budget) {
-  return stated.rows() ? rows : completion_of(robot, problem, rows, stated, budget)->rows();
+  return stated.rows() ? rows : completion_of(robot, problem, rows, stated, false, budget)->rows();
 }
 
 std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem& problem, std::vector<TimedRow> rows,
                                       const Stated& stated, const Budget& budget) {
   std::vector<TrajectoryRow> places;
   for (const TimedRow& row : rows) places.push_back(row.row);
-  places = complete_rows(robot, with_motion_defaults(problem), std::move(places), stated, budget);
+  if (!stated.rows()) places = completion_of(robot, with_motion_defaults(problem), places, stated, true, budget)->rows();
   for (std::size_t k = 0; k < rows.size(); ++k) rows[k].row = places[k];
   if (rows.size() < 2 || (stated.v && stated.a && stated.last_joint)) return rows;
   const std::vector<RowRates> rates = rates_of_joints(rows);
@@ -338,7 +343,7 @@ std::vector<TimedRow> complete_motion(const PreparedRobot& robot, const Problem&
 
 std::vector<TrajectoryRow> rows_at_layers(const PreparedRobot& robot, const Problem& problem,
                                           const std::vector<TrajectoryRow>& rows, const Stated& stated, const Budget& budget) {
-  return completion_of(robot, problem, rows, stated, budget)->at_layers();
+  return completion_of(robot, problem, rows, stated, false, budget)->at_layers();
 }
 
 }  // namespace swivel
