@@ -14,7 +14,7 @@ inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20;  ///< a te
 inline constexpr std::size_t kMostTableBytes = std::size_t{256} << 20;
 inline constexpr std::size_t kMostXmlBytes = std::size_t{32} << 20;  ///< URDF, SRDF, DAE
 inline constexpr std::size_t kMostYamlBytes = std::size_t{4} << 20;
-inline constexpr std::size_t kMostYamlMotionBytes = std::size_t{64} << 20;
+inline constexpr std::size_t kMostYamlMotionBytes = std::size_t{32} << 20;
 inline constexpr std::size_t kMostCertificateBytes = std::size_t{32} << 20;
 
 /// The whole file: regular, or a FIFO, of at most `most` bytes. `kind` completes "allowed is a readable ...".
