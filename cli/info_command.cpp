@@ -73,12 +73,12 @@ ArmGuess choose_arm(const RobotModel& robot, const InfoArguments& arguments, std
   }
   if (guesses.arms.empty()) {
     const auto& row = guesses.longest_row;
-    throw InputError(robot.source + ": no arm of " + (arguments.roll ? "six" : "seven or six") + " joints" +
-                     (base.empty() ? "" : " above '" + base + "'") +
-                     (row.empty() ? ": no joint turns"
-                                  : ": the longest row of joints that turn has " + std::to_string(row.size()) + ", from '" +
-                                        row.front() + "' to '" + row.back() + "'") +
-                     ": allowed are so many joints in a row, or --base and --tip");
+    throw InputError(robot.source, std::string("no arm of ") + (arguments.roll ? "six" : "seven or six") + " joints" +
+                                       (base.empty() ? "" : " above '" + base + "'") +
+                                       (row.empty() ? ": no joint turns"
+                                                    : ": the longest row of joints that turn has " + std::to_string(row.size()) +
+                                                          ", from '" + row.front() + "' to '" + row.back() + "'") +
+                                       ": allowed are so many joints in a row, or --base and --tip");
   }
   others.assign(guesses.arms.begin() + 1, guesses.arms.end());
   return guesses.arms.front();

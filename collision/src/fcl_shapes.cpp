@@ -41,7 +41,7 @@ struct PrimitiveVisitor {
 }  // namespace
 
 MeshModel::MeshModel(MeshPtr mesh) : mesh_(std::move(mesh)), with_area_(triangles_with_area(*mesh_)) {
-  if (with_area_.empty()) throw InputError(mesh_->source + ": mesh: no triangle with an area: allowed is at least one");
+  if (with_area_.empty()) throw InputError(mesh_->source, "mesh: no triangle with an area: allowed is at least one");
 }
 
 const TriangleTree& MeshModel::triangles() const {

@@ -21,8 +21,8 @@ ArmClass classify(const Chain& chain, const std::string& source) {
     result.kind = ArmKind::kSrs;
   } catch (const NotSrs& error) {
     if (chain.free_roll)
-      throw InputError(source + ": path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist; here " +
-                       error.why());
+      throw InputError(
+          source, "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist; here " + error.why());
     other(error.why());
   }
   return result;

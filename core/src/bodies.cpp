@@ -94,11 +94,11 @@ std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm
   }
   for (const AttachedBody& body : attached) {
     if (robot.find_link(body.name) >= 0)
-      throw InputError(robot.source + ": robot.attached: '" + body.name + "' is a link's name: choose another");
+      throw InputError(robot.source, "robot.attached: '" + body.name + "' is a link's name: choose another");
     const int link = robot.find_link(body.link);
     if (link < 0)
-      throw InputError(robot.source + ": robot.attached." + body.name + ".link: unknown link '" + body.link +
-                       "': allowed are the links of this file");
+      throw InputError(robot.source, "robot.attached." + body.name + ".link: unknown link '" + body.link +
+                                         "': allowed are the links of this file");
     const LinkPlacement& placement = arm.links[static_cast<std::size_t>(link)];
     bodies.push_back({body.name, link, true, placement.group, body.shape, placement.pose * body.pose});
   }

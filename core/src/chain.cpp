@@ -45,7 +45,7 @@ Pose joint_motion(const Joint& joint, double position) {
 }
 
 [[noreturn]] void fail(const RobotModel& robot, const std::string& what) {
-  throw InputError(robot.source + ": " + what);
+  throw InputError(robot.source, what);
 }
 
 /// The way through the tree of links from base to tip: up to the link that both hang from, which may be the base itself, then down.

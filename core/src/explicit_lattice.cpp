@@ -15,7 +15,7 @@ ExplicitLattice::ExplicitLattice(const Chain& chain, const ToolPath& path, const
     throw std::invalid_argument("explicit lattice: " + std::to_string(points_.size()) +
                                 " layers of nodes: allowed are as many as the path has, " + std::to_string(path.size()));
   if (limits_.step_error)
-    throw InputError(problem.source + ": limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
+    throw InputError(problem.source, "limits.step_error: needs the closed form of an S-R-S arm: allowed is null");
   for (std::size_t j = 0; j < kDof; ++j) continuous_[j] = continuous_[j] || circles[j];
   for (const auto& layer : points_) nodes_ += static_cast<std::int64_t>(layer.size());
 }

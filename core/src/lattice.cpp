@@ -65,16 +65,18 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     const JointLimit& limit = chain.limit[k];
     const bool roll = chain.roll && k + 1 == kDof;
     if (!roll && (timed || cost_.metric == CostMetric::kTime) && limit.velocity <= 0)
-      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
-                       chain.joint_names[k] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+      throw InputError(problem.source, std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
+                                           chain.joint_names[k] +
+                                           "' has no speed limit in the URDF: allowed are robots whose joints all have one");
     continuous_[k] = limit.continuous || limit.wide();
     if (!roll && !continuous_[k] && limit.lower + limits_.joint_margin > limit.upper - limits_.joint_margin)
       throw InputError(problem.source + ": limits.joint_margin: leaves no range for joint '" + chain.joint_names[k] +
                        "': allowed is at most " + std::to_string((limit.upper - limit.lower) / 2));
     cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k] : roll ? 0 : 1 / limit.velocity;
     if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
-      throw InputError(problem.source + ": joint '" + chain.joint_names[k] +
-                       "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
+      throw InputError(problem.source,
+                       "joint '" + chain.joint_names[k] +
+                           "': its speed limit in the URDF does not suit cost.metric: time: allowed are 1e-6 to 1e6 rad/s");
   }
   double most_costly = *std::max_element(cost_scale_.begin(), cost_scale_.end());
   if (problem.roll && cost_.roll > 0) {

@@ -30,8 +30,8 @@ std::unique_ptr<Lattice> make_lattice(const Chain& chain, const ArmClass& arm, c
   if (chain.free_roll && !path.unturned()) return RollLattice::make(chain, *arm.srs, path, problem, budget);
   if (arm.kind == ArmKind::kSrs) return std::make_unique<SrsLattice>(chain, *arm.srs, path, problem, budget);
   if (problem.limits.arm_slope != Limits().arm_slope)
-    throw InputError(problem.source +
-                     ": limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
+    throw InputError(problem.source,
+                     "limits.arm_slope: the arm has no arm angle, since it is not S-R-S: allowed is to leave it out");
   return std::make_unique<ArcLattice>(chain, arm.lock, path, problem, budget);
 }
 

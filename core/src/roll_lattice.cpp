@@ -41,7 +41,7 @@ bool keeps(const std::array<double, 3>& deviation, const std::optional<double>& 
 std::unique_ptr<RollLattice> RollLattice::make(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem,
                                                const Budget& budget, std::optional<double> last_joint) {
   if (problem.limits.step_error)
-    throw InputError(problem.source + ": limits.step_error: allowed without path.roll, or for arms of six joints");
+    throw InputError(problem.source, "limits.step_error: allowed without path.roll, or for arms of six joints");
   return std::unique_ptr<RollLattice>(
       new RollLattice(chain, arm, path, problem, budget, knots_along(path, problem.resolution), last_joint));
 }
@@ -112,8 +112,9 @@ RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& 
   const double needed = 24.0 * static_cast<double>(nodes());
   if (static_cast<double>(rolls()) * width_ > 1e9 || !fits_in_memory(needed))
     throw InputError(
-        problem.source + ": resolution: " + std::to_string(nodes()) +
-        " nodes of roll and arm angle are more than this machine has memory for: allowed are larger droll, dphi or knot");
+        problem.source,
+        "resolution: " + std::to_string(nodes()) +
+            " nodes of roll and arm angle are more than this machine has memory for: allowed are larger droll, dphi or knot");
 
   const int angles = at_roll(0).angles();
   for (int k = 0; k + 1 < layers(); ++k) {
@@ -171,9 +172,9 @@ void RollLattice::find_near(const Problem& problem) {
   if (!turns && !windows_of_roll_ && limits_.roll_slope * problem.resolution.knot < droll) {
     char text[200];
     std::snprintf(text, sizeof text,
-                  ": limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
+                  "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
                   droll / problem.resolution.knot);
-    throw InputError(problem.source + text);
+    throw InputError(problem.source, text);
   }
 }
 

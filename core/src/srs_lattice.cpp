@@ -77,17 +77,19 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
       images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.misfit[joint]);
     }
     if (!(std::abs(images.base) <= kFarthest))
-      throw InputError(problem.source + ": joint '" + chain.joint_names[j] +
-                       "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
+      throw InputError(problem.source, "joint '" + chain.joint_names[j] +
+                                           "': its limits lie too far from 0: allowed are ranges that begin within 1e6 rad");
     if (images.count > 1) wound += (wound.empty() ? "" : ", ") + chain.joint_names[j] + ": " + std::to_string(images.count);
     windings *= images.count;
   }
   if (windings > kMostWindings) {
     char number[32];
     std::snprintf(number, sizeof number, "%.4g", windings);
-    throw InputError(problem.source + ": joint limits allow " + number + " windings (" + wound +
-                     "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
-                     "counts as continuous");
+    throw InputError(
+        problem.source,
+        std::string("joint limits allow ") + number + " windings (" + wound +
+            "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
+            "counts as continuous");
   }
   windings_ = static_cast<int>(windings);
 
@@ -98,9 +100,9 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
   if (width > 1e8 || !fits_in_memory(needed))
-    throw InputError(problem.source + ": resolution: " + std::to_string(layers()) + " layers x " +
-                     std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) + ", this machine has " +
-                     gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
+    throw InputError(problem.source, "resolution: " + std::to_string(layers()) + " layers x " +
+                                         std::to_string(static_cast<long long>(width)) + " nodes need " + gigabytes(needed) +
+                                         ", this machine has " + gigabytes(machine_memory()) + ": allowed are larger ds or dphi");
   angles_ = static_cast<int>(wanted);
   window_ = static_cast<int>(
       std::min<double>(angles_ / 2, std::max(1.0, std::floor(limits_.arm_slope * resolution.ds / resolution.dphi + 1e-9))));

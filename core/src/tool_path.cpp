@@ -97,7 +97,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     return X;
   };
   const auto travel_of = [&](double length, double angle) { return std::max(length, angle * resolution.ds / resolution.dalpha); };
-  if (waypoints.empty()) throw InputError(source + ": path: no waypoints: allowed are at least two");
+  if (waypoints.empty()) throw InputError(source, "path: no waypoints: allowed are at least two");
   // The poses that differ, each with its row and with the travel up to it.
   struct Stop {
     Waypoint waypoint;
@@ -115,13 +115,13 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
         if (!window) window = PathLayer().window;
         window = Roll{std::max(window->lower, to.roll->lower), std::min(window->upper, to.roll->upper)};
         if (!(window->lower <= window->upper))
-          throw InputError(source + ": path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
+          throw InputError(source, "path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
                            " are one pose, but their rolls have nothing in common: allowed are roll_min and roll_max that overlap");
       }
       continue;
     }
     if (!turn_between(from.orientation, to.orientation, turns_freely))
-      throw InputError(source + ": path: waypoint " + std::to_string(k) +
+      throw InputError(source, "path: waypoint " + std::to_string(k) +
                        ": turns by 180 deg from the one before: which way is undefined: allowed is less, by a waypoint in "
                        "between; or, where it turns about the tool's z axis alone, path.roll: free");
     stops.push_back({to, static_cast<int>(k), stops.back().travel + travel_of(length, angle)});
@@ -147,8 +147,8 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     const double angle = rotation.norm();
     const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
     if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
-      throw InputError(source + ": resolution.ds: " + std::to_string(resolution.ds) +
-                       " cuts the path into more than 2e6 layers: allowed are larger steps");
+      throw InputError(source, "resolution.ds: " + std::to_string(resolution.ds) +
+                                   " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
     const double begun = layers_.back().travel, travel = travel_of(length, angle);
     segments_.push_back({static_cast<int>(layers_.size()) - 1, begun, layers_.back().tool, (to.position - from.position) / travel,
@@ -177,7 +177,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     return first + count;
   });
   if (waypoints[0].roll) spread_windows();
-  if (layers_.size() < 2) throw InputError(source + ": path: all waypoints are one pose: allowed are at least two distinct ones");
+  if (layers_.size() < 2) throw InputError(source, "path: all waypoints are one pose: allowed are at least two distinct ones");
   if (smooth) {
     // Where waypoints are dense, corners have no room to be rounded: several segments are made one.
     std::vector<Segment> merged;
@@ -326,9 +326,8 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   const double s = start_at.value_or(0), length = layers_.back().s;
   const auto refuse = [&] {
     char text[120];
-    std::snprintf(text, sizeof text, ": start_at: is %.9g m: allowed is from 0 to before the end of the path, at %.9g m", s,
-                  length);
-    throw InputError(source + text);
+    std::snprintf(text, sizeof text, "start_at: is %.9g m: allowed is from 0 to before the end of the path, at %.9g m", s, length);
+    throw InputError(source, text);
   };
   if (!(s >= 0 && s <= length + kOnLayer)) refuse();
   const auto gap = [&](const Pose& pose) {

@@ -232,24 +232,26 @@ Schema vary() {
 
 const Schema& problem_schema() {
   const Task d;
-  static const Schema schema =
-      section("problem",
-              {
-                  {"robot", robot(), "", required(), "the [robot](#robot)", "a section with urdf, base_link, tip_link"},
-                  {"path", path(), "", required(), "the [path](#path) of the tool", "a section with waypoints or file"},
-                  {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
-                  {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
-                  {"limits", limits(), "", optional(), "what is to be [kept](#limits)"},
-                  {"start", section("", {{"joints", numbers(kDof, kFinite), "rad", required(), "base to tip"}}), "",
-                   in_words("Swivel chooses"), "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
-                  {"start_at", or_null(number(kExtent)), "m", in_words("the beginning"),
-                   "where on the path the `start` stands, along the whole of it"},
-                  {"start_tolerance", or_null(number(kStartTolerance)), "m, rad", otherwise(d.start_tolerance),
-                   "how far from the path the tool may stand at the `start`"},
-                  {"cost", cost(), "", optional(), "what is [summed](#cost) over the steps of the path"},
-                  {"refine", refine(), "", optional(), "what [refining](#refine) weighs and keeps"},
-                  {"vary", vary(), "", optional(), "uniform random offsets of objects, for [campaigns](#vary)"},
-              });
+  static const Schema schema = section(
+      "problem",
+      {
+          {"robot", robot(), "", required(), "the [robot](#robot)", "a section with urdf, base_link, tip_link"},
+          {"path", path(), "", required(), "the [path](#path) of the tool", "a section with waypoints or file"},
+          {"scene", scene(), "", optional(), "the [bodies](#scene) that stand around"},
+          {"resolution", resolution(), "", optional(), "how fine the [lattice](#resolution) is"},
+          {"limits", limits(), "", optional(), "what is to be [kept](#limits)"},
+          {"start",
+           section("", {{"joints", numbers(kDof, kFinite), "rad", required(),
+                         "base to tip; of six joints the roll of the tool is the seventh"}}),
+           "", in_words("Swivel chooses"), "`{joints: [...]}`, seven numbers (rad): the configuration at the first waypoint"},
+          {"start_at", or_null(number(kExtent)), "m", in_words("the beginning"),
+           "where on the path the `start` stands, along the whole of it"},
+          {"start_tolerance", or_null(number(kStartTolerance)), "m, rad", otherwise(d.start_tolerance),
+           "how far from the path the tool may stand at the `start`"},
+          {"cost", cost(), "", optional(), "what is [summed](#cost) over the steps of the path"},
+          {"refine", refine(), "", optional(), "what [refining](#refine) weighs and keeps"},
+          {"vary", vary(), "", optional(), "uniform random offsets of objects, for [campaigns](#vary)"},
+      });
   return schema;
 }
 

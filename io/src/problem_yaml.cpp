@@ -78,11 +78,11 @@ Sphere sphere(const YamlValue& value) {
   return {value.section().require("radius").number()};
 }
 
-/// Calls `read`; what it finds wrong in another file is reported with the key that named that file.
+/// Calls `read` with another file; what it finds wrong there is reported with the key that named the file.
 template <class Read>
-auto with_key(const YamlValue& key, const Read& read) {
+auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
   try {
-    return read();
+    return read(file);
   } catch (const InputError& error) {
     throw InputError(key.where() + ": " + error.what());
   }
@@ -138,8 +138,8 @@ class ProblemReader {
       for (const YamlValue& link : without->items()) options.without.push_back(link.text());
     if (const auto limits = root_.find_filled("limits"))
       if (const auto soft = limits->section().find("soft_limits")) options.soft_limits = word(*soft, {true, false});
-    const UrdfRobot robot = with_key(urdf, [&] { return load_urdf(resolve(urdf), packages, options); });
-    if (srdf) with_key(*srdf, [&] { load_srdf({resolve(*srdf)}, *robot.model, robot.left_out); });
+    const UrdfRobot robot = with_key(urdf, resolve(urdf), [&](const fs::path& file) { return load_urdf(file, packages, options); });
+    if (srdf) with_key(*srdf, resolve(*srdf), [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
     problem_.model = robot.model;
     problem_.base_link = link_name(base);
     problem_.tip_link = link_name(tip);
@@ -201,9 +201,9 @@ class ProblemReader {
     if (kind == "cylinder") return round_shape<Cylinder>(value);
     if (kind == "capsule") return round_shape<Capsule>(value);
     if (kind == "sphere") return sphere(value);
-    const fs::path file = resolve(value);
+    const fs::path mesh = resolve(value);
     const Vector3d factors = scale ? mesh_scale(*scale) : Vector3d::Ones();
-    return with_key(value, [&] { return load_mesh(file, factors, meshes_); });
+    return with_key(value, mesh, [&](const fs::path& file) { return load_mesh(file, factors, meshes_); });
   }
 
   static Vector3d mesh_scale(const YamlValue& value) {
@@ -252,7 +252,7 @@ class ProblemReader {
     }
     const auto [key, poses] = *section.chosen("waypoints");
     if (key == "file") {
-      problem_.waypoints = with_key(poses, [&, &file = poses] { return load_path(resolve(file)); });
+      problem_.waypoints = with_key(poses, resolve(poses), [](const fs::path& file) { return load_path(file); });
     } else {
       for (const YamlValue& item : poses.items()) {
         problem_.waypoints.push_back(waypoint(item));
@@ -351,20 +351,30 @@ class ProblemReader {
     if (const auto edges = section.find("edges")) limits.edges = word(*edges, {EdgeMode::kContinuous, EdgeMode::kNodes});
   }
 
+  /// One number for each joint of the arm, base to tip. An arm of six joints has a seventh number, for the roll of the tool.
+  [[nodiscard]] std::vector<double> joint_numbers(const YamlValue& value) const {
+    if (problem_.roll && value.is_sequence() && value.items().size() == kDof - 1 && arm().chain.roll)
+      value.fail("has 6 entries",
+                 "a list of 7 numbers: one for each of the six joints, base to tip, and a seventh for the roll of the tool");
+    return value.numbers();
+  }
+
+  [[nodiscard]] ArmModel arm() const {
+    return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold, problem_.tool, problem_.roll);
+  }
+
   /// For the limit of an arm angle, where that is given.
   void require_arm_angle() const {
     const auto limits = root_.find_filled("limits");
     const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
     if (!slope) return;
-    const ArmModel arm =
-        build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold, problem_.tool, problem_.roll);
-    if (!classify(arm.chain, problem_.model->source).srs)
+    if (!classify(arm().chain, problem_.model->source).srs)
       slope->fail("is given, but the arm has no arm angle, since it is not S-R-S", "no such key for this arm");
   }
 
   void read_start(const YamlValue& value) {
     const YamlValue joints = value.section().require("joints");
-    problem_.start = Config::Map(joints.numbers().data());
+    problem_.start = Config::Map(joint_numbers(joints).data());
   }
 
   void read_start_place() {
@@ -382,7 +392,7 @@ class ProblemReader {
     if (const auto metric = section.find("metric"))
       problem_.cost.metric = word(*metric, {CostMetric::kL2, CostMetric::kMax, CostMetric::kTime});
     if (const auto weights = section.find_filled("weights")) {
-      const std::vector<double> values = weights->numbers();
+      const std::vector<double> values = joint_numbers(*weights);
       for (std::size_t k = 0; k < values.size(); ++k)
         if (!weight_allowed(values[k])) weights->items()[k].fail("is " + format_double(values[k]), kAllowedWeights);
       std::copy(values.begin(), values.end(), problem_.cost.weights.begin());
@@ -414,14 +424,14 @@ class ProblemReader {
   }
 
   /// A number for all joints, or one each.
-  static void set(const YamlSection& section, const char* key, std::optional<std::array<double, kDof>>& target) {
+  void set(const YamlSection& section, const char* key, std::optional<std::array<double, kDof>>& target) const {
     const auto value = section.find(key);
     if (!value) return;
     target.reset();
     if (value->is_null()) return;
     target.emplace();
     if (!value->is_sequence()) return target->fill(value->number());
-    const std::vector<double> values = value->numbers();
+    const std::vector<double> values = joint_numbers(*value);
     std::copy(values.begin(), values.end(), target->begin());
   }
 

@@ -46,8 +46,8 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
   const std::shared_ptr<const PreparedRobot> prepared(std::shared_ptr<void>(), &robot);
   const Planner checked(prepared, problem);
   if (problem.vary.empty() && options.episodes > 1)
-    throw InputError(problem.source +
-                     ": vary: missing, so that all episodes would be the same: allowed are a key vary, or one episode");
+    throw InputError(problem.source,
+                     "vary: missing, so that all episodes would be the same: allowed are a key vary, or one episode");
   const std::uint64_t size = options.shard.size(options.episodes);
   if (size > static_cast<std::uint64_t>(std::numeric_limits<int>::max()))
     throw InputError("episodes: too many for one shard: allowed are 2147483647");

@@ -46,15 +46,15 @@ PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem, 
 
 const SrsArm& PreparedRobot::srs(const char* what) const {
   if (!arm_.kind.srs)
-    throw InputError(basis_.model->source + ": " + arm_.kind.not_srs + ": allowed for " + what +
-                     " are arms with a spherical shoulder and wrist");
+    throw InputError(basis_.model->source,
+                     arm_.kind.not_srs + ": allowed for " + what + " are arms with a spherical shoulder and wrist");
   return *arm_.kind.srs;
 }
 
 void PreparedRobot::require_prepared_for(const Problem& problem) const {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
-      throw InvalidArgument(problem.source + ": " + what +
+      throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +
                             " differs from what the robot was prepared for: allowed is a PreparedRobot made of this problem");
   };
   require(problem.model == basis_.model, "model");

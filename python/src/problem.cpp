@@ -137,8 +137,8 @@ void choose_links(Robot& robot, const std::optional<std::string>& base, const st
   const auto fits = [&](const ArmGuess& arm) { return (arm.joints == 6) == roll; };
   const auto found = std::find_if(arms.begin(), arms.end(), fits);
   if (arms.empty() || (roll && found == arms.end()))
-    throw InputError(model.source + ": no arm of " + (roll ? "six" : "seven or six") +
-                     " joints in a row was found: allowed is one, or base and tip by name");
+    throw InputError(model.source, std::string("no arm of ") + (roll ? "six" : "seven or six") +
+                                       " joints in a row was found: allowed is one, or base and tip by name");
   const ArmGuess& arm = found == arms.end() ? arms.front() : *found;
   robot.tip_link = arm.tip;
   if (!base) robot.base_link = arm.base;

@@ -24,6 +24,8 @@ TEST_P(BadProblem, IsOneLineThatSaysWhatIsAllowed) {
   const std::string message = input_error([&] { (void)load_problem(file); });
   expect_message(message, GetParam().needles);
   expect_message(message, {file.string() + ":"});
+  const std::string prefix = file.string() + ":";
+  EXPECT_EQ(message.find(prefix, prefix.size()), std::string::npos) << "named twice: " << message;
 }
 
 std::string object(const std::string& text) {
@@ -68,6 +70,13 @@ const Case kCases[] = {
     {"PathEmpty", "path", "{}", {"path", "exactly one of waypoints, file"}},
     {"PathBoth", "path", "{file: weld.csv, waypoints: [{xyz: [0, 0, 0]}, {xyz: [1, 0, 0]}]}", {"path.file", "exactly one"}},
     {"PathFrameUnknown", "path", "{frame: door, file: weld.csv}", {"path.frame", "'door'", "base_link"}},
+    {"PathFileNotAName", "path", "{file: [weld.csv]}", {"path.file", "a list is not a name"}},
+    {"UrdfNotAName",
+     "robot",
+     "{urdf: {file: arm.urdf}, base_link: base_link, tip_link: link_7}",
+     {"robot.urdf", "a map is not a name"}},
+    {"SrdfNotAName", "robot", robot_with("srdf: [arm.srdf]"), {"robot.srdf", "a list is not a name"}},
+    {"MeshNotAName", "scene", "[{name: a, mesh: [box.stl]}]", {"scene[0].mesh", "a list is not a name"}},
     {"PathFileAbsent", "path", "{file: none.csv}", {"path.file", "none.csv"}},
     {"OneWaypoint", "path", "{waypoints: [{xyz: [0, 0, 0]}]}", {"path.waypoints", "two"}},
     {"WaypointWithoutPosition", "path", waypoints("{rpy: [0, 0, 0]}"), {"path.waypoints[1].xyz", "missing"}},

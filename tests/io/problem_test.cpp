@@ -255,5 +255,25 @@ TEST(ProblemFile, OneMeshForManyObjects) {
   EXPECT_EQ(std::get<MeshPtr>(problem.scene[0].shape), std::get<MeshPtr>(problem.scene[1].shape));
 }
 
+/// Six numbers for six joints: the seventh is the roll.
+TEST(ProblemFile, ListsOfASixJointArmSayThatTheSeventhIsTheRoll) {
+  const ProblemFolder folder;
+  const ProblemFolder::Sections six = {{"robot", "{urdf: ../robots/arm.urdf, base_link: base_link, tip_link: link_6}"},
+                                       {"path", "{file: weld.csv, roll: free}"}};
+  EXPECT_TRUE(folder.load(six).roll);
+  for (const auto& [section, text, key] : {std::tuple("start", "{joints: [0, 0, 0, 0, 0, 0]}", "start.joints"),
+                                           std::tuple("cost", "{weights: [1, 1, 1, 1, 1, 1]}", "cost.weights"),
+                                           std::tuple("limits", "{joint_speed: [1, 1, 1, 1, 1, 1]}", "limits.joint_speed"),
+                                           std::tuple("limits", "{joint_jerk: [1, 1, 1, 1, 1, 1]}", "limits.joint_jerk")}) {
+    ProblemFolder::Sections changes = six;
+    changes[section] = text;
+    const std::string message = input_error([&] { (void)folder.load(changes); });
+    expect_message(message, {key, "6 entries", "seventh for the roll of the tool"});
+  }
+  ProblemFolder::Sections seven = ProblemFolder::good();
+  seven["start"] = "{joints: [0, 0, 0, 0, 0, 0]}";
+  EXPECT_EQ(input_error([&] { (void)folder.load(seven); }).find("roll"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace swivel::io::test

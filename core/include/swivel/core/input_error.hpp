@@ -10,6 +10,9 @@ namespace swivel {
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+  /// "<source>: <what>", or `what` alone of things made in memory, which have no source.
+  InputError(const std::string& source, const std::string& what)
+      : std::runtime_error(source.empty() ? what : source + ": " + what) {}
 };
 
 }  // namespace swivel

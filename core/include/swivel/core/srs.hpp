@@ -59,7 +59,7 @@ struct SrsArm {
 class NotSrs : public InputError {
  public:
   NotSrs(const std::string& source, const std::string& why, const std::string& allowed)
-      : InputError(source + ": not an S-R-S arm: " + why + ": allowed are " + allowed), why_(why) {}
+      : InputError(source, "not an S-R-S arm: " + why + ": allowed are " + allowed), why_(why) {}
   /// Which axes miss each other, and by how much.
   [[nodiscard]] const std::string& why() const { return why_; }
 
