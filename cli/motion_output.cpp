@@ -64,30 +64,30 @@ void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint
       if (peak.ratio > most->ratio) most = &peak, rate = one;
   std::printf(
       "motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool within %.2g um of its path "
-      "between; %s of '%s' at %.0f %% of its limit, s = %.4f m",
-      motion.duration, 1e3 * aftermath.timing.speed, motion.ideal, motion.rows.size(), motion.rate, 1e6 * motion.between_position,
-      to_string(rate), joint_names[static_cast<std::size_t>(most->joint)].c_str(), 100 * most->ratio, most->s);
+      "between; %s of '%s' at %s of its limit, s = %.4f m",
+      motion.duration, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate, 1e6 * motion.between_position,
+      to_string(rate), joint_names[static_cast<std::size_t>(most->joint)].c_str(), percent(most->ratio).c_str(), most->s);
   if (!motion.slow.empty()) std::printf("; slower on %zu stretch%s", motion.slow.size(), motion.slow.size() == 1 ? "" : "es");
   if (!motion.stops.empty()) std::printf("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
   std::printf("\n");
   for (const std::string& warning : motion.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
 }
 
-void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names) {
+void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {
   const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
   std::printf("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration,
-              1e3 * options.speed, motion.ideal, motion.rows.size(), motion.rate);
+              1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
   for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
     const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
     const TimedPath::Peak* most = &peaks[0];
     for (const TimedPath::Peak& peak : peaks)
       if (peak.ratio > most->ratio) most = &peak;
-    std::printf("  %s at most %.0f %% of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), 100 * most->ratio,
+    std::printf("  %s at most %s of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), percent(most->ratio).c_str(),
                 name(most->joint), most->s, most->t);
   }
   for (const TimedPath::Slow& slow : motion.slow) {
-    std::printf("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %.0f %% of the speed at least, for the %s of '%s'",
-                slow.from_s, slow.to_s, slow.from_t, slow.to_t, 100 * slow.share, to_string(slow.reason), name(slow.joint));
+    std::printf("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %s of the speed at least, for the %s of '%s'", slow.from_s,
+                slow.to_s, slow.from_t, slow.to_t, percent(slow.share).c_str(), to_string(slow.reason), name(slow.joint));
     if (!slow.singular.empty())
       std::printf("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
     std::printf("\n");

@@ -27,6 +27,6 @@ void require_motion_format(const std::string& file);
 void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names);
 
 /// What is worth knowing of a motion, on standard output; warnings on standard error.
-void print_motion(const TimedPath& motion, const TimingOptions& options, const io::JointNames& joint_names);
+void print_motion(const TimedPath& motion, const io::JointNames& joint_names);
 
 }  // namespace swivel::cli

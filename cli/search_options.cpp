@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "commands.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/report/page.hpp"
 
@@ -54,6 +55,10 @@ void LatticeOptions::apply(Problem& problem) const {
       throw InputError("--edges: unknown mode '" + edges + "': allowed are continuous, nodes");
     problem.limits.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   }
+}
+
+std::string percent(double share) {
+  return formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share);
 }
 
 std::string shortest(double value) {

@@ -34,6 +34,9 @@ struct SearchOptions : LatticeOptions {
 /// The shortest digits that read back as the same number.
 [[nodiscard]] std::string shortest(double value);
 
+/// A share in words, as "37 %" or "0.042 %": never 0 of what is more.
+[[nodiscard]] std::string percent(double share);
+
 /// A word as a POSIX shell reads it back.
 [[nodiscard]] std::string quoted(const std::string& word);
 

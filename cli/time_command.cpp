@@ -80,7 +80,7 @@ int run(const TimeArguments& arguments) {
   else if (timed->failure)
     std::printf("not executable: s = %.4f m: %s\n", timed->failure->s, timed->failure->reason.c_str());
   else if (!arguments.quiet && !outputs.takes_standard_output())
-    print_motion(*timed->motion, options, names);
+    print_motion(*timed->motion, names);
   flush_standard_output();
   report_removed(outputs.commit(), !timed ? "the work was stopped" : "there is no motion now");
   return !timed ? kStopped : timed->motion ? kOk : kNo;

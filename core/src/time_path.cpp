@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/make_lattice.hpp"
 
 namespace swivel {
@@ -445,11 +446,14 @@ class Samples {
         options_(&options),
         pieces_(&pieces),
         budget_(&budget),
-        near_(1 / options.rate <= 4e-3 * (1 + 1e-9)) {}
+        near_(1 / options.rate <= 4e-3 * (1 + 1e-9)) {
+    for (const Piece& piece : pieces) for_tool_.emplace_back(piece.places().size(), 1);
+  }
 
   std::optional<NoMotion> take(TimedPath& out) {
     out.rows.clear();
     travel_.clear();
+    tool_.clear();
     asked_.clear();
     double before = 0;
     const double dt = 1 / options_->rate;
@@ -477,7 +481,9 @@ class Samples {
           return NoMotion{row.row.s, "the tool would turn further than its waypoints allow between layers"};
         out.rows.push_back(row);
         travel_.push_back(at.x);
-        asked_.push_back({at.speed / d.asked, p, d.node});
+        tool_.push_back(motion_->path().at_travel(at.x));
+        const double share = at.speed / d.asked, slowed = slowed_for_tool(p, d.node);
+        asked_.push_back({slowed < 1 ? std::min(1.0, share / slowed) : share, p, d.node});
         if (done) break;
       }
       before += piece.duration();
@@ -511,19 +517,22 @@ class Samples {
           if (const double by = slower_by(ratio, order); by > worst.by) worst = {by, row.row.s};
         }
     for (std::size_t k = 0; k < out.rows.size(); ++k)
-      if (const double by = slower_for_chord(k); by > worst.by) worst = {by, out.rows[k].row.s};
+      if (const double by = std::max(slower_for_chord(k), slower_for_tool(k)); by > worst.by) worst = {by, out.rows[k].row.s};
     return worst;
   }
 
-  /// Slows down where differences between samples are beyond the rates: at corners they are more than the places tell.
+  /// Slows down where differences between samples are beyond the rates, or beyond the speeds asked of the tool: at corners they are
+  /// more than the places tell.
   void slow_down(const TimedPath& out) {
     constexpr double kLeast = 0.5;
+    constexpr double kTool = 1.2;  // times the excess of the tool's speed: the places beside are at fault as well
     const auto n = static_cast<long long>(out.rows.size());
     std::vector<std::vector<double>> slower, gentler;
     for (const Piece& piece : *pieces_) slower.emplace_back(piece.places().size(), 1), gentler.push_back(slower.back());
+    std::vector<std::vector<double>> for_tool = slower;
     std::vector<bool> changed(pieces_->size(), false);
     for (long long k = -1; k < n + 2; ++k) {
-      double speed = 1, pull = 1;
+      double speed = 1, pull = 1, tool = 1;
       for (int order = 0; order < 3; ++order)
         for (int j = 0; j < kDof; ++j)
           if (const double ratio = ratio_at(out, k, order, j); ratio > 1) {
@@ -532,6 +541,9 @@ class Samples {
           }
       if (const double by = slower_for_chord(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
         speed = std::min(speed, std::max(kLeast, 0.995 / by));
+      if (const double by = slower_for_tool(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
+        tool = std::max(kLeast, 1 / (1 + kTool * (by - 1)));
+      speed = std::min(speed, tool);
       if (speed == 1) continue;
       const Asked &from = asked_[static_cast<std::size_t>(std::clamp(k - 3, 0LL, n - 1))],
                   &to = asked_[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))];
@@ -542,12 +554,14 @@ class Samples {
         for (std::size_t place = first > 0 ? first - 1 : 0; place <= std::min(last + 1, speeds.size() - 1); ++place) {
           speeds[place] = std::min(speeds[place], speed);
           pulls[place] = std::min(pulls[place], pull);
+          for_tool[at->piece][place] = std::min(for_tool[at->piece][place], tool);
         }
         changed[at->piece] = true;
       }
     }
     for (std::size_t p = 0; p < pieces_->size(); ++p) {
       if (!changed[p]) continue;
+      for (std::size_t k = 0; k < for_tool[p].size(); ++k) for_tool_[p][k] *= for_tool[p][k];
       (*pieces_)[p].slow_down(slower[p], gentler[p]);
       (*pieces_)[p].plan(*budget_);
     }
@@ -564,7 +578,7 @@ class Samples {
       const Pose there = path.at_travel(middle);
       Vector3d off = tool.translation() - there.translation();
       // Not along the path: that is a matter of time.
-      const Vector3d way = path.at_travel(travel_[k]).translation() - path.at_travel(travel_[k - 1]).translation();
+      const Vector3d way = tool_[k].translation() - tool_[k - 1].translation();
       if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
       strayed_[k] = off.norm();
       out.between_position = std::max(out.between_position, strayed_[k]);
@@ -592,7 +606,7 @@ class Samples {
 
  private:
   struct Asked {
-    double share = 0;  // of the speed asked for
+    double share = 0;  // of the speed asked for, as it was lowered for the tool
     std::size_t piece = 0, node = 0;
   };
 
@@ -610,6 +624,27 @@ class Samples {
   /// By how much the move that ends at a sample would have to be slower for the tool to stay as near its path as asked.
   [[nodiscard]] double slower_for_chord(std::size_t k) const {
     return options_->chord && strayed_[k] > *options_->chord ? std::sqrt(strayed_[k] / *options_->chord) : 1;
+  }
+  /// What slow_down() made of the speed asked for about a place, so that the tool is no faster.
+  [[nodiscard]] double slowed_for_tool(std::size_t piece, std::size_t node) const {
+    const std::vector<double>& factors = for_tool_[piece];
+    double least = factors[node];
+    if (node > 0) least = std::min(least, factors[node - 1]);
+    if (node + 1 < factors.size()) least = std::min(least, factors[node + 1]);
+    return least;
+  }
+  /// Speed of the tool over the move that ends at sample k, by the speed asked for: the larger of its speed along and its turning.
+  [[nodiscard]] double tool_share(std::size_t k) const {
+    if (k == 0) return 0;
+    const double along = (tool_[k].translation() - tool_[k - 1].translation()).norm() * options_->rate / options_->speed;
+    if (!options_->turn_speed) return along;
+    return std::max(along, angle_between(tool_[k - 1], tool_[k]) * options_->rate / *options_->turn_speed);
+  }
+  /// By how much the move that ends at a sample would have to be slower for the tool to be no faster than asked.
+  [[nodiscard]] double slower_for_tool(std::size_t k) const {
+    constexpr double kRounding = 5e-7;
+    const double share = tool_share(k);
+    return share > 1 + kRounding ? share : 1;
   }
   static double slower_by(double ratio, int order) { return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio); }
 
@@ -663,9 +698,24 @@ class Samples {
   const Budget* budget_;
   bool near_;  // samples tell speeds and accelerations
   std::vector<double> travel_;
+  std::vector<Pose> tool_;                     // at the samples
+  std::vector<std::vector<double>> for_tool_;  // of pieces and places: factors of speeds, from the tool's excess
   std::vector<Asked> asked_;
   std::vector<double> strayed_;  // m, of the tool between each sample and the one before
 };
+
+/// Completes the warning of an assumed rate where the motion goes as far as it allows.
+std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion, const Chain& chain) {
+  constexpr double kReached = 0.9;  // motions are planned up to 0.99 of a rate, and slowed down to a little less
+  TimedPath::Peak most;
+  for (std::size_t j = 0; j < kDof; ++j)
+    if (const TimedPath::Peak& peak = motion.peaks[static_cast<std::size_t>(assumed.rate)][j];
+        assumed.of[j] && peak.ratio > most.ratio)
+      most = peak;
+  if (most.ratio < kReached) return "";
+  return ", and this decides how long the motion takes: joint '" + chain.joint_names[static_cast<std::size_t>(most.joint)] +
+         formatted("' reaches it at s = %.4f m", most.s);
+}
 
 }  // namespace
 
@@ -682,6 +732,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   const ToolPath& path = motion.path();
   TimedPath out;
   out.rate = options.rate;
+  out.speed = options.speed;
   out.roll = motion.chain().roll;
   std::vector<double> rests{0};
   std::vector<int> at;
@@ -730,7 +781,8 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   }
   if (!options.chord) samples.measure_between(out);
   samples.find_slow(out);
-  out.warnings = rates.assumed;
+  for (const JointRates::Assumed& assumed : rates.assumed)
+    out.warnings.push_back(assumed.text + what_it_decides(assumed, out, motion.chain()));
   if (out.between_position > 10e-6) {
     char text[160];
     std::snprintf(text, sizeof text, "between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",

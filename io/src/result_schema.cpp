@@ -237,8 +237,12 @@ Schema motion() {
               "between_samples",
               section("", {key("position", number(), "the most", "m"), key("angle", number(), "the most", "rad")}),
               "how far the tool leaves its path where joints move straight from sample to sample: `position`, m, `angle`, rad"),
-          key_of_some("warnings", list(text()),
-                      "rates that were assumed since neither URDF nor problem states them; a `rate` that is low for the path"),
+          key_of_some(
+              "warnings", list(text()),
+              "rates that were assumed since neither URDF nor problem states them, and whether they decide how long the motion "
+              "takes; "
+              "speeds asked for above `limits.tool_speed` or `limits.tool_turn_speed`, which are kept; a `rate` that is low "
+              "for the path"),
       });
 }
 

@@ -13,6 +13,7 @@
 #include "between_samples.hpp"
 #include "first_too_near.hpp"
 #include "measure_rows.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/posture_beside.hpp"
@@ -194,25 +195,43 @@ TimingResult time_within_tolerances(const PreparedRobot& robot, const Problem& p
   return {std::nullopt, NoMotion{0, "the tool would leave its path's tolerances between samples: a higher rate brings less"}};
 }
 
+/// The timing asked for, the tool no faster than limits.tool_speed and limits.tool_turn_speed allow; what was lowered is told.
+TimingOptions within_limits(TimingOptions options, const Limits& limits, std::vector<std::string>& warnings) {
+  const auto lower = [&](double& asked, const std::optional<double>& limit, const char* format) {
+    if (!limit || asked <= *limit) return;
+    warnings.push_back(formatted(format, asked, *limit));
+    asked = *limit;
+  };
+  lower(options.speed, limits.tool_speed,
+        "a tool speed of %.6g m/s is asked for: limits.tool_speed allows %.6g m/s, which is kept");
+  if (!options.turn_speed) options.turn_speed = limits.tool_turn_speed;
+  if (options.turn_speed)
+    lower(*options.turn_speed, limits.tool_turn_speed,
+          "a turn speed of %.6g rad/s is asked for: limits.tool_turn_speed allows %.6g rad/s, which is kept");
+  return options;
+}
+
 /// `between_layers`: where the motion through the rows is at fault between them, it may be led through postures of its own there.
 MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
-                       const TimingOptions& options, bool between_layers, const Budget& budget) {
+                       const TimingOptions& asked, bool between_layers, const Budget& budget) {
   validate(problem);
   robot.require_prepared_for(problem);
   if (robot.arm().chain.free_roll && problem.rolls.empty()) {  // stays as it was chosen
     Problem turned = problem;
     turned.rolls = rolls_for_motion(*robot.arm().chain.free_roll, problem_path(problem, robot.arm().chain, budget), rows);
-    return time_rows(robot, turned, rows, options, between_layers, budget);
+    return time_rows(robot, turned, rows, asked, between_layers, budget);
   }
   const auto positive = [&](double value, const char* name) {
     if (!(value > 0) || !std::isfinite(value))
       throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + std::to_string(value) +
                             ": allowed is a finite number > 0");
   };
-  positive(options.speed, "speed");
-  positive(options.turn_speed.value_or(1), "turn_speed");
-  positive(options.rate, "rate");
-  positive(options.chord.value_or(1), "chord");
+  positive(asked.speed, "speed");
+  positive(asked.turn_speed.value_or(1), "turn_speed");
+  positive(asked.rate, "rate");
+  positive(asked.chord.value_or(1), "chord");
+  std::vector<std::string> lowered;
+  const TimingOptions options = within_limits(asked, problem.limits, lowered);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = problem_path(problem, chain, budget, PathSmoothing{});
   const JointRates rates = joint_rates(chain, problem.limits, problem.source);
@@ -270,6 +289,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
     tried = std::move(bisected);
   }
   result.failure = std::move(tried.failure);
+  if (result.motion) result.motion->warnings.insert(result.motion->warnings.begin(), lowered.begin(), lowered.end());
   return result;
 }
 
@@ -421,8 +441,8 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
     const double travel = path.layer(i).travel;
     const auto q = motion->joints(travel);
     if (!q)
-      throw InputError(problem.source + ": path.smooth: the arm has no solution at s = " + std::to_string(path.layer(i).s) +
-                       ": allowed are smaller tolerances");
+      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + std::to_string(path.layer(i).s) +
+                                           ": allowed are smaller tolerances");
     laid.push_back(motion->row(travel, *q));
     laid.back().s = path.layer(i).s;
   }

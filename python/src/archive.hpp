@@ -326,9 +326,9 @@ void serialize(A& archive, TimedPath::Stop& x) {
 }
 template <class A>
 void serialize(A& archive, TimedPath& x) {
-  auto& [rows, rate, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
+  auto& [rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
          between_angle, rounds, warnings] = x;
-  archive(rows, rate, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
+  archive(rows, rate, speed, roll, duration, ideal, peaks, slow, stops, rounded, rounded_position, rounded_angle, between_position,
           between_angle, rounds, warnings);
 }
 template <class A>

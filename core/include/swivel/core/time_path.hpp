@@ -12,10 +12,19 @@
 
 namespace swivel {
 
+enum class JointRate { kSpeed, kAcceleration, kJerk };
+[[nodiscard]] const char* to_string(JointRate rate);
+
 /// What the joints can do: rad/s, rad/s^2, rad/s^3, all > 0. Infinite for the roll of the tool, which is no joint.
 struct JointRates {
   Config speed = Config::Zero(), acceleration = Config::Zero(), jerk = Config::Zero();
-  std::vector<std::string> assumed;  ///< one line for what neither problem nor robot model states
+  /// A rate that neither problem nor robot model states for some joints.
+  struct Assumed {
+    JointRate rate = JointRate::kJerk;
+    std::array<bool, kDof> of = {};  ///< the joints it was assumed for
+    std::string text;                ///< one line: what was assumed
+  };
+  std::vector<Assumed> assumed;
 };
 /// Of the limits, else of the robot model; 10 rad/s^2 and 100 rad/s^3 where neither says. Throws InputError for a joint without a
 /// speed limit. `source`: for messages.
@@ -35,13 +44,11 @@ struct TimedRow {
   Config v = Config::Zero(), a = Config::Zero();  ///< rad/s, rad/s^2
 };
 
-enum class JointRate { kSpeed, kAcceleration, kJerk };
-[[nodiscard]] const char* to_string(JointRate rate);
-
 /// A motion along a path in time, and what can be said of it.
 struct TimedPath {
   std::vector<TimedRow> rows;  ///< at k / rate, the last at rest at the path's end
   double rate = 0;
+  double speed = 0;     ///< m/s, asked of the tool along its path: what its user asked for, no more than limits.tool_speed
   bool roll = false;    ///< the last joint of rows is the roll of the tool (Chain::roll), which no controller moves
   double duration = 0;  ///< s, until the tool rests at the end; less than the last row's t by less than a sample
   double ideal = 0;     ///< s, at the speeds asked for (less where `chord` asks for less) from the first moment to the last
@@ -79,6 +86,7 @@ struct TimedPath {
 /// speeds, accelerations and jerks of the path's geometry allow, forward and backward passes for the acceleration along the path
 /// (Bobrow, Dubowsky, Gibson 1985), a moving average over time for its jerk (Biagiotti & Melchiorri 2008, "trajectories by FIR
 /// filters"), then verified, and slowed down where it is too fast, until it is not; what was slowed down too much is sped up again.
+/// Between any two samples the tool is no faster than asked, along its path and in turning (5e-7 of it).
 /// Samples are exact solutions on the path.
 /// Deterministic. Throws InputError for rates that are missing, Stopped; returns NoMotion where the arm has no solution or jumps.
 struct TimingResult {
