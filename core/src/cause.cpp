@@ -133,8 +133,8 @@ std::string figures(const Cause& cause, std::optional<double> most) {
   const auto of = [&](const char* format, double unit) { return formatted(format, unit * *cause.value, unit * *cause.limit); };
   switch (cause.kind) {
     case Cause::Kind::kReach:
-      return (cause.side == Cause::Side::kUpper ? "out of reach by " : "too near to the shoulder by ") + misses(kMillimetres) +
-             " mm";
+      return (cause.side == Cause::Side::kUpper ? "out of reach by " : "too near to the shoulder by ") +
+             (*by < 10 ? misses(kMillimetres) + " mm" : misses(1) + " m");
     case Cause::Kind::kLimit:
       return (cause.other_joints ? cause.joint + ": " : "") + misses(kDegrees) + " deg beyond " +
              formatted("%.2f deg", kDegrees * *cause.limit) +

@@ -4,6 +4,7 @@
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/scale.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/cut.hpp"
@@ -180,7 +181,8 @@ class Verifier {
 void require_same_layout(const Problem& problem, const Cut& cut, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
-      throw InputError(problem.source + ": " + what + " is another than the certificate's: allowed is what it was planned with");
+      throw InputError(problem.source,
+                       std::string(what) + " is another than the certificate's: allowed is what it was planned with");
   };
   const Resolution &own = problem.resolution, &other = cut.resolution;
   require(own.ds == other.ds, "resolution.ds (--ds)");
@@ -200,7 +202,7 @@ CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut
   validate(problem);
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
-  const ToolPath path = problem_path(problem, chain, budget);
+  const ToolPath path = path_within_scale(problem, chain, budget);
   std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
   require_same_layout(problem, cut, lattice->layers());
   CutCheck result;

@@ -22,6 +22,7 @@
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/roll_lattice.hpp"
+#include "swivel/core/scale.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/validate.hpp"
@@ -69,9 +70,8 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
   }
   const double needed = 64.0 * static_cast<double>(lattice.nodes()) + 56.0 * edges;
   if (!fits_in_memory(needed))
-    throw InputError(source + ": planner eager: its graph would need about " +
-                     std::to_string(static_cast<long long>(needed / 1e9)) +
-                     " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
+    throw InputError(source, "planner eager: its graph would need about " + std::to_string(static_cast<long long>(needed / 1e9)) +
+                                 " GB: allowed are coarser resolutions or the planners eager_dp, lazy, parallel");
 }
 
 /// Of a path that may end anywhere: as far as its joints stay within their limits.
@@ -173,7 +173,7 @@ struct Planner::Impl {
   /// Of the task and the pose of the path's frame.
   struct Layout {
     Layout(const PreparedRobot& robot, const Problem& problem, const Budget& budget)
-        : path(problem_path(problem, robot.arm().chain, budget)),
+        : path(path_within_scale(problem, robot.arm().chain, budget)),
           first{make_coaxial_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget), nullptr},
           coaxial(first.lattice != nullptr) {
       if (!coaxial) first.lattice = make_lattice(robot.arm().chain, robot.arm_class(), path, problem, budget);
@@ -187,11 +187,12 @@ struct Planner::Impl {
     [[nodiscard]] Searched& last() { return second ? *second : first; }
   };
   std::unique_ptr<Layout> layout;
-  std::unique_ptr<CostToGo> retired;  // of another lattice
-  ClearanceMemory memory;             // of this lattice, the robot and the limits
-  std::vector<Suspect> suspects;      // what failed on the lattice before this one; of these bodies
-  std::uint64_t plans = 0;            // that the memory knows of
-  std::vector<std::uint64_t> met;     // by object: the first of them that meets it as it is
+  std::optional<std::vector<std::string>> scale_of_robot;  // warnings: a robot does not change
+  std::unique_ptr<CostToGo> retired;                       // of another lattice
+  ClearanceMemory memory;                                  // of this lattice, the robot and the limits
+  std::vector<Suspect> suspects;                           // what failed on the lattice before this one; of these bodies
+  std::uint64_t plans = 0;                                 // that the memory knows of
+  std::vector<std::uint64_t> met;                          // by object: the first of them that meets it as it is
   std::optional<Executor> executor;
   int executor_threads = 0;  // that it was asked for
 
@@ -301,10 +302,10 @@ struct Planner::Impl {
     result.time_ms["world"] = watch.lap();
     result.held = robot->arm().held;
     result.warnings = limit_warnings(robot->arm().chain);
-    const std::vector<std::string> held = held_warnings(result.held);
-    result.warnings.insert(result.warnings.end(), held.begin(), held.end());
-    const std::vector<std::string> of_files = file_warnings(*problem.model, robot->arm().chain);
-    result.warnings.insert(result.warnings.end(), of_files.begin(), of_files.end());
+    if (!scale_of_robot) scale_of_robot = scale_warnings(robot->arm().chain, problem);
+    for (const auto& lines : {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain), *scale_of_robot,
+                              scale_warnings(robot->arm().chain, layout->path, problem.scene)})
+      result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
     list_special_pairs(*world, result);
     result.lattice = info_of(*layout->first.lattice, robot->arm_class());

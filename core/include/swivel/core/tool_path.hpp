@@ -64,6 +64,8 @@ class ToolPath {
   /// pose, but at most `tolerance`, takes its place. Without `start_at` layer 0 is the path's first. Throws InputError where
   /// nothing is left.
   void begin_at(std::optional<double> start_at, const Pose& tool, double tolerance, const std::string& source);
+  /// Cuts off the layers after this one, which is not layer 0.
+  void end_at(int layer) { layers_.resize(static_cast<std::size_t>(layer) + 1); }
   /// Poses of the layers that begin_at() has cut off: arm angles are carried along the whole path.
   [[nodiscard]] const std::vector<Pose>& before() const { return before_; }
   /// False where layer 0 is none of the whole path's.

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "swivel/core/formatted.hpp"
+
+namespace swivel {
+
+namespace {
+
+/// Of the arm without the tool, m.
+double reach_of_arm(const Chain& chain, const Pose& tool) {
+  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll is no joint: its axis is the tool's
+  double reach = ((chain.home * tool.inverse()).translation() - chain.point[joints - 1]).norm();
+  for (std::size_t j = 1; j < joints; ++j) reach += (chain.point[j] - chain.point[j - 1]).norm();
+  return reach;
+}
+
+struct Size {
+  double least = 0, most = 0;  ///< of the edges of a box about it, m
+};
+Size size_of(const Shape& shape) {
+  const auto of = [](double a, double b) { return Size{std::min(a, b), std::max(a, b)}; };
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return of(2 * sphere->radius, 2 * sphere->radius);
+  if (const auto* box = std::get_if<Box>(&shape)) return of(box->size.minCoeff(), box->size.maxCoeff());
+  if (const auto* cylinder = std::get_if<Cylinder>(&shape)) return of(2 * cylinder->radius, cylinder->length);
+  if (const auto* capsule = std::get_if<Capsule>(&shape)) return of(2 * capsule->radius, capsule->length + 2 * capsule->radius);
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  for (const Vector3d& vertex : std::get<MeshPtr>(shape)->vertices) low = low.cwiseMin(vertex), high = high.cwiseMax(vertex);
+  const Vector3d edges = (high - low).cwiseMax(0);
+  return of(edges.minCoeff(), edges.maxCoeff());
+}
+
+class Scale {
+ public:
+  explicit Scale(double reach) : reach_(reach) {}
+
+  void distance(const std::string& what, double metres) {
+    if (metres > kFar * reach_) tell(what, formatted(" is %.4g m from the arm", metres), "");
+  }
+  /// Floors and walls are large as well, but thin.
+  void size(const std::string& what, const Shape& shape) {
+    const Size size = size_of(shape);
+    const bool mesh = std::holds_alternative<MeshPtr>(shape);
+    if (size.most > kFar * reach_ && (mesh || size.least > reach_))
+      tell(what, formatted(" is %.4g m long", size.most), mesh ? " (a mesh has a `scale`)" : "");
+  }
+  void length(const std::string& what, double metres) {
+    if (metres > kFar * reach_) tell(what, formatted(" is %.4g m long", metres), "");
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(warnings_); }
+
+ private:
+  void tell(const std::string& what, const std::string& found, const char* hint) {
+    warnings_.push_back(
+        what + found + formatted(", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach_) + hint);
+  }
+
+  double reach_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+double most_reach(const Chain& chain) {
+  return reach_of_arm(chain, Pose::Identity());
+}
+
+std::optional<int> first_far_waypoint(const Chain& chain, const ToolPath& path) {
+  const double most = kFar * most_reach(chain);
+  for (int i = 0; i < path.size(); ++i)
+    if (path.layer(i).waypoint >= 0 && (path.layer(i).tool.translation() - chain.point[0]).norm() > most) return i;
+  return std::nullopt;
+}
+
+ToolPath path_within_scale(const Problem& problem, const Chain& chain, const Budget& budget) {
+  ToolPath path = problem_path(problem, chain, budget);
+  if (const auto far = first_far_waypoint(chain, path)) path.end_at(std::max(1, *far));
+  return path;
+}
+
+std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot) {
+  Scale scale(reach_of_arm(chain, robot.tool));
+  scale.length("robot.tool", robot.tool.translation().norm());
+  for (const Link& link : robot.model->links)
+    for (const PlacedShape& body : link.collision) scale.size("robot: link '" + link.name + "'", body.shape);
+  for (const AttachedBody& body : robot.attached) {
+    scale.size("robot.attached: '" + body.name + "'", body.shape);
+    scale.length("robot.attached: the way from its link to '" + body.name + "'", body.pose.translation().norm());
+  }
+  return scale.take();
+}
+
+std::vector<std::string> scale_warnings(const Chain& chain, const ToolPath& path, const std::vector<SceneObject>& scene) {
+  Scale scale(most_reach(chain));
+  const auto away = [&](const Pose& pose) { return (pose.translation() - chain.point[0]).norm(); };
+  if (const auto far = first_far_waypoint(chain, path))
+    scale.distance("path: waypoint " + std::to_string(path.layer(*far).waypoint), away(path.layer(*far).tool));
+  for (const SceneObject& object : scene) {
+    scale.size("scene: '" + object.name + "'", object.shape);
+    scale.distance("scene: '" + object.name + "'", away(object.pose) - size_of(object.shape).most);
+  }
+  return scale.take();
+}
+
+}  // namespace swivel
