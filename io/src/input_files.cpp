@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
+#include "swivel/core/fnv1a.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::io {
@@ -10,13 +11,6 @@ namespace swivel::io {
 namespace {
 
 thread_local InputFiles* listening = nullptr;
-
-/// Fowler, Noll, Vo. No defence against forged contents, and none is needed.
-std::uint64_t fnv1a(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
-  return hash;
-}
 
 }  // namespace
 

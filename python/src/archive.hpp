@@ -13,11 +13,13 @@
 #include <cereal/types/vector.hpp>
 #include <sstream>
 #include <string>
+#include <typeinfo>
 
 #include "results.hpp"
 #include "runs.hpp"
 #include "swivel/core/advice.hpp"
 #include "swivel/core/campaign.hpp"
+#include "swivel/core/fnv1a.hpp"
 #include "swivel/core/placement.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
@@ -421,7 +423,14 @@ void serialize(A& archive, Table<Row>& x) {
   archive(rows, coordinates);
 }
 
-/// For `def` of a class: Python's module pickle, to other processes, and to machines with the same version of this package.
+/// Of bytes that stand for a T: those of another class have another one.
+template <class T>
+std::uint64_t checksum_of(const std::string& bytes) {
+  return fnv1a(bytes, fnv1a(typeid(T).name()));
+}
+
+/// For `def` of a class: Python's module pickle, to other processes, and to machines with the same version of this package. The
+/// state is (version, checksum, bytes): damaged bytes would be read as lengths of lists that fill the memory.
 template <class T>
 auto pickling() {
   return py::pickle(
@@ -429,18 +438,24 @@ auto pickling() {
         std::ostringstream bytes(std::ios::binary);
         cereal::PortableBinaryOutputArchive archive(bytes);
         archive(self);
-        return py::make_tuple(SWIVEL_VERSION, py::bytes(bytes.str()));
+        return py::make_tuple(SWIVEL_VERSION, checksum_of<T>(bytes.str()), py::bytes(bytes.str()));
       },
       [](const py::tuple& state) {
-        const std::string version = state.size() == 2 ? py::str(state[0]).cast<std::string>() : "?";
+        const std::string version = state.size() > 0 ? py::str(state[0]).cast<std::string>() : "?";
         if (version != SWIVEL_VERSION)
           throw py::value_error("pickled by version " + version + " of swivel: allowed is that of this one, " SWIVEL_VERSION);
-        std::istringstream bytes(state[1].cast<std::string>(), std::ios::binary);
+        if (state.size() != 3 || !py::isinstance<py::int_>(state[1]) || !py::isinstance<py::bytes>(state[2]))
+          throw py::value_error("not a pickle of swivel: allowed are a version, a checksum and bytes");
+        std::string content = state[2].cast<std::string>();
+        if (const py::object told = state[1]; !told.equal(py::int_(checksum_of<T>(content))))
+          throw py::value_error("a damaged pickle of swivel: its checksum is not that of its " + std::to_string(content.size()) +
+                                " bytes: allowed is what pickle wrote");
+        std::istringstream bytes(std::move(content), std::ios::binary);
         T self;
         try {
           cereal::PortableBinaryInputArchive archive(bytes);
           archive(self);
-        } catch (const cereal::Exception& error) {
+        } catch (const std::exception& error) {
           throw py::value_error(std::string("not a pickle of swivel: ") + error.what());
         }
         return self;

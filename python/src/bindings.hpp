@@ -63,14 +63,14 @@ void bind_enum(py::module_& m, const char* type, const char* doc, std::vector<st
     for (char& letter : upper) letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
     bound.value(upper.c_str(), value);
   }
-  bound.def(
-      "__str__",
+  // Set in place of pybind11's own, which calls itself "name": an overload of that one would take the place of the property `name`.
+  bound.attr("__str__") = py::cpp_function(
       [](E value) {
         for (const auto& [name, known] : EnumNames<E>::names)
           if (known == value) return name;
         return std::string();
       },
-      py::prepend());
+      py::name("__str__"), py::is_method(bound));
   EnumNames<E>::names = std::move(names);
   EnumNames<E>::type = type;
 }
