@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "search_options.hpp"
@@ -23,6 +28,41 @@ struct CheckArguments {
   EpisodeChoice episode;
 };
 
+/// The text without what failures of one kind differ in, its numbers. Those of quoted names stay.
+std::string kind_of(const std::string& failure) {
+  std::string kind;
+  bool quoted = false, number = false;
+  for (const char c : failure) {
+    if (c == '\'') quoted = !quoted;
+    number = !quoted && (std::strchr("0123456789.+-", c) != nullptr || (number && c == 'e'));
+    if (!number) kind += c;
+  }
+  return kind;
+}
+
+/// One line for each kind of failure, with how many more there are of it.
+void print_failures(const CheckResult& result) {
+  std::vector<std::pair<std::string, std::size_t>> kinds;  // and how many
+  std::vector<const std::string*> first;
+  for (const std::string& failure : result.failures) {
+    const std::string kind = kind_of(failure);
+    const auto known = std::find_if(kinds.begin(), kinds.end(), [&](const auto& one) { return one.first == kind; });
+    if (known != kinds.end()) {
+      ++known->second;
+      continue;
+    }
+    kinds.emplace_back(kind, 1);
+    first.push_back(&failure);
+  }
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
+    std::printf("  %s", first[k]->c_str());
+    if (kinds[k].second > 1) std::printf(" (and %zu more like it)", kinds[k].second - 1);
+    std::printf("\n");
+  }
+  const auto listed = static_cast<std::int64_t>(result.failures.size());
+  if (result.failure_count > listed) std::printf("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
+}
+
 /// What was proved, and how near to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
   std::printf("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position, result.worst_angle,
@@ -30,7 +70,7 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
   if (problem.limits.tool_path_error) std::printf(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
   std::printf(" and %.3g rad", result.worst_path_angle);
   if (problem.limits.tool_angle_error) std::printf(" (allowed %.3g)", *problem.limits.tool_angle_error);
-  std::printf(" between, joint moves within %.0f %% of what is allowed", 100 * result.largest_step);
+  std::printf(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
   if (result.nearest_limit)
     std::printf(", '%s' %.2f deg from its limit at row %zu", chain.joint_names[result.nearest_limit->joint].c_str(),
                 result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
@@ -91,9 +131,6 @@ int run(const CheckArguments& arguments) {
       file.timed.empty()
           ? check_trajectory(robot, problem, complete([&] { return complete_rows(robot, problem, rows, file.stated); }))
           : check_motion(robot, problem, complete([&] { return complete_motion(robot, problem, file.timed, file.stated); }));
-  for (const std::string& failure : result.failures) std::printf("%s\n", failure.c_str());
-  const auto shown = static_cast<std::int64_t>(result.failures.size());
-  if (result.failure_count > shown) std::printf("and %lld more\n", static_cast<long long>(result.failure_count - shown));
   std::printf("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
   if (!result.passed)
     std::printf(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
@@ -101,6 +138,7 @@ int run(const CheckArguments& arguments) {
   if (!held.empty()) std::printf(", held: %s", words(held).c_str());
   std::printf("; ");
   print_margins(problem, chain, result);
+  print_failures(result);
   return result.passed ? kOk : kNo;
 }
 

@@ -2,16 +2,23 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "large_pages.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/nearest_name.hpp"
+#include "swivel/io/io.hpp"
+#include "wrapped_output.hpp"
 
 namespace swivel::cli {
 
@@ -22,6 +29,30 @@ namespace {
 void occupy_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(descriptor, F_GETFD) < 0) static_cast<void>(open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+}
+
+/// What is wrong with the first word that was not expected, an option before all others; none where each one was.
+std::optional<std::string> unexpected_word(const CLI::App& app) {
+  const std::vector<const CLI::App*> parsed = app.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  const CLI::App& at = parsed.empty() ? app : *parsed.front();
+  const std::vector<std::string> left = at.remaining();
+  if (left.empty()) return std::nullopt;
+  const auto option =
+      std::find_if(left.begin(), left.end(), [](const std::string& word) { return word.size() > 1 && word[0] == '-'; });
+  const bool command = &at == &app && option == left.end();
+  const std::string name = command ? left.front() : option == left.end() ? "" : option->substr(0, option->find('='));
+  const std::string help = command || &at == &app ? "swivel --help" : "swivel " + at.get_name() + " --help";
+  if (name.empty()) return "unexpected word '" + left.front() + "': allowed is what `" + help + "` lists";
+  std::vector<std::string> known;
+  if (command)
+    for (const CLI::App* one : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(one->get_name());
+  else
+    for (const CLI::Option* one : at.get_options())
+      for (const std::string& long_name : one->get_lnames()) known.push_back("--" + long_name);
+  const std::string& nearest = nearest_name(name, known);
+  const bool alike = edit_distance(name, nearest) <= std::max<std::size_t>(1, nearest.size() / 3);
+  return std::string("unknown ") + (command ? "command " : "option ") + name + (alike ? "; did you mean " + nearest + "?" : "") +
+         " (allowed are those of `" + help + "`)";
 }
 
 int run(int argc, char** argv) {
@@ -41,7 +72,7 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) throw InputError(error.what());
+    if (error.get_exit_code() != 0) throw InputError(unexpected_word(app).value_or(error.what()));
     exit_code = app.exit(error);  // --help, --version
   }
   flush_standard_output();
@@ -53,6 +84,7 @@ int run(int argc, char** argv) {
 void flush_standard_output() {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  if (errno == EPIPE || io::reader_has_left()) throw io::ReaderLeft();
   const std::string reason = errno != 0 ? std::strerror(errno) : "cannot be written";
   throw InputError("standard output: " + reason + ": allowed is one that takes what is printed");
 }
@@ -67,11 +99,16 @@ int main(int argc, char** argv) {
   using namespace swivel::cli;
   use_large_pages();
   occupy_standard_streams();
+  wrap_standard_output();
   // A reader that has left, or a file that may not grow, is an error of the write and not the end of the program.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
   try {
     return run(argc, argv);
+  } catch (const swivel::io::ReaderLeft&) {  // as programs end that leave SIGPIPE as it is
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+    return kBadInput;
   } catch (const swivel::InputError& error) {
     std::fprintf(stderr, "swivel: %s\n", error.what());
     return kBadInput;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,6 +79,11 @@ FileIdentity identity_of(const fs::path& file, const std::string& where) {
   FileIdentity identity = identity_of(status);
   identity.name = target.filename().string();
   return identity;
+}
+
+bool reader_has_left() {
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&output, 1, 0) > 0 && (output.revents & POLLERR) != 0;
 }
 
 OutputFiles::~OutputFiles() {
@@ -179,6 +185,7 @@ void OutputFiles::stage() {
       const int descriptor = open(output.name.c_str(), O_WRONLY | O_CLOEXEC);
       error = descriptor < 0 ? errno : write_and_close(descriptor, *output.text);
     }
+    if (error == EPIPE && output.descriptor == STDOUT_FILENO) throw ReaderLeft();
     if (error != 0) bad_input(place(output.option, output.name), std::strerror(error), "a pipe or device that takes the text");
     output.text.reset();
   }

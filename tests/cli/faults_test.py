@@ -127,14 +127,28 @@ class Faults(WithFiles):
             with self.subTest(command=command), open("/dev/full", "w") as full:
                 self.is_refused(subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True))
                 self.is_refused(subprocess.run(command, stderr=subprocess.PIPE, text=True, preexec_fn=closed))
+                # A reader that has left, as head does, ends it as it ends any other program: silently.
                 reader, writer = os.pipe()
                 os.close(reader)
-                self.is_refused(subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True))
+                done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True)
                 os.close(writer)
+                self.assertEqual(done.returncode, -signal.SIGPIPE)
+                self.assertEqual([line for line in done.stderr.splitlines() if "warning" not in line], [])
+                self.nothing_written()
         # What prints nothing needs no standard output.
         done = subprocess.run([SWIVEL, "plan", str(SOLVED), *QUICK, "--quiet", "--out", str(self.old)], stderr=subprocess.PIPE, text=True, preexec_fn=closed)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(self.old.read_bytes(), trajectory.read_bytes())
+
+    def test_head_ends_long_output_silently(self):
+        """What is printed is more than a buffer, so that the write that fails is not the last one."""
+        for command in (("schema", "problem"), ("info", SOLVED, "--pairs"), ("plan", SOLVED, *QUICK, "--map"), ("plan", SOLVED, *QUICK, "--json", "-")):
+            reader, writer = os.pipe()
+            process = subprocess.Popen(list(map(str, (SWIVEL, *command))), stdout=writer, stderr=subprocess.PIPE, text=True)
+            os.close(writer)
+            os.close(reader)
+            self.assertEqual([line for line in process.communicate()[1].splitlines() if "warning" not in line], [], command)
+            self.assertEqual(process.returncode, -signal.SIGPIPE, command)
 
     def test_all_standard_streams_closed(self):
         def closed():

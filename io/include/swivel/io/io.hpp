@@ -15,6 +15,7 @@
 
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/cut.hpp"
+#include "swivel/core/input_error.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
@@ -118,6 +119,14 @@ class InputFiles {
   std::vector<File> files_;
   Contents contents_;
 };
+
+/// Standard output is a pipe that nobody reads any more, as behind `| head`. Who prints ends then, silently.
+class ReaderLeft : public InputError {
+ public:
+  ReaderLeft() : InputError("standard output: nobody reads it any more: allowed is one that takes what is printed") {}
+};
+/// True where standard output is a pipe or socket whose reader has left.
+[[nodiscard]] bool reader_has_left();
 
 /// The files that a command writes: all of them, or none. Names are judged before the work begins; afterwards stage() lays the
 /// texts beside their targets and writes to pipes and devices, so that a full disk shows, and commit() renames. A link is followed
