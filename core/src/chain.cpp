@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 
 namespace swivel {
@@ -141,7 +142,7 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
     if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
     if (is_outside(joint, value))
-      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(value) + " " + limits_allowed(joint));
+      fail(robot, "robot.hold: joint '" + name + "' at " + formatted("%f", value) + " " + limits_allowed(joint));
     position[static_cast<std::size_t>(j)] = value;
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {

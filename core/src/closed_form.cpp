@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "swivel/core/formatted.hpp"
+
 namespace swivel {
 
 namespace {
@@ -620,12 +622,8 @@ std::string LockMethod::words() const {
   }
   text += fit.structure == Structure::kParallel ? " are parallel" : " meet in a point";
   if (!fit.exact) {
-    char miss[60];
-    if (fit.structure == Structure::kParallel)
-      std::snprintf(miss, sizeof miss, " within %.2g mrad", 1e3 * fit.deviation.angle);
-    else
-      std::snprintf(miss, sizeof miss, " within %.2g mm", 1e3 * fit.deviation.offset);
-    text += miss;
+    text += fit.structure == Structure::kParallel ? formatted(" within %.2g mrad", 1e3 * fit.deviation.angle)
+                                                  : formatted(" within %.2g mm", 1e3 * fit.deviation.offset);
   }
   text += is_roll(best) ? "; locks the roll" : "; locks joint " + std::to_string(best + 1);
   std::string others;

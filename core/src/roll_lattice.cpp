@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "polish_turned.hpp"
 #include "start.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
@@ -170,9 +170,8 @@ void RollLattice::find_near(const Problem& problem) {
       for (auto& list : *all) std::sort(list.begin(), list.end());
   }
   if (!turns && !windows_of_roll_ && limits_.roll_slope * problem.resolution.knot < droll) {
-    char text[200];
-    std::snprintf(text, sizeof text,
-                  "limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
+    const std::string text =
+        formatted("limits.roll_slope: is less than a step of resolution.droll from knot to knot: allowed is at least %.6g rad/m",
                   droll / problem.resolution.knot);
     throw InputError(problem.source, text);
   }

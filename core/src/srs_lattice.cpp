@@ -11,6 +11,7 @@
 #include "polish_turned.hpp"
 #include "start.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
 #include "swivel/core/timeline.hpp"
@@ -83,11 +84,10 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     windings *= images.count;
   }
   if (windings > kMostWindings) {
-    char number[32];
-    std::snprintf(number, sizeof number, "%.4g", windings);
+    const std::string number = formatted("%.4g", windings);
     throw InputError(
         problem.source,
-        std::string("joint limits allow ") + number + " windings (" + wound +
+        "joint limits allow " + number + " windings (" + wound +
             "): allowed are 1024: narrow these limits in the URDF, or widen them to more than 64 turns, so that the joint "
             "counts as continuous");
   }

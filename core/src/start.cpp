@@ -2,10 +2,10 @@
 #include "start.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/lattice.hpp"
 
@@ -22,16 +22,15 @@ void validate_start(const Problem& problem, const Chain& chain, const ToolPath& 
     const double lower = limit.lower + problem.limits.joint_margin, upper = limit.upper - problem.limits.joint_margin;
     if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
       throw InputError(problem.source, "start.joints: joint '" + chain.joint_names[static_cast<std::size_t>(k)] + "' at " +
-                                           std::to_string(q[k]) + " is outside its limits: allowed is " + std::to_string(lower) +
-                                           " to " + std::to_string(upper));
+                                           formatted("%f", q[k]) + " is outside its limits: allowed is " + formatted("%f", lower) +
+                                           " to " + formatted("%f", upper));
   }
   const double tolerance = problem.start_tolerance;
   if (!(distance <= tolerance && angle <= tolerance)) {
-    char text[200], pose[40] = "first pose";
-    if (problem.start_at) std::snprintf(pose, sizeof pose, "pose at start_at, %.9g m", *problem.start_at);
-    std::snprintf(text, sizeof text,
-                  "start.joints: the tool is %.3g m and %.3g rad from the path's %s: allowed are %g m and rad (start_tolerance)",
-                  distance, angle, pose, tolerance);
+    const std::string pose = problem.start_at ? formatted("pose at start_at, %.9g m", *problem.start_at) : "first pose";
+    const std::string text =
+        formatted("start.joints: the tool is %.3g m and %.3g rad from the path's %s: allowed are %g m and rad (start_tolerance)",
+                  distance, angle, pose.c_str(), tolerance);
     throw InputError(problem.source, text);
   }
 }
@@ -41,9 +40,8 @@ double roll_of_start(const Problem& problem, const Chain& chain, const ToolPath&
   double roll = chain.roll ? (*problem.start)[kDof - 1] : roll_between(path.layer(0).tool, chain.tool(*problem.start));
   if (!range.circle()) roll += kTwoPi * std::round(((range.lower + range.upper) / 2 - roll) / kTwoPi);
   const auto refuse = [&](const Roll& allowed, const char* whose) {
-    char text[160];
-    std::snprintf(text, sizeof text, "start.joints: the tool stands turned by %.6g rad: allowed is %.6g to %.6g (%s)", roll,
-                  allowed.lower, allowed.upper, whose);
+    const std::string text = formatted("start.joints: the tool stands turned by %.6g rad: allowed is %.6g to %.6g (%s)", roll,
+                                       allowed.lower, allowed.upper, whose);
     throw InputError(problem.source, text);
   };
   if (!range.circle() && !(roll >= range.lower - kRoll && roll <= range.upper + kRoll)) refuse(range, "path.roll");

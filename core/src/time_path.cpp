@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 
@@ -784,9 +783,8 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   for (const JointRates::Assumed& assumed : rates.assumed)
     out.warnings.push_back(assumed.text + what_it_decides(assumed, out, motion.chain()));
   if (out.between_position > 10e-6) {
-    char text[160];
-    std::snprintf(text, sizeof text, "between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",
-                  1e3 * out.between_position);
+    const std::string text = formatted("between samples the tool leaves its path by up to %.3g mm: a higher --rate brings less",
+                                       1e3 * out.between_position);
     out.warnings.emplace_back(text);
   }
   result.motion = std::move(out);

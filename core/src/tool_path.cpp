@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 
@@ -115,15 +115,17 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
         if (!window) window = PathLayer().window;
         window = Roll{std::max(window->lower, to.roll->lower), std::min(window->upper, to.roll->upper)};
         if (!(window->lower <= window->upper))
-          throw InputError(source, "path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
-                           " are one pose, but their rolls have nothing in common: allowed are roll_min and roll_max that overlap");
+          throw InputError(
+              source, "path: waypoints " + std::to_string(k - 1) + " and " + std::to_string(k) +
+                          " are one pose, but their rolls have nothing in common: allowed are roll_min and roll_max that overlap");
       }
       continue;
     }
     if (!turn_between(from.orientation, to.orientation, turns_freely))
-      throw InputError(source, "path: waypoint " + std::to_string(k) +
-                       ": turns by 180 deg from the one before: which way is undefined: allowed is less, by a waypoint in "
-                       "between; or, where it turns about the tool's z axis alone, path.roll: free");
+      throw InputError(source,
+                       "path: waypoint " + std::to_string(k) +
+                           ": turns by 180 deg from the one before: which way is undefined: allowed is less, by a waypoint in "
+                           "between; or, where it turns about the tool's z axis alone, path.roll: free");
     stops.push_back({to, static_cast<int>(k), stops.back().travel + travel_of(length, angle)});
   }
   // A waypoint with a window of its own bends what the roll may be, if not the path.
@@ -147,7 +149,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     const double angle = rotation.norm();
     const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
     if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
-      throw InputError(source, "resolution.ds: " + std::to_string(resolution.ds) +
+      throw InputError(source, "resolution.ds: " + formatted("%f", resolution.ds) +
                                    " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
     const double begun = layers_.back().travel, travel = travel_of(length, angle);
@@ -325,8 +327,8 @@ void ToolPath::begin_at(std::optional<double> start_at, const Pose& tool, double
   constexpr double kOnLayer = 1e-6;  // m and rad
   const double s = start_at.value_or(0), length = layers_.back().s;
   const auto refuse = [&] {
-    char text[120];
-    std::snprintf(text, sizeof text, "start_at: is %.9g m: allowed is from 0 to before the end of the path, at %.9g m", s, length);
+    const std::string text =
+        formatted("start_at: is %.9g m: allowed is from 0 to before the end of the path, at %.9g m", s, length);
     throw InputError(source, text);
   };
   if (!(s >= 0 && s <= length + kOnLayer)) refuse();

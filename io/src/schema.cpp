@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
+
+#include "swivel/core/formatted.hpp"
 
 namespace swivel::io {
 
@@ -104,9 +105,7 @@ Presence optional() {
 }
 
 Presence otherwise(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return {false, text};
+  return {false, formatted("%.15g", value)};
 }
 
 Presence otherwise(const std::optional<double>& value) {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <limits>
 
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/invalid_argument.hpp"
 
 namespace swivel {
@@ -54,13 +54,9 @@ void AskedCost::costs(std::span<const Config> states, std::span<double> costs) {
       costs[k] = lattice_->rounded_cost(costs[k]);
       continue;
     }
-    char text[160];
-    std::snprintf(text, sizeof text, "': costs[%zu] is %g: allowed is a number from 0 to %g; the state is", k, costs[k], most);
+    const std::string text = formatted("': costs[%zu] is %g: allowed is a number from 0 to %g; the state is", k, costs[k], most);
     std::string message = "state cost '" + cost_->name() + text;
-    for (const double q : states[k]) {
-      std::snprintf(text, sizeof text, " %.9g", q);
-      message += text;
-    }
+    for (const double q : states[k]) message += formatted(" %.9g", q);
     throw InvalidArgument(message);
   }
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <span>
 #include <utility>
@@ -223,7 +222,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
   }
   const auto positive = [&](double value, const char* name) {
     if (!(value > 0) || !std::isfinite(value))
-      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + std::to_string(value) +
+      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + formatted("%f", value) +
                             ": allowed is a finite number > 0");
   };
   positive(asked.speed, "speed");
@@ -281,8 +280,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
       bisected = try_it(kApart, kOffLimits, between);
     }
     if (!bisected.failure) {
-      char text[160];
-      std::snprintf(text, sizeof text, "at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
+      const std::string text = formatted("at s = %.4f m the motion would be at fault between layers (", tried.failure->s);
       result.motion->warnings.push_back(text + tried.failure->reason + "): it is led through " + std::to_string(between.size()) +
                                         " other posture" + (between.size() == 1 ? "" : "s") + " there");
     }
@@ -334,11 +332,10 @@ PlanResult plan_executable(Planner& planner, const PlanOptions& options, bool on
   keeping.hooks.check = std::make_shared<KeepsBranch>(*arm.srs);
   PlanResult other = planner.plan(keeping);
   if (other.status != PlanStatus::kSolved) return planner.plan(options);  // for its view
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: this is the cheapest "
-                "that does not",
-                found.cost);
+  const std::string text = formatted(
+      "the cheapest path, of cost %.6g, jumps to another branch, which no controller can follow: this is the cheapest "
+      "that does not",
+      found.cost);
   other.warnings.emplace_back(text);
   return other;
 }
@@ -441,7 +438,7 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
     const double travel = path.layer(i).travel;
     const auto q = motion->joints(travel);
     if (!q)
-      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + std::to_string(path.layer(i).s) +
+      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + formatted("%f", path.layer(i).s) +
                                            ": allowed are smaller tolerances");
     laid.push_back(motion->row(travel, *q));
     laid.back().s = path.layer(i).s;

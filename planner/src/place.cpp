@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "nearest_approach.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 
@@ -204,7 +205,7 @@ std::vector<PlacementRow> PlacementPlanner::plan(const std::vector<PlacementCell
       std::string place;
       for (std::size_t c = 0; c < kCoordinates.size(); ++c)
         if (cells[k].offset[c] != 0)
-          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + std::to_string(cells[k].offset[c]);
+          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + formatted("%f", cells[k].offset[c]);
       throw InputError(std::string(error.what()) + " (moved by " + (place.empty() ? "nothing" : place) + ")");
     } catch (...) {
       impl_->stopped = true;

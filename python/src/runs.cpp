@@ -10,6 +10,7 @@
 
 #include "archive.hpp"
 #include "interruptible.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/grid_refinement.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
@@ -67,13 +68,6 @@ Table<Row> joined(const std::vector<Table<Row>>& parts) {
   return to_table(std::move(rows), parts.empty() ? std::vector<std::string>() : parts[0].coordinates);
 }
 
-template <class... Values>
-std::string format(const char* words, Values... values) {
-  char text[128];
-  std::snprintf(text, sizeof text, words, values...);
-  return text;
-}
-
 /// "12, of which 7 have a path; cost 1.9 to 2.4"
 template <class Row>
 std::string table_words(const Table<Row>& table) {
@@ -85,8 +79,8 @@ std::string table_words(const Table<Row>& table) {
     least = std::min(least, *row.cost);
     most = std::max(most, *row.cost);
   }
-  std::string text = format("%zu, of which %zu have a path", table.rows->size(), solved);
-  if (solved > 0) text += format("; cost %.6g to %.6g", least, most);
+  std::string text = formatted("%zu, of which %zu have a path", table.rows->size(), solved);
+  if (solved > 0) text += formatted("; cost %.6g to %.6g", least, most);
   return text;
 }
 
@@ -138,14 +132,14 @@ py::class_<Table<Row>> bind_table(py::module_& m, const char* type, const char* 
 }
 
 std::string placement_words(const PlacementRow& row) {
-  std::string text = format("%llu", static_cast<unsigned long long>(row.cell));
+  std::string text = formatted("%llu", static_cast<unsigned long long>(row.cell));
   for (std::size_t k = 0; k < kCoordinates.size(); ++k)
-    if (row.offset[k] != 0) text += format(", %s %.6g", kCoordinates[k], row.offset[k]);
+    if (row.offset[k] != 0) text += formatted(", %s %.6g", kCoordinates[k], row.offset[k]);
   if (row.status != PlanStatus::kSolved) return text + ": " + (row.reason.empty() ? "no path" : "no path, " + row.reason);
-  text += format(": cost %.6g", *row.cost);
-  if (row.clearance) text += format(", clearance %.1f mm", 1e3 * *row.clearance);
-  if (row.joint_margin) text += format(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
-  if (row.tool_speed) text += format(", tool speed up to %.3g m/s", *row.tool_speed);
+  text += formatted(": cost %.6g", *row.cost);
+  if (row.clearance) text += formatted(", clearance %.1f mm", 1e3 * *row.clearance);
+  if (row.joint_margin) text += formatted(", %.1f deg from a joint limit", *row.joint_margin * 180 / kPi);
+  if (row.tool_speed) text += formatted(", tool speed up to %.3g m/s", *row.tool_speed);
   return text;
 }
 
@@ -224,8 +218,8 @@ void bind_tables(py::module_& m) {
       .def_readonly("reason", &EpisodeRow::reason, "What ends them, in words.")
       .def_readonly("offsets", &EpisodeRow::offsets, "Of the coordinates that vary, m and rad.")
       .def("__repr__", [](const EpisodeRow& r) {
-        return format("<Episode %llu: ", static_cast<unsigned long long>(r.episode)) +
-               (r.cost ? format("cost %.6g", *r.cost) : "no path, " + r.reason) + format(", %.1f ms>", r.plan_ms);
+        return formatted("<Episode %llu: ", static_cast<unsigned long long>(r.episode)) +
+               (r.cost ? formatted("cost %.6g", *r.cost) : "no path, " + r.reason) + formatted(", %.1f ms>", r.plan_ms);
       });
   bind_table<EpisodeRow>(m, "Episodes", "Episodes of a campaign in the order of their numbers: Episode by Episode, or as arrays.")
       .def_property_readonly(

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include <array>
-#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel::detail {
@@ -56,28 +56,23 @@ class Drawing {
     body_ += std::string(fill) + "\"/>\n";
   }
   [[nodiscard]] std::string document(double width, double height) const {
-    char head[200];
-    std::snprintf(head, sizeof head,
-                  "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" "
-                  "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect { shape-rendering: crispEdges }</style>\n",
-                  width, height, width, height);
+    const std::string head = formatted(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.0f %.0f\" width=\"%.0f\" height=\"%.0f\" "
+        "font-family=\"sans-serif\" font-size=\"11\">\n<style>rect { shape-rendering: crispEdges }</style>\n",
+        width, height, width, height);
     return head + body_ + "</svg>\n";
   }
 
  private:
   template <class... Values>
   void print(const char* format, Values... values) {
-    char text[256];
-    std::snprintf(text, sizeof text, format, values...);
-    body_ += text;
+    body_ += formatted(format, values...);
   }
   std::string body_;
 };
 
 inline std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
+  return formatted("%.3g", value);
 }
 
 }  // namespace swivel::detail

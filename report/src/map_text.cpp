@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 
 #include "map_cells.hpp"
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/formatted.hpp"
 
 namespace swivel {
 
@@ -49,14 +49,12 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   constexpr int kMargin = 8, kRows = 24;
   const MapCells cells(map, std::max(10, columns - kMargin), kRows);
   std::string text;
-  char number[32];
   MapLegend seen(map);
   for (const int sheet : map.inhabited_sheets()) {
     text += map.sheet_name(sheet) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double phi = -kPi + kTwoPi * row * cells.angles_each / map.angles;
-      std::snprintf(number, sizeof number, "%6.2f  ", phi);
-      text += row % 4 == 0 ? number : std::string(kMargin, ' ');
+      text += row % 4 == 0 ? formatted("%6.2f  ", phi) : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(sheet, column, row);
         seen.see(node);
@@ -66,8 +64,7 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
       }
       text += '\n';
     }
-    std::snprintf(number, sizeof number, "s = 0 to %.3f m", map.s.back());
-    text += std::string(kMargin, ' ') + number + "\n\n";
+    text += std::string(kMargin, ' ') + formatted("s = 0 to %.3f m", map.s.back()) + "\n\n";
   }
   const auto legend = [&](const Look& look, const std::string& meaning) {
     put(text, look, coloured);

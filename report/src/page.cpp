@@ -2,7 +2,6 @@
 #include "swivel/report/page.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "scene_json.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/roll_lattice.hpp"
@@ -181,9 +181,7 @@ Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& 
 }
 
 std::string millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
-  return text;
+  return formatted("%.3g mm", 1e3 * metres);
 }
 
 /// How near two bodies are that are too near, in words, and the line between their nearest points; where they are inside each
@@ -283,8 +281,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
       const Config step = lattice.delta(*lattice.row(layer - 1, path.back()), q);
       Eigen::Index joint = 0;
       const double most = step.cwiseAbs().maxCoeff(&joint);
-      char text[32];
-      std::snprintf(text, sizeof text, " by %.2f rad", most);
+      const std::string text = formatted(" by %.2f rad", most);
       what += ", " + map.joint_names[joint] + text;
     }
   }

@@ -10,6 +10,7 @@
 
 #include "drawing.hpp"
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/formatted.hpp"
 
 namespace swivel {
 
@@ -19,15 +20,13 @@ namespace {
 
 /// "cost 2.27", "clearance 9.9 mm more than asked", ...
 std::string value_text(PlacementCriterion criterion, double merit) {
-  char text[64];
   using enum PlacementCriterion;
   const char* const format = criterion == kClearance ? "%.3g mm"
                              : criterion == kMargin  ? "%.3g deg"
                              : criterion == kSpeed   ? "%.3g m/s"
                                                      : "%.4g";
   const double scale = criterion == kClearance ? 1e3 : criterion == kMargin ? 180 / kPi : criterion == kCost ? -1 : 1;
-  std::snprintf(text, sizeof text, format, scale * merit);
-  return text;
+  return formatted(format, scale * merit);
 }
 
 const char* unit_of(const PlacementAxis& axis) {
@@ -126,11 +125,9 @@ std::string to_text(const PlacementMap& map, int columns, bool coloured) {
     const std::size_t end = end_of(map, *row);
     return {end < 26 ? static_cast<char>('a' + end) : '#', row->cause == "pair" || row->cause == "contact" ? 208 : 153};
   };
-  char number[48];
   std::string text;
   for (int top = (map.up.count - 1) / each_up * each_up; top >= 0; top -= each_up) {
-    std::snprintf(number, sizeof number, "%8.4g  ", map.up.at(top));
-    text += number;
+    text += formatted("%8.4g  ", map.up.at(top));
     for (int left = 0; left < map.across.count; left += each_across) {
       const PlacementRow* row = nullptr;
       for (int j = top; j < std::min(map.up.count, top + each_up); ++j)
@@ -147,9 +144,8 @@ std::string to_text(const PlacementMap& map, int columns, bool coloured) {
     text += '\n';
   }
   text += std::string(kMargin, ' ') + kCoordinates[static_cast<std::size_t>(map.across.coordinate)];
-  std::snprintf(number, sizeof number, " %.4g to %.4g %s to the right, ", map.across.at(0), map.across.at(map.across.count - 1),
-                unit_of(map.across));
-  text += number + std::string(kCoordinates[static_cast<std::size_t>(map.up.coordinate)]) + " (" + unit_of(map.up) + ") upwards";
+  text += formatted(" %.4g to %.4g %s to the right, ", map.across.at(0), map.across.at(map.across.count - 1), unit_of(map.across)) +
+          std::string(kCoordinates[static_cast<std::size_t>(map.up.coordinate)]) + " (" + unit_of(map.up) + ") upwards";
   if (each_across * each_up > 1)
     text += "; a letter stands for up to " + std::to_string(each_across) + " x " + std::to_string(each_up) +
             " placements, the best of them";

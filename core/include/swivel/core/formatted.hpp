@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include <array>
-#include <cstdio>
+#include <cstdarg>
 #include <string>
 
 namespace swivel {
 
-/// As std::printf would print it, up to 199 characters. The format is a literal of ours, never a user's text.
-template <class... Values>
-[[nodiscard]] std::string formatted(const char* format, Values... values) {
-  std::array<char, 200> buffer;
-  std::snprintf(buffer.data(), buffer.size(), format, values...);
-  return buffer.data();
-}
+/// What std::printf prints of it where the locale is "C": numbers have a decimal point in every program, and none are grouped. The
+/// format is a literal of ours, never a user's text.
+[[nodiscard, gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+[[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted_list(const char* format, std::va_list arguments);
 
 }  // namespace swivel
