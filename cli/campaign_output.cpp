@@ -7,21 +7,21 @@
 
 #include "commands.hpp"
 #include "swivel/report/overview.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
 namespace {
 
 void print_summary(const CampaignSummary& summary) {
-  std::printf("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
-              static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
-              static_cast<unsigned long long>(summary.infeasible));
-  if (summary.errors > 0) std::printf(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
-  std::printf("\n");
+  say("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
+      static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
+      static_cast<unsigned long long>(summary.infeasible));
+  if (summary.errors > 0) say(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
+  say("\n");
   if (summary.answered() == 0) return;
-  std::printf("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
-              summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median,
-              summary.fcl_calls.median);
+  say("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
+      summary.plan_ms.median, summary.plan_ms.p5, summary.plan_ms.p95, summary.nodes_checked.median, summary.fcl_calls.median);
 }
 
 }  // namespace
@@ -42,9 +42,9 @@ int campaign_exit_code(const std::vector<EpisodeRow>& rows, const io::ShardRecor
   const auto failed = [](const EpisodeRow& row) { return row.status == PlanStatus::kError; };
   const auto first = std::find_if(rows.begin(), rows.end(), failed);
   if (first == rows.end()) return rows.size() == record.shard.size(record.total) ? kOk : kStopped;
-  std::fprintf(stderr, "swivel: internal error in %llu episodes, the first in episode %llu: %s\n",
-               static_cast<unsigned long long>(std::count_if(rows.begin(), rows.end(), failed)),
-               static_cast<unsigned long long>(first->episode), first->reason.c_str());
+  complain("swivel: internal error in %llu episodes, the first in episode %llu: %s\n",
+           static_cast<unsigned long long>(std::count_if(rows.begin(), rows.end(), failed)),
+           static_cast<unsigned long long>(first->episode), first->reason.c_str());
   return kInternalError;
 }
 

@@ -11,6 +11,7 @@
 #include "swivel/core/capsule_fit.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/urdf_shapes.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -98,7 +99,7 @@ int run(const FitArguments& arguments) {
   outputs.write("--out", io::urdf_with_shapes(arguments.urdf, instead, arguments.out.parent_path(),
                                               arguments.visual ? io::ShapesOf::kVisual : io::ShapesOf::kCollision));
   outputs.stage();
-  if (!outputs.takes_standard_output()) std::fputs(text.c_str(), stdout);
+  if (!outputs.takes_standard_output()) say_text(text);
   flush_standard_output();
   static_cast<void>(outputs.commit());
   return kOk;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "swivel/core/arm_guess.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -101,30 +101,26 @@ bool meet(const Chain& chain, std::size_t k) {
 void print_srs(const SrsArm& srs) {
   const bool offset = std::abs((srs.E - srs.S).normalized().dot(srs.axis[2])) < 1 - 1e-6 ||
                       std::abs((srs.W - srs.E).normalized().dot(srs.axis[4])) < 1 - 1e-6;
-  std::printf("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
+  say("class      S-R-S%s\n", offset ? ", in-plane elbow offset" : "");
   if (srs.exact)
-    std::printf("fit        exact\n");
+    say("fit        exact\n");
   else
-    std::printf("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n", 1e3 * srs.deviation.offset,
-                1e3 * srs.deviation.angle);
-  if (!srs.exact)
-    std::printf("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
-  std::printf("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
-  std::printf("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore,
-              srs.wrist_in_tool.norm());
-  std::printf("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore),
-              srs.upper + srs.fore);
-  std::printf("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
-              std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
+    say("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n", 1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
+  if (!srs.exact) say("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
+  say("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
+  say("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore, srs.wrist_in_tool.norm());
+  say("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore), srs.upper + srs.fore);
+  say("straight   at joint 4 = %.6f rad (%.3f deg)\n", std::remainder(-srs.elbow_shift, kTwoPi),
+      std::remainder(-srs.elbow_shift, kTwoPi) * 180 / kPi);
 }
 
 /// An arm that is not S-R-S: what it looks like.
 void print_other(const Chain& chain, const ArmClass& arm) {
   const bool wrist = meet(chain, chain.roll ? 3 : 4);
-  std::printf("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
-              meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
-  if (!chain.roll) std::printf("not S-R-S  %s\n", arm.not_srs.c_str());
-  if (chain.roll) std::printf("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
+  say("class      %s with %s shoulder and %s wrist\n", chain.roll ? "6R and a roll" : "7R",
+      meet(chain, 0) ? "a spherical" : "no spherical", wrist ? "a spherical" : "no spherical");
+  if (!chain.roll) say("not S-R-S  %s\n", arm.not_srs.c_str());
+  if (chain.roll) say("roll       a path must leave the tool free to turn about its own axis: path.roll\n");
 }
 
 /// Joints that move on their own and are neither the arm's nor between base and tip: a gripper's, another arm's.
@@ -163,35 +159,35 @@ int run(const InfoArguments& arguments) {
   const ArmModel arm =
       build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
   const ArmClass kind = classify(arm.chain, robot->source);
-  std::printf("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
+  say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   if (!shapes.missing_meshes.empty())
-    std::printf("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
+    say("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
                 shapes.missing_meshes.front().c_str());
   if (shapes.collision == 0)
-    std::printf("shapes     none for collision: the robot is kept clear of nothing%s\n",
+    say("shapes     none for collision: the robot is kept clear of nothing%s\n",
                 shapes.visual_meshes == 0 ? "" : "; `swivel fit --visual` fits capsules about its visual meshes");
-  std::printf("arm        %s to %s\n", base.c_str(), tip.c_str());
-  for (const HeldJoint& held : arm.held) std::printf("held       %s\n", words({held}).c_str());
-  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) std::printf("beside     %s\n", words(beside).c_str());
+  say("arm        %s to %s\n", base.c_str(), tip.c_str());
+  for (const HeldJoint& held : arm.held) say("held       %s\n", words({held}).c_str());
+  if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) say("beside     %s\n", words(beside).c_str());
   for (const Chain::Follower& follower : arm.chain.followers)
-    std::printf("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier, follower.leader + 1);
+    say("linkage    %s moves by %.6g times joint %d\n", follower.name.c_str(), follower.multiplier, follower.leader + 1);
   for (const ArmGuess& other : others)
-    std::printf("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(), other.joints == 6 ? ", six joints" : "");
+    say("other arm  %s to %s%s\n", other.base.c_str(), other.tip.c_str(), other.joints == 6 ? ", six joints" : "");
   kind.srs ? print_srs(*kind.srs) : print_other(arm.chain, kind);
-  std::printf("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
+  say("solutions  %s: %s\n", kind.complete() ? "all" : "those that turn up", kind.method().c_str());
   for (std::size_t j = 0; j < kDof - (arm.chain.roll ? 1 : 0); ++j) {
     const JointLimit& limit = arm.chain.limit[j];
     if (limit.continuous)
-      std::printf("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
+      say("joint %zu    %-24s continuous", j + 1, arm.chain.joint_names[j].c_str());
     else
-      std::printf("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1, arm.chain.joint_names[j].c_str(),
-                  limit.lower, limit.upper, limit.lower * 180 / kPi, limit.upper * 180 / kPi);
-    limit.velocity > 0 ? std::printf(", %.3f rad/s\n", limit.velocity) : std::printf(", no speed limit\n");
+      say("joint %zu    %-24s %9.4f to %9.4f rad (%7.2f to %7.2f deg)", j + 1, arm.chain.joint_names[j].c_str(), limit.lower,
+          limit.upper, limit.lower * 180 / kPi, limit.upper * 180 / kPi);
+    limit.velocity > 0 ? say(", %.3f rad/s\n", limit.velocity) : say(", no speed limit\n");
   }
-  for (const std::string& warning : limit_warnings(arm.chain)) std::printf("warning    %s\n", warning.c_str());
-  for (const std::string& warning : held_warnings(arm.held)) std::printf("warning    %s\n", warning.c_str());
-  for (const std::string& warning : file_warnings(*robot, arm.chain)) std::printf("warning    %s\n", warning.c_str());
-  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty()) std::printf("warning    %s\n", rest.c_str());
+  for (const std::string& warning : limit_warnings(arm.chain)) say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : held_warnings(arm.held)) say("warning    %s\n", warning.c_str());
+  for (const std::string& warning : file_warnings(*robot, arm.chain)) say("warning    %s\n", warning.c_str());
+  if (const std::string rest = joints_at_rest(*robot, arm.chain); !rest.empty()) say("warning    %s\n", rest.c_str());
   return kOk;
 }
 

@@ -18,6 +18,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
 #include "swivel/io/io.hpp"
+#include "terminal.hpp"
 #include "wrapped_output.hpp"
 
 namespace swivel::cli {
@@ -90,7 +91,7 @@ void flush_standard_output() {
 }
 
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason) {
-  for (const auto& file : files) std::fprintf(stderr, "swivel: removed the earlier %s: %s\n", file.c_str(), reason.c_str());
+  for (const auto& file : files) complain("swivel: removed the earlier %s: %s\n", file.c_str(), reason.c_str());
 }
 
 }  // namespace swivel::cli
@@ -110,13 +111,13 @@ int main(int argc, char** argv) {
     std::raise(SIGPIPE);
     return kBadInput;
   } catch (const swivel::InputError& error) {
-    std::fprintf(stderr, "swivel: %s\n", error.what());
+    complain("swivel: %s\n", error.what());
     return kBadInput;
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "swivel: out of memory: allowed are coarser resolutions or the planners eager_dp, lazy, parallel\n");
+    complain("swivel: out of memory: allowed are coarser resolutions or the planners eager_dp, lazy, parallel\n");
     return kBadInput;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "swivel: internal error: %s\n", error.what());
+    complain("swivel: internal error: %s\n", error.what());
     return kInternalError;
   }
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion_output.hpp"
 
-#include <cstdio>
-
 #include "commands.hpp"
 #include "search_options.hpp"
 #include "swivel/core/input_error.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -46,14 +45,14 @@ void require_motion_format(const std::string& file) {
 void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names) {
   if (const Refined* refined = aftermath.refinement) {
     if (refined->refined)
-      std::printf("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n",
-                  refined->cost_before, refined->cost, refined->bend_before, refined->bend);
+      say("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n", refined->cost_before,
+          refined->cost, refined->bend_before, refined->bend);
     else
-      std::printf("not refined: %s\n", refined->reason.c_str());
+      say("not refined: %s\n", refined->reason.c_str());
   }
   if (aftermath.motion == nullptr) return;
   if (const auto& failure = aftermath.motion->failure) {
-    std::printf("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
+    say("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
     return;
   }
   const TimedPath& motion = *aftermath.motion->motion;
@@ -62,44 +61,44 @@ void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint
   for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})
     for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(one)])
       if (peak.ratio > most->ratio) most = &peak, rate = one;
-  std::printf(
+  say(
       "motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool within %.2g um of its path "
       "between; %s of '%s' at %s of its limit, s = %.4f m",
       motion.duration, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate, 1e6 * motion.between_position,
       to_string(rate), joint_names[static_cast<std::size_t>(most->joint)].c_str(), percent(most->ratio).c_str(), most->s);
-  if (!motion.slow.empty()) std::printf("; slower on %zu stretch%s", motion.slow.size(), motion.slow.size() == 1 ? "" : "es");
-  if (!motion.stops.empty()) std::printf("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
-  std::printf("\n");
-  for (const std::string& warning : motion.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+  if (!motion.slow.empty()) say("; slower on %zu stretch%s", motion.slow.size(), motion.slow.size() == 1 ? "" : "es");
+  if (!motion.stops.empty()) say("; %zu stop%s", motion.stops.size(), motion.stops.size() == 1 ? "" : "s");
+  say("\n");
+  for (const std::string& warning : motion.warnings) complain("swivel: warning: %s\n", warning.c_str());
 }
 
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {
   const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
-  std::printf("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration,
+  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration,
               1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
   for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
     const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
     const TimedPath::Peak* most = &peaks[0];
     for (const TimedPath::Peak& peak : peaks)
       if (peak.ratio > most->ratio) most = &peak;
-    std::printf("  %s at most %s of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), percent(most->ratio).c_str(),
+    say("  %s at most %s of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), percent(most->ratio).c_str(),
                 name(most->joint), most->s, most->t);
   }
   for (const TimedPath::Slow& slow : motion.slow) {
-    std::printf("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %s of the speed at least, for the %s of '%s'", slow.from_s,
+    say("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %s of the speed at least, for the %s of '%s'", slow.from_s,
                 slow.to_s, slow.from_t, slow.to_t, percent(slow.share).c_str(), to_string(slow.reason), name(slow.joint));
     if (!slow.singular.empty())
-      std::printf("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
-    std::printf("\n");
+      say("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
+    say("\n");
   }
   if (motion.rounded > 0)
-    std::printf("  %d corner%s rounded, within %.3g mm and %.3g mrad\n", motion.rounded, motion.rounded == 1 ? "" : "s",
-                1e3 * motion.rounded_position, 1e3 * motion.rounded_angle);
+    say("  %d corner%s rounded, within %.3g mm and %.3g mrad\n", motion.rounded, motion.rounded == 1 ? "" : "s",
+        1e3 * motion.rounded_position, 1e3 * motion.rounded_angle);
   for (const TimedPath::Stop& stop : motion.stops)
-    std::printf("  stops at waypoint %d, s = %.4f m, t = %.3f s: the corner may not be rounded\n", stop.waypoint, stop.s, stop.t);
-  std::printf("  between samples the tool is within %.3g um and %.3g urad of its path\n", 1e6 * motion.between_position,
-              1e6 * motion.between_angle);
-  for (const std::string& warning : motion.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+    say("  stops at waypoint %d, s = %.4f m, t = %.3f s: the corner may not be rounded\n", stop.waypoint, stop.s, stop.t);
+  say("  between samples the tool is within %.3g um and %.3g urad of its path\n", 1e6 * motion.between_position,
+      1e6 * motion.between_angle);
+  for (const std::string& warning : motion.warnings) complain("swivel: warning: %s\n", warning.c_str());
 }
 
 }  // namespace swivel::cli

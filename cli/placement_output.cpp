@@ -149,13 +149,13 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
   if (map && outputs.wants("--svg")) outputs.write("--svg", to_svg(*map));
   outputs.stage();
   if (!outputs.takes_standard_output()) {
-    std::printf("%zu of %llu placements planned, %s%s\n", rows.size(),
-                static_cast<unsigned long long>(record.shard.size(record.total)), count_text(rows).c_str(), remark.c_str());
+    say("%zu of %llu placements planned, %s%s\n", rows.size(), static_cast<unsigned long long>(record.shard.size(record.total)),
+        count_text(rows).c_str(), remark.c_str());
     if (map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
-    if (!best.empty() && top > 0) std::printf("best by %s:\n", to_string(criteria[0]));
+    if (!best.empty() && top > 0) say("best by %s:\n", to_string(criteria[0]));
     for (std::size_t k = 0; k < std::min(best.size(), top); ++k)
-      std::printf("  %s:\n    %s%s\n", figures(best[k]).c_str(), record.plan_command.c_str(),
-                  request.placement.words(best[k].offset).c_str());
+      say("  %s:\n    %s%s\n", figures(best[k]).c_str(), record.plan_command.c_str(),
+          request.placement.words(best[k].offset).c_str());
   }
   flush_standard_output();
   report_removed(outputs.commit(), "no placement has a path");
@@ -166,8 +166,7 @@ int placement_exit_code(const std::vector<PlacementRow>& rows) {
     return std::find_if(rows.begin(), rows.end(), [&](const PlacementRow& row) { return row.status == status; });
   };
   if (const auto error = with(PlanStatus::kError); error != rows.end()) {
-    std::fprintf(stderr, "swivel: internal error in cell %llu: %s\n", static_cast<unsigned long long>(error->cell),
-                 error->reason.c_str());
+    complain("swivel: internal error in cell %llu: %s\n", static_cast<unsigned long long>(error->cell), error->reason.c_str());
     return kInternalError;
   }
   return with(PlanStatus::kSolved) == rows.end() ? kNo : kOk;

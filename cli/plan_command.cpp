@@ -55,14 +55,13 @@ std::string check_words(const PlanResult& result) {
 }
 
 void print_summary(const PlanResult& result) {
-  std::fputs(answer_text(result).c_str(), stdout);
+  say_text(answer_text(result));
   const Counters& c = result.counters;
-  std::printf(
-      "%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms%s; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
+  say("%s, %d thread%s: load %.1f ms, prepare %.1f ms, plan %.1f ms%s; %lld of %lld nodes and %lld edges checked, %lld FCL calls\n",
       result.planner.c_str(), result.threads, result.threads == 1 ? "" : "s", ms(result, "load"), ms(result, "prepare"),
       ms(result, "plan"), check_words(result).c_str(), static_cast<long long>(c.nodes_checked),
       static_cast<long long>(result.lattice.nodes), static_cast<long long>(c.edges_checked), static_cast<long long>(c.fcl_calls));
-  for (const std::string& warning : result.warnings) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+  for (const std::string& warning : result.warnings) complain("swivel: warning: %s\n", warning.c_str());
 }
 
 double milliseconds_since(std::chrono::steady_clock::time_point start) {
@@ -206,8 +205,8 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     if (!arguments.quiet && !outputs->takes_standard_output()) {
       print_summary(result);
       print_aftermath(aftermath, result.joint_names);
-      if (cut) std::fputs(cut_text(*cut, aftermath.cut_bytes).c_str(), stdout);
-      if (advice) std::fputs(advice_text(*advice).c_str(), stdout);
+      if (cut) say_text(cut_text(*cut, aftermath.cut_bytes));
+      if (advice) say_text(advice_text(*advice));
     }
     if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
   });

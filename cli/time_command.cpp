@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -76,9 +76,9 @@ int run(const TimeArguments& arguments) {
   }
   outputs.stage();
   if (!timed)
-    std::printf("stopped\n");
+    say("stopped\n");
   else if (timed->failure)
-    std::printf("not executable: s = %.4f m: %s\n", timed->failure->s, timed->failure->reason.c_str());
+    say("not executable: s = %.4f m: %s\n", timed->failure->s, timed->failure->reason.c_str());
   else if (!arguments.quiet && !outputs.takes_standard_output())
     print_motion(*timed->motion, names);
   flush_standard_output();

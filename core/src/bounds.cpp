@@ -1,9 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/bounds.hpp"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 namespace swivel {
 
 namespace {
+
+/// Characters that show nothing and change what is shown around them: those that turn the direction of writing (a name could end
+/// with the letters that it seems to begin with), breaks of lines and paragraphs, marks of byte order, annotations and tags.
+bool is_invisible_control(unsigned code) {
+  constexpr std::array<std::pair<unsigned, unsigned>, 8> kRanges{{{0x61c, 0x61c},
+                                                                  {0x200e, 0x200f},
+                                                                  {0x2028, 0x202e},
+                                                                  {0x2060, 0x206f},
+                                                                  {0xfeff, 0xfeff},
+                                                                  {0xfff9, 0xfffb},
+                                                                  {0x200b, 0x200b},
+                                                                  {0xe0000, 0xe007f}}};
+  return std::any_of(kRanges.begin(), kRanges.end(),
+                     [&](const auto& range) { return code >= range.first && code <= range.second; });
+}
 
 /// Bytes of the printable UTF-8 character that `text` begins with; 0 where it begins with none.
 std::size_t character(std::string_view text) {
@@ -18,7 +37,8 @@ std::size_t character(std::string_view text) {
     code = code << 6 | (byte(k) & 0x3f);
   }
   const bool shortest = code >= (size == 2 ? 0x80u : size == 3 ? 0x800u : 0x10000u);
-  const bool control = code < 0xa0, surrogate = code >= 0xd800 && code < 0xe000, none = (code & 0xfffe) == 0xfffe;
+  const bool control = code < 0xa0 || is_invisible_control(code), surrogate = code >= 0xd800 && code < 0xe000,
+             none = (code & 0xfffe) == 0xfffe;
   return shortest && !control && !surrogate && !none && code < 0x110000 ? size : 0;
 }
 

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "swivel/core/bounds.hpp"
+
 #ifdef SWIVEL_PAGES
 // GCC's and Clang's way to a file as bytes; C++20 has no #embed.
 #define SWIVEL_EMBED(name)               \
@@ -62,8 +64,9 @@ std::string fill(std::string_view page, const std::string& json,
     filled += html;
   }
   copy_up_to("@@DATA@@");
+  // What turns the direction of writing would turn that of the page as well.
   // "</script" would end the element that holds the data, "<!--" and "<script" hide its end.
-  for (const char c : json) filled += c == '<' ? "\\u003c" : std::string(1, c);
+  for (const char c : printable(json)) filled += c == '<' ? "\\u003c" : std::string(1, c);
   return filled += page;
 }
 

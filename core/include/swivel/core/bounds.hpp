@@ -11,7 +11,7 @@ inline constexpr double kMostMetres = 1000;
 inline constexpr double kMostStartTolerance = 0.1;  ///< m and rad
 
 /// Names of links, joints, bodies and frames stand in messages, JSON, SVG, pages and on terminals: UTF-8 that XML can hold, without
-/// control characters (C0, DEL, C1), and not empty.
+/// control characters (C0, DEL, C1, and what turns the direction of writing or breaks lines), and not empty.
 [[nodiscard]] bool is_valid_name(std::string_view name);
 /// Completes "allowed is ...".
 inline constexpr const char* kValidName = "a name in UTF-8 without control characters";

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "terminal.hpp"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "swivel/core/bounds.hpp"
+#include "swivel/core/formatted.hpp"
+
+namespace swivel::cli {
+
+namespace {
+
+/// Text with '?' for what a terminal would obey or hide, line by line.
+std::string shown(std::string_view text) {
+  std::string result;
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {
+    result += printable(text.substr(0, end)) + '\n';
+    text.remove_prefix(end + 1);
+  }
+  return result + printable(text);
+}
+
+}  // namespace
+
+void say_text(std::string_view text) {
+  std::fputs(shown(text).c_str(), stdout);
+}
+
+void say(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  say_text(formatted_list(format, arguments));
+  va_end(arguments);
+}
+
+void complain(const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::fputs(shown(formatted_list(format, arguments)).c_str(), stderr);
+  va_end(arguments);
+}
+
+}  // namespace swivel::cli
