@@ -19,6 +19,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/shards.hpp"
 #include "swivel/planner/campaign.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -36,16 +37,8 @@ struct CampaignArguments {
 /// The trajectories of a campaign: DIR/episode_K.csv.
 class Trajectories {
  public:
-  Trajectories(fs::path folder, const std::vector<io::InputFiles::File>& inputs) : folder_(std::move(folder)) {
-    std::error_code ignored;
-    for (const io::InputFiles::File& input : inputs)
-      if (fs::equivalent(input.name.parent_path() / ".", folder_, ignored) &&
-          input.name.filename().string().starts_with("episode_"))
-        throw InputError("--trajectories: " + folder_.string() + " holds " + input.name.filename().string() +
-                         ", which is one of the files that are read: allowed is another folder");
-    if (fs::exists(folder_, ignored) && !fs::is_directory(folder_, ignored))
-      throw InputError("--trajectories: " + folder_.string() + " is not a folder: allowed is a folder, or a name for a new one");
-  }
+  explicit Trajectories(fs::path folder) : folder_(std::move(folder)) {}
+  [[nodiscard]] static bool is_name(const std::string& name) { return name.starts_with("episode_") && name.ends_with(".csv"); }
   /// Safe to call for several episodes at a time.
   void write(std::uint64_t episode, const PlanResult& result) {
     std::error_code error;
@@ -116,14 +109,22 @@ int run(const CampaignArguments& arguments) {
   const PreparedRobot robot(problem);
   warn_of_held(robot.arm().held);
 
-  io::OutputFiles outputs(inputs);
+  std::vector<io::InputFiles::File> read = inputs;
+  const std::vector<EpisodeRow> given = [&] {
+    const io::InputFiles noted;
+    std::vector<EpisodeRow> found = given_rows(arguments.rows, options, varied_coordinates(problem.vary));
+    read.insert(read.end(), noted.files().begin(), noted.files().end());
+    return found;
+  }();
+  io::OutputFiles outputs(read);
   outputs.add("--out", arguments.out);
   if (!arguments.out.empty()) outputs.add("the rows of --out", arguments.out + ".part");
   outputs.add("--report", arguments.report);
   outputs.add("--json", arguments.json);
   std::optional<Trajectories> trajectories;
   if (!arguments.trajectories.empty()) {
-    trajectories.emplace(arguments.trajectories, inputs);
+    outputs.add_folder("--trajectories", arguments.trajectories, Trajectories::is_name);
+    trajectories.emplace(arguments.trajectories);
     options.planned = [&](std::uint64_t episode, const PlanResult& result) { trajectories->write(episode, result); };
   }
   io::ShardRecord record{
@@ -136,7 +137,7 @@ int run(const CampaignArguments& arguments) {
   record.settings.values.emplace_back("seed", std::to_string(options.seed));
   record.settings.coordinates = varied_coordinates(problem.vary);
   const std::uint64_t size = options.shard.size(options.episodes);
-  std::vector<EpisodeRow> rows = given_rows(arguments.rows, options, varied_coordinates(problem.vary));
+  std::vector<EpisodeRow> rows = given;
   std::optional<io::CampaignFile> file;
   if (!arguments.out.empty()) {
     file.emplace(arguments.out, settings_of(record), options.shard, options.episodes);
@@ -171,8 +172,8 @@ int run(const CampaignArguments& arguments) {
   show_campaign(outputs, rows, record);
   if (file && complete) file->finish();
   if (trajectories && trajectories->removed() > 0)
-    std::fprintf(stderr, "swivel: removed %llu earlier trajectories in %s: there is no path now\n",
-                 static_cast<unsigned long long>(trajectories->removed()), arguments.trajectories.c_str());
+    complain("swivel: removed %llu earlier trajectories in %s: there is no path now\n",
+             static_cast<unsigned long long>(trajectories->removed()), arguments.trajectories.c_str());
   return campaign_exit_code(rows, record);
 }
 

@@ -136,6 +136,38 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
   outputs_.push_back(std::move(output));
 }
 
+void OutputFiles::add_folder(const std::string& option, const fs::path& folder,
+                             const std::function<bool(const std::string&)>& is_one) const {
+  const std::string where = place(option, folder);
+  const auto taken_by = [&](const FileIdentity& identity) {
+    for (const InputFiles::File& input : inputs_)
+      if (input.identity == identity) return std::string("is one of the files that are read");
+    for (const Output& output : outputs_)
+      if (!output.stream && output.identity == identity) return "is the file of " + output.option + " as well";
+    return std::string();
+  };
+  const auto refuse = [&](const fs::path& file, const std::string& what) {
+    bad_input(where, "its " + file.filename().string() + " " + what, "a folder of its own");
+  };
+  std::error_code error;
+  if (!fs::exists(folder, error)) {
+    const fs::path target = follow(folder);
+    if (fs::is_directory(folder_of(target), error))
+      if (const std::string what = taken_by(identity_of(target, where)); !what.empty())
+        bad_input(where, what, "a folder of its own");
+    return;
+  }
+  if (!fs::is_directory(folder, error)) bad_input(where, "is not a folder", "a folder, or a name for a new one");
+  for (const Output& output : outputs_)
+    if (!output.stream && is_one(output.target.filename().string()) && fs::equivalent(folder_of(output.target), folder, error))
+      refuse(output.target, "is the file of " + output.option + " as well");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {  // what is there may be linked to others
+    if (!is_one(entry.path().filename().string()) || !fs::is_directory(folder_of(follow(entry.path())), error)) continue;
+    if (const std::string what = taken_by(identity_of(entry.path(), where)); !what.empty()) refuse(entry.path(), what);
+  }
+  if (error) bad_input(where, error.message(), "a folder that can be read");
+}
+
 bool OutputFiles::takes_standard_output() const {
   return std::any_of(outputs_.begin(), outputs_.end(), [](const Output& output) { return output.descriptor == STDOUT_FILENO; });
 }

@@ -476,6 +476,30 @@ limits: {{clearance: 0.005}}
             self.assertIn("t.csv", done.stderr)
 
 
+class ForeignText(WithFolder):
+    """What comes from files and would turn, move or colour a terminal is printed as '?'."""
+
+    def test_controls_reach_no_terminal(self):
+        controls = "\u202e\u2066\u200f\x1b[31m\x07\x9b"
+        robot = self.folder / "robot.urdf"
+        text = (DATA / "robots/iiwa14.urdf").read_text()
+        xml = "".join(f"&#{ord(c)};" for c in controls if c not in "\x1b\x07")  # which XML cannot hold
+        robot.write_text(re.sub(r'<robot name="[^"]*"', f'<robot name="arm{xml}"', text))
+        problem = self.folder / f"gnp{controls}.yaml"
+        problem.write_text((PROBLEMS / "experiment_a.yaml").read_text().replace("../", str(DATA) + "/"))
+        wrong = self.folder / f"wrong{controls}.yaml"
+        wrong.write_text("robot: {}\n")
+        seen = 0
+        for arguments in (("info", robot), ("plan", problem), ("plan", problem, "--ds", "1e-9"), ("plan", wrong), ("check", problem, wrong), ("plan", self.folder / controls),
+                          ("plan", problem, "--out", self.folder / controls / "t.csv"), ("info", robot, "--tip", controls)):
+            with self.subTest(arguments):
+                done = run(*arguments)
+                for said in (done.stdout, done.stderr):
+                    self.assertFalse([c for c in said if c in controls and c != "[" and not c.isalnum()], repr(said))
+                    seen += "?" in said
+        self.assertGreaterEqual(seen, 6)
+
+
 class Stopping(WithFolder):
     LONG = (PROBLEMS / "experiment_b.yaml", "--planner", "eager_dp", "--ds", "0.0005", "--dphi", "0.005")  # minutes
 
@@ -684,6 +708,38 @@ class Campaign(WithFolder):
                 self.assertEqual((folder / f"episode_{row['episode']}.csv").read_bytes(), trajectory.read_bytes())
             else:
                 self.assertEqual((number(row["failed_s"]), row["reason"]), (result["diagnosis"]["reached_s"], result["diagnosis"]["reason"]))
+
+    def test_no_trajectory_is_a_file_of_another_option(self):
+        folder = self.folder / "trajectories"
+        folder.mkdir()
+        elsewhere = self.folder / "elsewhere.csv"
+        elsewhere.write_text("mine\n")
+        (folder / "episode_7.csv").symlink_to(elsewhere)
+        (self.folder / "link").symlink_to(folder)
+        (folder / "here.csv").symlink_to("episode_3.csv")
+        problem = folder / "episode_5.csv"
+        problem.write_text(self.PROBLEM.read_text().replace("../", str(DATA) + "/"))
+        refused = [(self.PROBLEM, "--out", folder / "episode_0.csv"), (self.PROBLEM, "--json", folder / "episode_0.csv"),
+                   (self.PROBLEM, "--out", folder / "." / ".." / "trajectories" / "episode_1.csv"), (self.PROBLEM, "--out", self.folder / "link" / "episode_1.csv"),
+                   (self.PROBLEM, "--out", folder / "here.csv"), (self.PROBLEM, "--out", elsewhere), (problem, "--out", self.folder / "out.csv")]
+        for arguments in refused:
+            with self.subTest(arguments):
+                done = run("campaign", arguments[0], "--episodes", 1, *self.QUICK, *arguments[1:], "--trajectories", folder)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+                self.assertIn("--trajectories", done.stderr)
+                self.assertEqual(done.stdout, "")
+        problem.unlink()
+        (folder / "episode_7.csv").unlink()
+        self.assertEqual(elsewhere.read_text(), "mine\n")
+        new = self.folder / "new"  # which would be a file and a folder
+        done = run("campaign", self.PROBLEM, "--episodes", 1, *self.QUICK, "--out", new, "--trajectories", new)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        done = run("campaign", self.PROBLEM, "--episodes", 1, *self.QUICK, "--out", folder / "table.csv", "--trajectories", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = run("campaign", self.PROBLEM, "--episodes", 1, *self.QUICK, "--rows", folder / "table.csv", "--out", folder / "table.csv")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("one of the files that are read", done.stderr)
 
     def test_resume(self):
         out = self.campaign("r.csv")[1]

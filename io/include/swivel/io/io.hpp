@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <iosfwd>
 #include <map>
 #include <memory>
@@ -144,6 +145,11 @@ class OutputFiles {
   /// `option` names the output here and in messages; an empty file name is no output. Throws InputError where the file cannot be
   /// written, is one of the inputs, or is an output already.
   void add(const std::string& option, const std::filesystem::path& file);
+  /// After all of these: a folder, which need not be there, for files that are written while the work goes on, outside of this
+  /// class; `is_one` tells their names. Throws InputError where it is no folder, or where one of them is, or would be, one of the
+  /// inputs or outputs.
+  void add_folder(const std::string& option, const std::filesystem::path& folder,
+                  const std::function<bool(const std::string&)>& is_one) const;
   [[nodiscard]] bool wants(const std::string& option) const;
   /// Whether one of them goes to standard output, by whatever name, so that nothing else should be printed there.
   [[nodiscard]] bool takes_standard_output() const;
