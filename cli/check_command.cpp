@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "search_options.hpp"
 #include "swivel/core/answer_text.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
@@ -17,6 +18,7 @@
 #include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/planner.hpp"
+#include "terminal.hpp"
 
 namespace swivel::cli {
 
@@ -55,36 +57,42 @@ void print_failures(const CheckResult& result) {
     first.push_back(&failure);
   }
   for (std::size_t k = 0; k < kinds.size(); ++k) {
-    std::printf("  %s", first[k]->c_str());
-    if (kinds[k].second > 1) std::printf(" (and %zu more like it)", kinds[k].second - 1);
-    std::printf("\n");
+    say("  %s", first[k]->c_str());
+    if (kinds[k].second > 1) say(" (and %zu more like it)", kinds[k].second - 1);
+    say("\n");
   }
   const auto listed = static_cast<std::int64_t>(result.failures.size());
-  if (result.failure_count > listed) std::printf("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
+  if (result.failure_count > listed) say("  and %lld more\n", static_cast<long long>(result.failure_count - listed));
 }
 
 /// What was proved, and how near to failing.
 void print_margins(const Problem& problem, const Chain& chain, const CheckResult& result) {
-  std::printf("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position, result.worst_angle,
-              1e3 * result.worst_path_error);
-  if (problem.limits.tool_path_error) std::printf(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
-  std::printf(" and %.3g rad", result.worst_path_angle);
-  if (problem.limits.tool_angle_error) std::printf(" (allowed %.3g)", *problem.limits.tool_angle_error);
-  std::printf(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
+  say("tool within %.2g m and %.2g rad of the path at rows, within %.3f mm", result.worst_position, result.worst_angle,
+      1e3 * result.worst_path_error);
+  if (problem.limits.tool_path_error) say(" (allowed %.3f)", 1e3 * *problem.limits.tool_path_error);
+  say(" and %.3g rad", result.worst_path_angle);
+  if (problem.limits.tool_angle_error) say(" (allowed %.3g)", *problem.limits.tool_angle_error);
+  say(" between, joint moves within %s of what is allowed", percent(result.largest_step).c_str());
   if (result.nearest_limit)
-    std::printf(", '%s' %.2f deg from its limit at row %zu", chain.joint_names[result.nearest_limit->joint].c_str(),
-                result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
+    say(", '%s' %.2f deg from its limit at row %zu", chain.joint_names[result.nearest_limit->joint].c_str(),
+        result.nearest_limit->by * 180 / kPi, result.nearest_limit->row);
   if (result.min_clearance)
-    std::printf(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);
-  std::printf(", cost %.9g\n", result.cost);
+    say(", clearance at least %.3f mm, %.3f mm more than asked", 1e3 * *result.min_clearance, 1e3 * *result.min_margin);
+  if (const auto& contact = result.deepest_contact) {
+    say(", %s - %s at least %.3f mm", contact->bodies[0].c_str(), contact->bodies[1].c_str(), 1e3 * contact->depth);
+    if (contact->at_most) say(" and at most %.3f mm", 1e3 * *contact->at_most);
+    say(" deep in each other (%s)",
+        contact->allowed ? formatted("allowed %.3f mm", 1e3 * *contact->allowed).c_str() : "allowed however deep");
+  }
+  say(", cost %.9g\n", result.cost);
   if (!result.motion) return;
   const char* const names[] = {"speed", "acceleration", "jerk"};
-  std::printf("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration, 1e3 * result.motion->tool_speed,
-              result.motion->turn_speed);
+  say("motion: %.3f s, tool at most %.6g mm/s and %.4g rad/s", result.motion->duration, 1e3 * result.motion->tool_speed,
+      result.motion->turn_speed);
   for (std::size_t k = 0; k < 3; ++k)
-    std::printf(", %s at most %.2f %% of what '%s' can do", names[k], 100 * result.motion->peaks[k].ratio,
-                chain.joint_names[static_cast<std::size_t>(result.motion->peaks[k].joint)].c_str());
-  std::printf("\n");
+    say(", %s at most %.2f %% of what '%s' can do", names[k], 100 * result.motion->peaks[k].ratio,
+        chain.joint_names[static_cast<std::size_t>(result.motion->peaks[k].joint)].c_str());
+  say("\n");
 }
 
 int run_on_certificate(const Problem& problem, const std::string& file) {
@@ -98,16 +106,15 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
     held = robot.arm().held;
     result = check_cut(robot, problem, cut, budget);
   } catch (const Stopped&) {
-    std::printf("stopped\n");
+    say("stopped\n");
     return kStopped;
   }
   warn_of_held(held);
   if (!result.passed) {
-    std::printf("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
+    say("%s\nfailed: this certificate proves nothing\n", result.failure.c_str());
     return kNo;
   }
-  std::printf(
-      "passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
+  say("passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
       with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1],
       removed_text(cut).c_str(), static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
   return kOk;
@@ -131,12 +138,11 @@ int run(const CheckArguments& arguments) {
       file.timed.empty()
           ? check_trajectory(robot, problem, complete([&] { return complete_rows(robot, problem, rows, file.stated); }))
           : check_motion(robot, problem, complete([&] { return complete_motion(robot, problem, file.timed, file.stated); }));
-  std::printf("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
-  if (!result.passed)
-    std::printf(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
-  if (result.rounded) std::printf(", on the path as motions follow it, its corners rounded");
-  if (!held.empty()) std::printf(", held: %s", words(held).c_str());
-  std::printf("; ");
+  say("%s: %zu rows", result.passed ? "passed" : "failed", rows.size());
+  if (!result.passed) say(", %lld failure%s", static_cast<long long>(result.failure_count), result.failure_count == 1 ? "" : "s");
+  if (result.rounded) say(", on the path as motions follow it, its corners rounded");
+  if (!held.empty()) say(", held: %s", words(held).c_str());
+  say("; ");
   print_margins(problem, chain, result);
   print_failures(result);
   return result.passed ? kOk : kNo;

@@ -162,10 +162,10 @@ int run(const InfoArguments& arguments) {
   say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   if (!shapes.missing_meshes.empty())
     say("meshes     %zu not found, which planning needs: %s\n", shapes.missing_meshes.size(),
-                shapes.missing_meshes.front().c_str());
+        shapes.missing_meshes.front().c_str());
   if (shapes.collision == 0)
     say("shapes     none for collision: the robot is kept clear of nothing%s\n",
-                shapes.visual_meshes == 0 ? "" : "; `swivel fit --visual` fits capsules about its visual meshes");
+        shapes.visual_meshes == 0 ? "" : "; `swivel fit --visual` fits capsules about its visual meshes");
   say("arm        %s to %s\n", base.c_str(), tip.c_str());
   for (const HeldJoint& held : arm.held) say("held       %s\n", words({held}).c_str());
   if (const auto beside = held_beside(*robot, arm, hold); !beside.empty()) say("beside     %s\n", words(beside).c_str());

@@ -61,8 +61,7 @@ void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint
   for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})
     for (const TimedPath::Peak& peak : motion.peaks[static_cast<std::size_t>(one)])
       if (peak.ratio > most->ratio) most = &peak, rate = one;
-  say(
-      "motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool within %.2g um of its path "
+  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz, tool within %.2g um of its path "
       "between; %s of '%s' at %s of its limit, s = %.4f m",
       motion.duration, 1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate, 1e6 * motion.between_position,
       to_string(rate), joint_names[static_cast<std::size_t>(most->joint)].c_str(), percent(most->ratio).c_str(), most->s);
@@ -74,21 +73,20 @@ void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint
 
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names) {
   const auto name = [&](int joint) { return joint_names[static_cast<std::size_t>(joint)].c_str(); };
-  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration,
-              1e3 * motion.speed, motion.ideal, motion.rows.size(), motion.rate);
+  say("motion: %.3f s at %g mm/s (%.3f s at that speed throughout), %zu samples at %g Hz\n", motion.duration, 1e3 * motion.speed,
+      motion.ideal, motion.rows.size(), motion.rate);
   for (const JointRate rate : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk}) {
     const auto& peaks = motion.peaks[static_cast<std::size_t>(rate)];
     const TimedPath::Peak* most = &peaks[0];
     for (const TimedPath::Peak& peak : peaks)
       if (peak.ratio > most->ratio) most = &peak;
     say("  %s at most %s of the limit: '%s' at s = %.4f m, t = %.3f s\n", to_string(rate), percent(most->ratio).c_str(),
-                name(most->joint), most->s, most->t);
+        name(most->joint), most->s, most->t);
   }
   for (const TimedPath::Slow& slow : motion.slow) {
     say("  slower from s = %.4f to %.4f m (t = %.3f to %.3f s): %s of the speed at least, for the %s of '%s'", slow.from_s,
-                slow.to_s, slow.from_t, slow.to_t, percent(slow.share).c_str(), to_string(slow.reason), name(slow.joint));
-    if (!slow.singular.empty())
-      say("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
+        slow.to_s, slow.from_t, slow.to_t, percent(slow.share).c_str(), to_string(slow.reason), name(slow.joint));
+    if (!slow.singular.empty()) say("; the %s is %.1f deg from singular", slow.singular.c_str(), slow.singular_angle * 180 / kPi);
     say("\n");
   }
   if (motion.rounded > 0)

@@ -240,7 +240,7 @@ int run(const PlanArguments& arguments) {
 }  // namespace
 
 void warn_of_held(const std::vector<HeldJoint>& held) {
-  for (const std::string& warning : held_warnings(held)) std::fprintf(stderr, "swivel: warning: %s\n", warning.c_str());
+  for (const std::string& warning : held_warnings(held)) complain("swivel: warning: %s\n", warning.c_str());
 }
 
 void EpisodeChoice::add_to(CLI::App& command) {

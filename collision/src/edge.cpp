@@ -70,7 +70,7 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
   return std::nullopt;
 }
 
-/// The distance that a level asks of a pair that is near by design.
+/// The distance that a level asks of a pair of the rule's own.
 double distance_of(const Level& level, const EdgeRule::Near& pair) {
   return pair.d_edge + (level.keep == Keep::kMidpoint ? pair.h : 0) + level.more;
 }
@@ -99,6 +99,7 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
+  if (spare && !rule.near.empty()) *spare = 0;  // of those nothing is known
   return std::nullopt;
 }
 

@@ -336,6 +336,53 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   return std::sqrt(least);
 }
 
+double TriangleTree::distance_at(const Vector3d& point, int triangle) const {
+  constexpr double kFarAway = 1e12;  // m^2
+  return std::sqrt(squared_distance(Segment{point, Vector3d::Zero()}, triangles_[triangle], kFarAway));
+}
+
+Vector3d TriangleTree::nearest_on(const Vector3d& point, int triangle) const {
+  const Triangle& t = triangles_[triangle];
+  const Vector3d from = point - t.a, foot = from - t.normal.dot(from) * t.normal;
+  if (t.normal.dot(t.ab.cross(foot)) >= 0 && t.normal.dot(foot.cross(t.ac)) >= 0 &&
+      t.normal.dot((t.ac - t.ab).cross(foot - t.ab)) >= 0)
+    return t.a + foot;
+  Vector3d nearest = t.a;
+  for (int k = 0; k < 3; ++k) {
+    const Segment edge = t.edge(k);
+    const double length = edge.along.squaredNorm();
+    const Vector3d here = edge.at(length > 0 ? std::clamp((point - edge.start).dot(edge.along) / length, 0.0, 1.0) : 0);
+    if ((here - point).squaredNorm() < (nearest - point).squaredNorm()) nearest = here;
+  }
+  return nearest;
+}
+
+bool TriangleTree::reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal, double offset) const {
+  const Segment at{point, Vector3d::Zero()};
+  const double limit = radius * radius;
+  std::array<int, kDeepest> stack;
+  std::size_t open = 0;
+  stack[open++] = 0;
+  while (open > 0) {
+    const int index = stack[--open];
+    const Node& node = nodes_[index];
+    if (normal.dot(node.center) + normal.cwiseAbs().dot(node.half) <= offset) continue;
+    if (((node.center - point).cwiseAbs() - node.half).cwiseMax(0).squaredNorm() >= limit) continue;
+    if (node.right != 0) {
+      stack[open++] = node.right;
+      stack[open++] = index + 1;
+      continue;
+    }
+    for (int k = node.begin; k < node.end; ++k) {
+      const Triangle& t = triangles_[k];
+      if (normal.dot(t.a) + std::max({0.0, normal.dot(t.ab), normal.dot(t.ac)}) > offset &&
+          squared_distance(at, t, 2 * limit) < limit)
+        return true;
+    }
+  }
+  return false;
+}
+
 double TriangleTree::distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const {
   constexpr double kFarAway = 1e12;  // m^2
   return std::sqrt(squared_distance(triangles_[pair.a], other.triangles_[pair.b].moved(pose), kFarAway));

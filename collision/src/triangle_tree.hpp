@@ -25,6 +25,12 @@ class TriangleTree {
   /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
                                 TrianglePair& first) const;
+  /// Of a point from one of the triangles, m.
+  [[nodiscard]] double distance_at(const Vector3d& point, int triangle) const;
+  /// The nearest point of one of the triangles.
+  [[nodiscard]] Vector3d nearest_on(const Vector3d& point, int triangle) const;
+  /// Whether a triangle that is nearer than `radius` to the point reaches beyond the plane of points x with normal . x = offset.
+  [[nodiscard]] bool reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal, double offset) const;
   /// Of one triangle from one of the other tree, m.
   [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const;
   /// The triangles that are nearer than `limit` to one of the other tree, and those of the other tree, by their places in the lists

@@ -2,14 +2,15 @@
 #include "swivel/collision/world.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <tuple>
 
 #include "certificate.hpp"
+#include "depth.hpp"
 #include "nearest_points.hpp"
 #include "pair_test.hpp"
 #include "robot_part.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {
@@ -18,6 +19,7 @@ using namespace detail;
 
 namespace {
 
+constexpr double kAskedNothing = -std::numeric_limits<double>::infinity();
 /// What one pair must keep, by Keep.
 using Kept = std::array<double, 4>;
 constexpr auto kMotionIndex = static_cast<std::size_t>(Keep::kMotion), kMidpointIndex = static_cast<std::size_t>(Keep::kMidpoint);
@@ -30,13 +32,13 @@ Kept kept(const PairKeeps& keeps, double forgiven) {
 constexpr double kBoundSafety = 1e-6;
 /// A clearance kept says "free" only where FCL would.
 constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
+/// A depth that is more than what is asked about by this tells that bodies that stand nearly alike are too deep as well.
+constexpr double kTelling = 2 * kVerdictBand;
 /// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
 constexpr double kMargin = 0.005;
 
 std::string millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g mm", 1e3 * metres);
-  return text;
+  return formatted("%.3g mm", 1e3 * metres);
 }
 
 std::string list_of(const std::vector<std::string>& names) {
@@ -61,8 +63,10 @@ struct World::Impl {
   std::vector<Body> bodies;
   std::vector<std::string> names;
   std::vector<BodyPair> pairs;
-  std::vector<Kept> keeps;   // by pair
-  std::vector<int> numbers;  // [a * bodies + b] of `pairs`; -1: none of them
+  std::vector<AllowedPair> allowed;
+  std::vector<Kept> keeps;      // by pair
+  std::vector<char> may_touch;  // by pair: it keeps a depth
+  std::vector<int> numbers;     // [a * bodies + b] of `pairs`; -1: none of them
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
 
@@ -85,27 +89,34 @@ struct World::Impl {
       const int index = static_cast<int>(bodies.size()) - 1;
       for (std::size_t i = 0; i < robot->bodies.size(); ++i) {
         const RobotBody& body = robot->bodies[i];
-        const bool allowed = std::find(object.allow.begin(), object.allow.end(), body.name) != object.allow.end();
-        if (body.group > 0 && !allowed) pairs.push_back({static_cast<int>(i), index});
+        if (body.group == 0) continue;
+        const BodyPair pair{static_cast<int>(i), index};
+        const auto found =
+            std::find_if(object.allow.begin(), object.allow.end(), [&](const Allowed& a) { return a.body == body.name; });
+        if (found != object.allow.end()) allowed.push_back({pair, found->depth});
+        if (found == object.allow.end() || found->depth) pairs.push_back(pair);
       }
     }
     sort_pairs();
     keeps.reserve(pairs.size());
     for (const BodyPair& p : pairs) {
-      keeps.push_back(kept(keeps_of(p), forgiven));
+      const PairKeeps asked = keeps_of(p);
+      keeps.push_back(kept(asked, forgiven));
       const RobotPair* known = robot_pair(p);
-      if (known == nullptr || !known->near) continue;
+      may_touch.push_back(known == nullptr && depth_of(p));
+      if (may_touch.back()) keeps.back() = {kAskedNothing, asked.node - forgiven, asked.motion - forgiven, kAskedNothing};
+      if (known ? !known->near : !may_touch.back()) continue;
       Kept& own = keeps.back();
       const Chain::Joints joints = robot->chain.joints_between(body(p.a).group, body(p.b).group);
-      near.push_back({p, own[kMotionIndex], known->keeps.tolerance, joints.first, joints.last});
-      own[kMotionIndex] = own[kMidpointIndex] = -std::numeric_limits<double>::infinity();
+      near.push_back({p, own[kMotionIndex], asked.tolerance, joints.first, joints.last});
+      own[kMotionIndex] = own[kMidpointIndex] = kAskedNothing;
     }
     number_pairs();
     warn_of_pairs();
     [[maybe_unused]] static const bool warm = warm_up();
   }
 
-  /// What is asked of one of `pairs`, m. The environment comes first, and all of it keeps the same.
+  /// What is asked of one of `pairs`, m.
   [[nodiscard]] double required(std::size_t k, const Level& level) const {
     return keeps[k][static_cast<std::size_t>(level.keep)] + level.more;
   }
@@ -113,8 +124,14 @@ struct World::Impl {
   [[nodiscard]] bool is_own(const BodyPair& p) const { return p.b < static_cast<int>(robot->bodies.size()); }
   [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
     if (level.keep == Keep::kNothing) return level.more;
-    if (!is_own(p)) return required(0, level);
-    return required(*number_of(p), level);
+    const auto number = number_of(p);
+    return number ? required(*number, level) : kAskedNothing;
+  }
+  /// Less than zero is asked of pairs alone that keep a depth.
+  [[nodiscard]] bool is_asked(std::size_t k, double d) const { return d >= 0 || (may_touch[k] && d > kAskedNothing); }
+  [[nodiscard]] bool is_asked(const BodyPair& p, double d) const {
+    const auto number = number_of(p);
+    return d >= 0 || (number && is_asked(*number, d));
   }
   [[nodiscard]] std::optional<std::size_t> number_of(const BodyPair& p) const {
     const int number = numbers[place_of(p)];
@@ -128,8 +145,16 @@ struct World::Impl {
     for (std::size_t k = 0; k < pairs.size(); ++k) numbers[place_of(pairs[k])] = static_cast<int>(k);
   }
   [[nodiscard]] PairKeeps keeps_of(const BodyPair& p) const {
-    const RobotPair* known = robot_pair(p);
-    return known ? known->keeps : PairKeeps{limits.clearance, limits.d_edge(), limits.edge_tolerance};
+    if (const RobotPair* known = robot_pair(p)) return known->keeps;
+    // A motion is proved as far as it keeps off the depth by the tolerance, which must leave most of the depth to it.
+    if (const auto depth = depth_of(p))
+      return {-*depth, -*depth, std::min(limits.edge_tolerance, std::max(*depth / 8, kVerdictBand))};
+    return {limits.clearance, limits.d_edge(), limits.edge_tolerance};
+  }
+  /// Of a pair that may be so deep and no deeper.
+  [[nodiscard]] std::optional<double> depth_of(const BodyPair& p) const {
+    const auto found = std::find_if(allowed.begin(), allowed.end(), [&](const AllowedPair& x) { return x.pair == p; });
+    return found == allowed.end() ? std::nullopt : found->depth;
   }
   [[nodiscard]] const RobotPair* robot_pair(const BodyPair& p) const {
     if (p.b >= static_cast<int>(robot->bodies.size())) return nullptr;
@@ -140,14 +165,21 @@ struct World::Impl {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
     const auto all = std::move(pairs);
     const auto all_keeps = std::move(keeps);
+    const auto all_may_touch = std::move(may_touch);
     pairs.clear();
     keeps.clear();
-    if (wanted == Pairs::kOf) near.clear();
+    may_touch.clear();
+    const auto is_wanted = [&](const BodyPair& p) {
+      return (std::find(objects.begin(), objects.end(), p.b - robot_bodies) != objects.end()) == (wanted == Pairs::kOf);
+    };
     for (std::size_t k = 0; k < all.size(); ++k)
-      if ((std::find(objects.begin(), objects.end(), all[k].b - robot_bodies) != objects.end()) == (wanted == Pairs::kOf)) {
+      if (is_wanted(all[k])) {
         pairs.push_back(all[k]);
         keeps.push_back(all_keeps[k]);
+        may_touch.push_back(all_may_touch[k]);
       }
+    std::erase_if(near, [&](const EdgeRule::Near& x) { return !is_wanted(x.pair); });
+    std::erase_if(allowed, [&](const AllowedPair& x) { return !is_wanted(x.pair); });
     number_pairs();
   }
 
@@ -234,6 +266,9 @@ std::array<std::string, 2> World::names(const BodyPair& pair) const {
 }
 const std::vector<BodyPair>& World::pairs() const {
   return impl_->pairs;
+}
+const std::vector<AllowedPair>& World::allowed() const {
+  return impl_->allowed;
 }
 const std::vector<RobotBody>& World::bodies() const {
   return impl_->robot->bodies;
@@ -422,7 +457,7 @@ struct World::Query::Impl {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
       const double d = required(k, level);
-      if (d >= 0 && p != likely && is_below(p, d, certify_pair(p, d, witness[k]))) return p;
+      if (p != likely && world->is_asked(k, d) && is_below(p, d, witness[k])) return p;
     }
     return std::nullopt;
   }
@@ -433,18 +468,19 @@ struct World::Query::Impl {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
       const double d = required(k, level);
-      if (d >= 0 && p != likely && is_below(p, d, renewed(k, d))) return p;
+      if (p == likely || !world->is_asked(k, d)) continue;
+      if (d < 0 ? is_deeper_now(k, -d) : is_below(p, d, renewed(k, d))) return p;
     }
     return std::nullopt;
   }
   bool below(const BodyPair& p, const Level& level) {
     const double d = world->required(p, level);
-    if (!(d >= 0)) return false;
+    if (!world->is_asked(p, d)) return false;
     place_body(p.a);
     place_body(p.b);
     TrianglePair none;
     const auto k = world->number_of(p);
-    return is_below(p, d, certify_pair(p, d, k ? witness[*k] : none));
+    return is_below(p, d, k ? witness[*k] : none);
   }
   bool surely_below(const BodyPair& p, const Level& level) {
     if (certificates == Certificates::kOff) return false;
@@ -452,9 +488,38 @@ struct World::Query::Impl {
     if (!k) return false;
     place_body(p.a);
     place_body(p.b);
-    last_certified = proves_below(placed(p.a), placed(p.b), world->required(*k, level), witness[*k]);
+    const double d = world->required(p, level);
+    if (d < 0 && world->may_touch[*k])
+      last_certified = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
+    else
+      last_certified = proves_below(placed(p.a), placed(p.b), d, witness[*k]);
     own.certified_colliding += last_certified;
     return last_certified;
+  }
+  bool is_below(const BodyPair& p, double d, TrianglePair& from) {
+    return d < 0 ? is_deeper(p, -d) : is_below(p, d, certify_pair(p, d, from));
+  }
+  /// Needs no FCL. A depth that the search leaves open counts as more than what is asked about.
+  bool is_deeper(const BodyPair& p, double d) {
+    last_certified = true;
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), kBoundSafety - d)) return false;
+    return is_deeper(detail::depth(placed(p.a), placed(p.b), d, d + kTelling), d);
+  }
+  bool is_deeper(const Depth& found, double d) {
+    const bool deeper = found.at_most > d;
+    last_certified = !deeper || found.at_least > d + kVerdictBand;
+    return deeper;
+  }
+  /// is_deeper, which also renews the bound.
+  bool is_deeper_now(std::size_t k, double d) {
+    const BodyPair& p = world->pairs[k];
+    const double so_far = moved_together(p);
+    lower_bound[k] = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)) + so_far;
+    last_certified = true;
+    if (lower_bound[k] - so_far >= kBoundSafety - d) return false;
+    const Depth found = detail::depth(placed(p.a), placed(p.b), d, d + kTelling);
+    lower_bound[k] = std::max(lower_bound[k], so_far - found.at_most);
+    return is_deeper(found, d);
   }
   bool is_below(const BodyPair& p, double d, Certificate certificate) {
     last_certified = certificate != Certificate::kNone;
@@ -487,7 +552,7 @@ struct World::Query::Impl {
   [[nodiscard]] double spare(const Level& level) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < lower_bound.size(); ++k)
-      if (const double d = required(k, level); d >= 0) {
+      if (const double d = required(k, level); world->is_asked(k, d)) {
         const double here = lower_bound[k] - moved_together(world->pairs[k]) - d - kKeptSafety;
         if (!(here >= 0)) return -1;  // NaN
         least = std::min(least, here);
@@ -535,7 +600,9 @@ struct World::Query::Impl {
     const double sought = enough + kKeptSafety;
     double found = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     if (!(found >= sought)) found = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
-    if (!(found >= sought) && certificates == Certificates::kOn) {
+    if (!(found >= sought) && world->may_touch[k]) {
+      found = std::max(found, -detail::depth(placed(p.a), placed(p.b), -sought).at_most);
+    } else if (!(found >= sought) && certificates == Certificates::kOn) {
       const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), witness[k]);
       if (proof.certificate == Certificate::kFree) found = std::max(found, proof.bound);
     }
@@ -639,6 +706,7 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   std::vector<Candidate> order;
   order.reserve(pairs.size());
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (world->may_touch[k]) continue;
     const BodyPair& p = pairs[k];
     order.push_back(
         {distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k, world->required(k, Keep::kNode)});
@@ -680,6 +748,16 @@ std::optional<Vector3d> World::Query::common_point(const Config& q, const BodyPa
   impl_->move_to(q);
   impl_->place_bodies();
   return detail::common_point(impl_->placed(pair.a), impl_->placed(pair.b));
+}
+
+Depth World::Query::depth(const Config& q, const BodyPair& pair, double from) {
+  impl_->move_to(q);
+  impl_->place_body(pair.a);
+  impl_->place_body(pair.b);
+  const double apart =
+      distance_bound(impl_->bound(pair.a), impl_->placed_bound(pair.a), impl_->bound(pair.b), impl_->placed_bound(pair.b));
+  if (kBoundSafety - apart <= from) return {std::numeric_limits<double>::lowest(), kBoundSafety - apart};
+  return detail::depth(impl_->placed(pair.a), impl_->placed(pair.b), from);
 }
 
 CollisionCounters World::Query::counters() const {

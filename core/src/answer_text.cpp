@@ -84,6 +84,10 @@ std::string solved_text(const PlanResult& result) {
     line += formatted(" | least clearance %.1f mm (asked %.3g) at s %.3f: ", 1e3 * least->clearance, 1e3 * least->required,
                       s_of(least->row)) +
             least->bodies[0] + " - " + least->bodies[1];
+  if (const auto& contact = result.deepest_contact)
+    line += formatted(" | contact %s%.2f mm deep", contact->at_most ? "" : "at least ", 1e3 * contact->depth) +
+            (contact->allowed ? formatted(" (allowed %.3g)", 1e3 * *contact->allowed) : "") +
+            formatted(" at s %.3f: ", s_of(contact->row)) + contact->bodies[0] + " - " + contact->bodies[1];
   if (const auto& limit = result.nearest_limit)
     line += " | " + limit->joint + formatted(" %.1f deg from its limit at s %.3f", limit->margin * 180 / kPi, s_of(limit->row));
   if (const auto& error = result.tool_path_error_mm; result.evidence.tool_path_error)

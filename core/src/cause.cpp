@@ -140,7 +140,8 @@ std::string figures(const Cause& cause, std::optional<double> most) {
              formatted("%.2f deg", kDegrees * *cause.limit) +
              (cause.unwinds ? ": at the end of its range, it would have to unwind by a turn" : "");
     case Cause::Kind::kPair:
-      return of("%.3g mm apart, asked %.3g mm", kMillimetres);
+      return *cause.limit < 0 ? of("%.3g mm deep, allowed %.3g mm", -kMillimetres)
+                              : of("%.3g mm apart, asked %.3g mm", kMillimetres);
     case Cause::Kind::kContact:
       return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
     case Cause::Kind::kRollSlope:

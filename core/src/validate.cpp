@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string_view>
 
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/invalid_argument.hpp"
 
 namespace swivel {
@@ -41,8 +41,7 @@ void number(const Field& field, double value, Range range) {
           ? value > 0 && value <= kMostMetres
           : std::isfinite(value) && (range == Range::kFinite || value > 0 || (value == 0 && range == Range::kNonNegative)))
     return;
-  char text[32];
-  std::snprintf(text, sizeof text, "is %g", value);
+  const std::string text = formatted("is %g", value);
   fail(field, text,
        range == Range::kFinite        ? "a finite number"
        : range == Range::kNonNegative ? "a finite number >= 0"
@@ -144,9 +143,14 @@ void validate_scene(const Field& root, const Problem& problem) {
     if (named(problem.attached, object.name)) fail(field("name"), "'" + object.name + "' is an attached body", "a name of its own");
     shape(field("shape"), object.shape);
     pose(field("pose"), object.pose);
-    for (std::size_t i = 0; i < object.allow.size(); ++i)
-      if (problem.model->find_link(object.allow[i]) < 0 && !named(problem.attached, object.allow[i]))
-        fail(field("allow", i), "unknown body '" + object.allow[i] + "'", "a link of the robot or the name of an attached body");
+    for (std::size_t i = 0; i < object.allow.size(); ++i) {
+      const Allowed& allowed = object.allow[i];
+      if (problem.model->find_link(allowed.body) < 0 && !named(problem.attached, allowed.body))
+        fail(field("allow", i), "unknown body '" + printable(allowed.body) + "'",
+             "a link of the robot or the name of an attached body");
+      number(field("allow", i)("depth"), allowed.depth, Range::kLength);
+      if (const auto fault = depth_fault(problem, object, allowed)) fail(field("allow", i)("depth"), fault->what, fault->allowed);
+    }
   }
   for (std::size_t k = 0; k < problem.vary.size(); ++k) {
     const Field field = root("vary", k);
@@ -156,6 +160,55 @@ void validate_scene(const Field& root, const Problem& problem) {
     numbers(field("rpy"), problem.vary[k].rpy, Range::kNonNegative);
   }
 }
+
+/// No point lies deeper beneath the surface than this, m.
+double most_beneath(const Shape& shape) {
+  struct Visitor {
+    double operator()(const Sphere& s) const { return s.radius; }
+    double operator()(const Capsule& c) const { return c.radius; }
+    double operator()(const Box& b) const { return b.size.minCoeff() / 2; }
+    double operator()(const Cylinder& c) const { return std::min(c.radius, c.length / 2); }
+    double operator()(const MeshPtr& mesh) const {
+      Eigen::AlignedBox3d box;
+      for (const Vector3d& vertex : mesh->vertices) box.extend(vertex);
+      return box.sizes().minCoeff() / 2;
+    }
+  };
+  return std::visit(Visitor{}, shape);
+}
+
+std::optional<DepthFault> depth_fault(const Shape& body, const Shape& object, double depth) {
+  const auto* const mesh_of_body = std::get_if<MeshPtr>(&body);
+  const auto* const mesh_of_object = std::get_if<MeshPtr>(&object);
+  for (const auto* mesh : {mesh_of_body, mesh_of_object})
+    if (mesh && !(*mesh)->closed)
+      return DepthFault{"mesh " + printable((*mesh)->source) + " is not closed: nothing is deep in it",
+                        "a closed mesh, or no depth"};
+  if (mesh_of_body && mesh_of_object)
+    return DepthFault{"both are meshes, of which no depth can be proved",
+                      "a depth where one of the two is a sphere, capsule, cylinder or box (swivel fit makes capsules)"};
+  if (const double most = most_beneath(body) + most_beneath(object); depth >= most)
+    return DepthFault{formatted("is %.6g, which no depth exceeds: the two are at most %.6g m deep in each other", depth, most),
+                      formatted("a number below %.6g, or no depth", most)};
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object, const Allowed& allowed) {
+  if (!allowed.depth) return std::nullopt;
+  for (const AttachedBody& body : robot.attached)
+    if (body.name == allowed.body) return depth_fault(body.shape, object.shape, *allowed.depth);
+  const int link = robot.model->find_link(allowed.body);
+  if (link < 0) return std::nullopt;
+  const auto& shapes = robot.model->links[static_cast<std::size_t>(link)].collision;
+  if (shapes.empty()) return DepthFault{"'" + printable(allowed.body) + "' has no collision shape", "a body that has one"};
+  for (const PlacedShape& placed : shapes)
+    if (auto fault = depth_fault(placed.shape, object.shape, *allowed.depth)) return fault;
+  return std::nullopt;
+}
+
+namespace {
 
 void validate_window(const Field& field, const Problem& problem, const Waypoint& waypoint) {
   if (waypoint.roll.has_value() != problem.waypoints.front().roll.has_value())
@@ -232,8 +285,7 @@ void validate_numbers(const Field& root, const Problem& problem) {
   for (std::size_t k = 0; k < kDof; ++k) {
     const double weight = problem.cost.weights[k];
     if (weight_allowed(weight)) continue;
-    char text[32];
-    std::snprintf(text, sizeof text, "is %g", weight);
+    const std::string text = formatted("is %g", weight);
     fail(root("cost")("weights", k), text, kAllowedWeights);
   }
   if (!weight_allowed(problem.cost.roll)) fail(root("cost")("roll"), "is no weight", kAllowedWeights);

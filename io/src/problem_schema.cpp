@@ -121,7 +121,9 @@ Schema path() {
 
 Schema scene() {
   const Keys name{{"name", text(), "", required(), "a name of its own", "a name"}};
-  const Keys allow{{"allow", list(text()), "", optional(), "links and attached bodies that may touch it"}};
+  const Keys allow{
+      {"allow", either(list(text()), map(number(kLength))), "m", optional(),
+       "links and attached bodies that may touch it; or, `{nozzle: 0.003}`, how [deep](model.md#contact) each may be in it"}};
   return list(section("scene", join(join(name, shape_keys()), join(pose_keys(), allow)), {kOneShape, kOneOrientation}));
 }
 

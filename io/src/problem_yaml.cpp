@@ -228,16 +228,22 @@ class ProblemReader {
       if (is_object(object.name)) name.fail("'" + object.name + "' is in the scene twice", "a name of its own");
       object.shape = shape(section);
       object.pose = pose(section);
-      if (const auto allow = section.find_filled("allow"))
-        for (const YamlValue& body : allow->items()) object.allow.push_back(body_name(body));
+      if (const auto allow = section.find_filled("allow")) read_allowed(*allow, object);
       problem_.scene.push_back(std::move(object));
     }
   }
 
-  std::string body_name(const YamlValue& value) const {
-    if (problem_.model->find_link(value.text()) < 0 && !is_attached(value.text()))
-      value.fail("unknown body '" + value.text() + "'", "a link of the robot or the name of an attached body");
-    return value.text();
+  void read_allowed(const YamlValue& value, SceneObject& object) const {
+    const auto add = [&](const YamlValue& where, const Allowed& allowed) {
+      if (problem_.model->find_link(allowed.body) < 0 && !is_attached(allowed.body))
+        where.fail("unknown body '" + allowed.body + "'", "a link of the robot or the name of an attached body");
+      if (const auto fault = depth_fault(problem_, object, allowed)) where.fail(fault->what, fault->allowed);
+      object.allow.push_back(allowed);
+    };
+    if (value.is_map())
+      for (const auto& [body, depth] : value.entries()) add(depth, {body, depth.number()});
+    else
+      for (const YamlValue& body : value.items()) add(body, {body.text()});
   }
 
   void read_path(const YamlValue& value) {

@@ -149,6 +149,14 @@ Json trajectory_json(const std::vector<TrajectoryRow>& trajectory) {
   return rows;
 }
 
+Json contact_json(const DeepestContact& contact) {
+  return {{"depth", contact.depth},
+          {"at_most", or_null(contact.at_most)},
+          {"allowed", or_null(contact.allowed)},
+          {"bodies", contact.bodies},
+          {"row", contact.row}};
+}
+
 Json margin_json(const LeastMargin& least) {
   return {{"margin", least.margin},
           {"clearance", least.clearance},
@@ -317,6 +325,7 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
                                 {"max", if_known(evidence.tool_path_error, result.tool_path_error_mm.max)}};
   json["min_clearance"] = or_null(result.min_clearance);
   json["min_margin"] = result.min_margin ? margin_json(*result.min_margin) : Json(nullptr);
+  json["deepest_contact"] = result.deepest_contact ? contact_json(*result.deepest_contact) : Json(nullptr);
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
   json["refinement"] = aftermath.refinement ? refinement_json(*aftermath.refinement) : Json(nullptr);

@@ -327,6 +327,20 @@ Schema plan_result() {
                                key("row", integer(), "of the trajectory, from 0")})),
               "the row and pair that come nearest to what the pair must keep: `margin`, `clearance`, `required`, `bodies`, `row`",
               "m"),
+          key("deepest_contact",
+              or_null(
+                  section("", {key("depth", number(), "found at a row or between two: the bodies are at least so deep", "m"),
+                               key("at_most", or_null(number()),
+                                   "proved for all rows and moves between them; `null` where a pair is of two meshes, or of one "
+                                   "that is not closed",
+                                   "m"),
+                               key("allowed", or_null(number()), "the depth that `allow` gives; `null`: however deep", "m"),
+                               key("bodies", bodies(), "their names"),
+                               key("row", integer(), "of the trajectory, from 0: at it, or on the way to the next")})),
+              "the deepest [contact](model.md#contact) of bodies that a scene object's `allow` names: `depth`, `at_most`, "
+              "`allowed`, "
+              "`bodies`, `row`; `null` where none was found to touch",
+              "m"),
           key("min_manipulability", or_null(number()), "least over the rows"),
           key("arm_angle", list(or_null(number())), "conventional arm angle of each row", "rad"),
           key("refinement", or_null(refinement()), "`null` without `--refine`; [below](#refinement)"),

@@ -137,7 +137,7 @@ class Adviser {
     switch (cause.kind) {
       case Cause::Kind::kPair:
       case Cause::Kind::kContact:
-        if (cause.kind == Cause::Kind::kPair) relax(Change::kClearance);
+        if (cause.kind == Cause::Kind::kPair && !(cause.limit && *cause.limit < 0)) relax(Change::kClearance);
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
         free_roll();
         for (const std::string& body : cause.bodies) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 
@@ -12,10 +11,12 @@
 #include "between_samples.hpp"
 #include "check_rates.hpp"
 #include "collision_validity.hpp"
+#include "deepest_contact.hpp"
 #include "first_too_near.hpp"
 #include "path_following.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arm_angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
@@ -75,6 +76,18 @@ class Contacts {
   Contacts(const PreparedRobot& robot, const Problem& problem, const World& like, const Budget& budget)
       : world_(like, problem, budget, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())), budget_(&budget) {}
   std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
+  /// A pair that may touch and is deeper than it may be, and how deep it is at least.
+  std::optional<std::pair<AllowedPair, double>> too_deep(const Config& q) {
+    for (const AllowedPair& allowed : world_.allowed()) {
+      if (!allowed.depth) continue;
+      const double most = *allowed.depth + kVerdictBand;
+      if (const Depth depth = query_.depth(q, allowed.pair, most); depth.at_most > most) return std::pair(allowed, depth.at_least);
+    }
+    return std::nullopt;
+  }
+  [[nodiscard]] std::optional<DeepestContact> deepest(const std::vector<Config>& rows) const {
+    return deepest_contact(world_, rule_, rows, *budget_);
+  }
   std::optional<BodyPair> on_the_way(const Config& from, const Config& to) {
     return edge_blocked(query_, rule_, from, to, *budget_);
   }
@@ -141,6 +154,12 @@ class Check {
       result_.motion =
           examine_rates(chain_, limits_, problem_.source, *timed_, tools_, [this](const std::string& line) { fail(line); });
     if (!options_.margins && result_.failure_count == 0) examine_clearance();
+    if (options_.margins) {
+      std::vector<Config> joints;
+      for (const TrajectoryRow& row : rows_)
+        if (row.q.allFinite()) joints.push_back(row.q);
+      if (joints.size() == rows_.size()) result_.deepest_contact = contacts_.deepest(joints);
+    }
     result_.fcl_calls = contacts_.fcl_calls();
     result_.passed = result_.failure_count == 0;
     return std::move(result_);
@@ -159,12 +178,10 @@ class Check {
     if (++result_.failure_count <= kMostLines) result_.failures.push_back(line);
   }
   [[gnu::format(printf, 2, 3)]] void fail(const char* format, ...) {
-    char line[400];
     std::va_list arguments;
     va_start(arguments, format);
-    std::vsnprintf(line, sizeof line, format, arguments);
+    fail(formatted_list(format, arguments));
     va_end(arguments);
-    fail(std::string(line));
   }
 
   /// The tool as the path has it: where it stands turned about its own axis, as the row says, turned back.
@@ -394,6 +411,9 @@ class Check {
       if (!(w >= limits_.manipulability - 1e-9)) fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
     }
     if (!options_.margins) return;  // all rows at once, later
+    if (const auto deep = contacts_.too_deep(row.q))
+      fail("row %zu: %s are %.3f mm deep in each other: allowed are %.3f mm", k, contacts_.names(deep->first.pair).c_str(),
+           1e3 * deep->second, 1e3 * *deep->first.depth);
     const auto clearance = contacts_.clearance(row.q);
     if (!clearance) return;
     result_.min_clearance = std::min(result_.min_clearance.value_or(clearance->least), clearance->least);
@@ -412,12 +432,13 @@ class Check {
     for (const TrajectoryRow& row : rows_) joints.push_back(row.q);
     const auto found = contacts_.first_along(limits_, joints);
     if (!found) return;
-    const std::string pair = contacts_.names(found->pair);
+    const PairKeeps keeps = contacts_.keeps(found->pair);
     if (found->between)
-      fail("rows %zu-%zu: %s come closer than %.3f mm", found->row - 1, found->row, pair.c_str(),
-           1e3 * contacts_.keeps(found->pair).motion);
+      fail_move(found->row, found->pair);
     else
-      fail("row %zu: clearance between %s is below %.3f mm", found->row, pair.c_str(), 1e3 * contacts_.keeps(found->pair).node);
+      fail(keeps.node < 0 ? "row %zu: %s are more than %.3f mm deep in each other"
+                          : "row %zu: clearance between %s is below %.3f mm",
+           found->row, contacts_.names(found->pair).c_str(), 1e3 * std::abs(keeps.node));
   }
 
   /// By how much rolls may leave what they should keep, rad.
@@ -466,9 +487,15 @@ class Check {
       examine_step_error(k);
     }
     if (!options_.margins || limits_.edges != EdgeMode::kContinuous) return;
-    if (const auto pair = contacts_.on_the_way(from, to))
-      fail("rows %zu-%zu: %s come closer than %.3f mm", k - 1, k, contacts_.names(*pair).c_str(),
-           1e3 * contacts_.keeps(*pair).motion);
+    if (const auto pair = contacts_.on_the_way(from, to)) fail_move(k, *pair);
+  }
+
+  /// Of the move to row k, on which two bodies come too near.
+  void fail_move(std::size_t k, const BodyPair& pair) {
+    const double keeps = contacts_.keeps(pair).motion;
+    fail(keeps < 0 ? "rows %zu-%zu: %s may come more than %.3f mm deep into each other"
+                   : "rows %zu-%zu: %s come closer than %.3f mm",
+         k - 1, k, contacts_.names(pair).c_str(), 1e3 * std::abs(keeps));
   }
 
   /// Whether the tool has the same pose at row k - 1 and at row k; it may have turned away and come back between.

@@ -312,7 +312,7 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
     for (const BodyPair& p : world_.pairs()) {  // links may have several bodies: the nearest of them
       if (world_.names(p) != cause.bodies || !query_.pair_below(q, p, Keep::kNode)) continue;
       const double keeps = world_.keeps(p).node;
-      const auto value = clearance(p, q, keeps);
+      const auto value = keeps < 0 ? -query_.depth(q, p).at_least : clearance(p, q, keeps);
       if (!cause.value || (value && *value < *cause.value)) {
         cause.value = value;
         cause.limit = keeps;

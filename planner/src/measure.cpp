@@ -6,6 +6,7 @@
 #include <limits>
 #include <tuple>
 
+#include "deepest_contact.hpp"
 #include "measure_rows.hpp"
 #include "nearest_approach.hpp"
 #include "swivel/core/arm_angle.hpp"
@@ -50,6 +51,9 @@ void measure_postures(const PreparedRobot& robot, const ToolPath& path, const Wo
       arm_angle.push_back(
           conventional_arm_angle(*srs, rolled(path.layer(i).tool, trajectory[static_cast<std::size_t>(i)].roll), q));
   }
+  std::vector<Config> joints;
+  for (const TrajectoryRow& row : trajectory) joints.push_back(row.q);
+  result.deepest_contact = deepest_contact(world, world.edge_rule(robot.radii()), joints, budget);
   if (const auto nearest = nearest_approach(world, trajectory, Seek::kMarginAndLeast, budget)) {
     const World::Query::Clearance& c = nearest->clearance;
     result.min_clearance = nearest->least;

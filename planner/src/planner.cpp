@@ -576,7 +576,7 @@ void Planner::detach(const std::string& body) {
   Problem next = impl_->problem;
   if (std::erase_if(next.attached, [&](const AttachedBody& b) { return b.name == body; }) == 0)
     throw InvalidArgument("'" + body + "': no such body: allowed are names of attached bodies");
-  for (SceneObject& object : next.scene) std::erase(object.allow, body);
+  for (SceneObject& object : next.scene) std::erase_if(object.allow, [&](const Allowed& allowed) { return allowed.body == body; });
   impl_->replace(std::move(next));
   impl_->attached_changed();
 }

@@ -108,6 +108,11 @@ void serialize(A& archive, Waypoint& x) {
   archive(position, orientation, roll);
 }
 template <class A>
+void serialize(A& archive, Allowed& x) {
+  auto& [body, depth] = x;
+  archive(body, depth);
+}
+template <class A>
 void serialize(A& archive, SceneObject& x) {
   auto& [name, shape, pose, allow] = x;
   archive(name, shape, pose, allow);
@@ -263,9 +268,16 @@ void serialize(A& archive, decltype(Measures::tool_path_error_mm)& x) {
   archive(mean, max, row, allowed);
 }
 template <class A>
+void serialize(A& archive, DeepestContact& x) {
+  auto& [depth, at_most, bodies, allowed, row] = x;
+  archive(depth, at_most, bodies, allowed, row);
+}
+template <class A>
 void serialize(A& archive, Measures& x) {
-  auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, min_manipulability, arm_angle] = x;
-  archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, min_manipulability, arm_angle);
+  auto& [nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, deepest_contact,
+         min_manipulability, arm_angle] = x;
+  archive(nearest_limit, top_tool_speed, evidence, tool_path_error_mm, min_clearance, min_margin, deepest_contact,
+          min_manipulability, arm_angle);
 }
 template <class A>
 void serialize(A& archive, HeldJoint& x) {
@@ -370,9 +382,9 @@ void serialize(A& archive, CheckResult::Motion& x) {
 template <class A>
 void serialize(A& archive, CheckResult& x) {
   auto& [passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-         rounded, min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
+         rounded, min_clearance, min_margin, deepest_contact, nearest_limit, motion, rows_examined, moves_examined, fcl_calls] = x;
   archive(passed, failures, failure_count, worst_position, worst_angle, worst_path_error, worst_path_angle, largest_step, cost,
-          rounded, min_clearance, min_margin, nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
+          rounded, min_clearance, min_margin, deepest_contact, nearest_limit, motion, rows_examined, moves_examined, fcl_calls);
 }
 template <class A>
 void serialize(A& archive, PlacementRow& x) {

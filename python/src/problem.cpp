@@ -11,6 +11,7 @@
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/arm_guess.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
@@ -369,25 +370,48 @@ void bind_robot(py::module_& m) {
       .def("__repr__", [](const Robot& robot) { return "<Robot " + robot_words(robot) + ">"; });
 }
 
+/// Names, or how deep each may be, m.
+using AllowedBodies = std::variant<std::vector<std::string>, std::map<std::string, std::optional<double>>>;
+std::vector<Allowed> to_allowed(const AllowedBodies& bodies) {
+  if (const auto* names = std::get_if<0>(&bodies)) return {names->begin(), names->end()};
+  std::vector<Allowed> allowed;
+  for (const auto& [name, depth] : std::get<1>(bodies)) allowed.emplace_back(name, depth);
+  return allowed;
+}
+
 void bind_scene(py::module_& m) {
   py::class_<SceneObject>(m, "SceneObject", "A body fixed in the base frame. It does not change: scenes and planners have move().")
       .def(pickling<SceneObject>())
-      .def(py::init([](std::string name, const PythonShape& shape, const Pose& pose, std::vector<std::string> allow) {
-             return SceneObject{std::move(name), to_shape(shape), pose, std::move(allow)};
+      .def(py::init([](std::string name, const PythonShape& shape, const Pose& pose, const AllowedBodies& allow) {
+             return SceneObject{std::move(name), to_shape(shape), pose, to_allowed(allow)};
            }),
-           py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
-           py::arg("allow") = std::vector<std::string>{},
-           "pose: in the base frame. allow: links and attached bodies that may touch it.")
+           py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()), py::arg("allow") = AllowedBodies{},
+           "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: how deep, m}; None: however "
+           "deep.")
       .def_readonly("name", &SceneObject::name)
       .def_property_readonly("shape", [](const SceneObject& object) { return from_shape(object.shape); })
       .def_property_readonly(
           "pose", [](const SceneObject& object) { return object.pose; }, "(4, 4), in the base frame.")
       .def_property_readonly(
-          "allow", [](const SceneObject& object) { return object.allow; }, "Links and attached bodies that may touch it.")
+          "allow",
+          [](const SceneObject& object) {
+            std::vector<std::string> names;
+            for (const Allowed& allowed : object.allow) names.push_back(allowed.body);
+            return names;
+          },
+          "Links and attached bodies that may touch it.")
+      .def_property_readonly(
+          "allow_depth",
+          [](const SceneObject& object) {
+            std::map<std::string, double> depths;
+            for (const Allowed& allowed : object.allow)
+              if (allowed.depth) depths[allowed.body] = *allowed.depth;
+            return depths;
+          },
+          "How deep bodies may be in it, m, by name; those of `allow` that are not here may be however deep.")
       .def("__repr__", [](const SceneObject& object) {
         const Vector3d at = object.pose.translation();
-        char text[96];
-        std::snprintf(text, sizeof text, " at %.4g %.4g %.4g>", at.x(), at.y(), at.z());
+        const std::string text = formatted(" at %.4g %.4g %.4g>", at.x(), at.y(), at.z());
         return "<SceneObject '" + object.name + "': " + shape_words(object.shape) + text;
       });
 
@@ -397,14 +421,14 @@ void bind_scene(py::module_& m) {
   type.def(py::init(&to_scene), py::arg("objects") = py::tuple(), "objects: SceneObjects, as a scene or in any sequence.")
       .def(
           "add",
-          [](Scene& scene, std::string name, const PythonShape& shape, const Pose& pose, std::vector<std::string> allow) {
+          [](Scene& scene, std::string name, const PythonShape& shape, const Pose& pose, const AllowedBodies& allow) {
             if (std::any_of(scene.begin(), scene.end(), [&](const SceneObject& object) { return object.name == name; }))
               throw InvalidArgument("'" + name + "' is in the scene already: allowed is a name of its own");
-            scene.push_back({std::move(name), to_shape(shape), pose, std::move(allow)});
+            scene.push_back({std::move(name), to_shape(shape), pose, to_allowed(allow)});
           },
-          py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()),
-          py::arg("allow") = std::vector<std::string>{},
-          "pose: in the base frame. allow: links and attached bodies that may touch it.")
+          py::arg("name"), py::arg("shape"), py::arg("pose") = Pose(Pose::Identity()), py::arg("allow") = AllowedBodies{},
+          "pose: in the base frame. allow: links and attached bodies that may touch it, or {name: how deep, m}; None: however "
+          "deep.")
       .def(
           "move", [](Scene& scene, const std::string& name, const Pose& pose) { scene[find_object(scene, name)].pose = pose; },
           py::arg("name"), py::arg("pose"), "pose: in the base frame. Raises KeyError for an unknown name.")
@@ -557,8 +581,7 @@ Pose to_pose(py::handle source) {
   const Waypoint waypoint = to_waypoint(source, true);
   const double norm = waypoint.orientation.norm();
   if (!(std::abs(norm - 1) <= 1e-3)) {
-    char text[96];
-    std::snprintf(text, sizeof text, "pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
+    const std::string text = formatted("pose: quaternion of length %g: allowed is 1 within 1e-3", norm);
     throw py::value_error(text);
   }
   Pose pose = Pose::Identity();

@@ -5,6 +5,7 @@
 #include "archive.hpp"
 
 #include "swivel/core/answer_text.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/complete_rows.hpp"
@@ -34,12 +35,6 @@ py::array timed_joints(const Motion& motion, const Config TimedRow::*member) {
 
 std::string without_end(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  return text;
-}
-template <class... Values>
-std::string format(const char* words, Values... values) {
-  char text[256];
-  std::snprintf(text, sizeof text, words, values...);
   return text;
 }
 
@@ -125,17 +120,17 @@ py::dict peaks_of(const Motion& motion) {
 
 std::string motion_words(const Motion& motion) {
   if (motion.timing->failure)
-    return format("not executable at s = %.4f m: ", motion.timing->failure->s) + motion.timing->failure->reason;
+    return formatted("not executable at s = %.4f m: ", motion.timing->failure->s) + motion.timing->failure->reason;
   const TimedPath& path = motion.path();
-  std::string text = format("%.3f s, %zu samples at %.6g Hz", path.duration, path.rows.size(), path.rate);
-  if (path.ideal > 0) text += format(" (%.3f s at the speed asked throughout)", path.ideal);
-  if (!path.stops.empty()) text += format(", %zu stops", path.stops.size());
+  std::string text = formatted("%.3f s, %zu samples at %.6g Hz", path.duration, path.rows.size(), path.rate);
+  if (path.ideal > 0) text += formatted(" (%.3f s at the speed asked throughout)", path.ideal);
+  if (!path.stops.empty()) text += formatted(", %zu stops", path.stops.size());
   return text;
 }
 
 std::string refined_words(const Refined& refined) {
   if (!refined.refined) return "not refined: " + refined.reason;
-  return format("refined: cost %.6g before, %.6g now", refined.cost_before, refined.cost);
+  return formatted("refined: cost %.6g before, %.6g now", refined.cost_before, refined.cost);
 }
 
 std::string plan_words(const Plan& plan) {
@@ -143,7 +138,7 @@ std::string plan_words(const Plan& plan) {
   std::string text = answer_text(result);
   text = text.substr(0, text.find('\n'));
   const auto took = result.time_ms.find("plan");
-  if (took != result.time_ms.end()) text += format(" | %.1f ms", took->second);
+  if (took != result.time_ms.end()) text += formatted(" | %.1f ms", took->second);
   std::string after;
   if (plan.plan->refinement) after = refined_words(*plan.plan->refinement);
   if (plan.plan->motion)
@@ -197,8 +192,21 @@ void bind_measures(py::module_& m) {
       .def_property_readonly("bodies", [](const LeastMargin& x) { return bodies_of(x.bodies); })
       .def_readonly("row", &LeastMargin::row)
       .def("__repr__", [](const LeastMargin& x) {
-        return format("<LeastMargin %.3f mm: %.3f mm of %.3f asked, ", 1e3 * x.margin, 1e3 * x.clearance, 1e3 * x.required) +
-               x.bodies[0] + " - " + x.bodies[1] + format(", row %d>", x.row);
+        return formatted("<LeastMargin %.3f mm: %.3f mm of %.3f asked, ", 1e3 * x.margin, 1e3 * x.clearance, 1e3 * x.required) +
+               x.bodies[0] + " - " + x.bodies[1] + formatted(", row %d>", x.row);
+      });
+  py::class_<DeepestContact>(m, "DeepestContact", "The deepest contact of bodies that a scene object allows to touch it.")
+      .def(pickling<DeepestContact>())
+      .def_readonly("depth", &DeepestContact::depth, "m, found at a row or between two: the bodies are at least so deep.")
+      .def_readonly("at_most", &DeepestContact::at_most, "m, proved for all rows and moves between them, or None.")
+      .def_readonly("allowed", &DeepestContact::allowed, "m, or None: however deep.")
+      .def_property_readonly("bodies", [](const DeepestContact& x) { return bodies_of(x.bodies); })
+      .def_readonly("row", &DeepestContact::row, "At it, or on the way from it to the next.")
+      .def("__repr__", [](const DeepestContact& x) {
+        return formatted("<DeepestContact %.3f mm", 1e3 * x.depth) +
+               (x.at_most ? formatted(", at most %.3f", 1e3 * *x.at_most) : "") +
+               (x.allowed ? formatted(", allowed %.3f", 1e3 * *x.allowed) : "") + ", " + x.bodies[0] + " - " + x.bodies[1] +
+               formatted(", row %d>", x.row);
       });
   py::class_<NearestLimit>(m, "NearestLimit", "How near the rows come to a joint's limit.")
       .def(pickling<NearestLimit>())
@@ -209,7 +217,7 @@ void bind_measures(py::module_& m) {
       .def_readonly("row", &NearestLimit::row)
       .def("__repr__", [](const NearestLimit& x) {
         return "<NearestLimit " + x.joint +
-               format(", %.2f deg from its %s limit, row %d>", x.margin * 180 / kPi, to_string(x.side), x.row);
+               formatted(", %.2f deg from its %s limit, row %d>", x.margin * 180 / kPi, to_string(x.side), x.row);
       });
   py::class_<TopToolSpeed>(m, "TopToolSpeed",
                            "The highest constant speed of the tool at which no joint need turn faster than it can.")
@@ -218,7 +226,7 @@ void bind_measures(py::module_& m) {
       .def_readonly("joint", &TopToolSpeed::joint, "That bounds it.")
       .def_readonly("row", &TopToolSpeed::row, "On the step from it.")
       .def("__repr__", [](const TopToolSpeed& x) {
-        return format("<TopToolSpeed %.4g m/s, ", x.speed) + x.joint + format(", row %d>", x.row);
+        return formatted("<TopToolSpeed %.4g m/s, ", x.speed) + x.joint + formatted(", row %d>", x.row);
       });
   using ToolPathError = decltype(Measures::tool_path_error_mm);
   py::class_<ToolPathError>(m, "ToolPathError", "How far the tool leaves its path between layers, mm.")
@@ -227,7 +235,8 @@ void bind_measures(py::module_& m) {
       .def_readonly("max", &ToolPathError::max, "mm.")
       .def_readonly("row", &ToolPathError::row, "The step from it has the largest.")
       .def_readonly("allowed", &ToolPathError::allowed, "limits.tool_path_error, m, or None.")
-      .def("__repr__", [](const ToolPathError& x) { return format("<ToolPathError mean %.4g mm, max %.4g mm>", x.mean, x.max); });
+      .def("__repr__",
+           [](const ToolPathError& x) { return formatted("<ToolPathError mean %.4g mm, max %.4g mm>", x.mean, x.max); });
   py::class_<Measures>(m, "Measures",
                        "What a trajectory comes near to, and how well it follows its path. None: not asked for, or does not apply.")
       .def(pickling<Measures>())
@@ -239,6 +248,7 @@ void bind_measures(py::module_& m) {
           "ToolPathError.")
       .def_readonly("min_clearance", &Measures::min_clearance, "Of the nearest pair on any row, m.")
       .def_readonly("min_margin", &Measures::min_margin, "LeastMargin.")
+      .def_readonly("deepest_contact", &Measures::deepest_contact, "DeepestContact; None where no allowed pair was found to touch.")
       .def_property_readonly(
           "min_manipulability",
           [](const Measures& x) { return x.evidence.postures ? py::cast(x.min_manipulability) : py::object(py::none()); },
@@ -250,13 +260,15 @@ void bind_measures(py::module_& m) {
       .def("__repr__", [](const Measures& x) {
         std::string text;
         const auto add = [&](const std::string& more) { text += (text.empty() ? "" : ", ") + more; };
-        if (x.min_clearance) add(format("least clearance %.3f mm", 1e3 * *x.min_clearance));
+        if (x.min_clearance) add(formatted("least clearance %.3f mm", 1e3 * *x.min_clearance));
         if (x.min_margin)
-          add(format("%.3f mm more than asked (", 1e3 * x.min_margin->margin) + x.min_margin->bodies[0] + " - " +
+          add(formatted("%.3f mm more than asked (", 1e3 * x.min_margin->margin) + x.min_margin->bodies[0] + " - " +
               x.min_margin->bodies[1] + ")");
-        if (x.nearest_limit) add(x.nearest_limit->joint + format(" %.2f deg from its limit", x.nearest_limit->margin * 180 / kPi));
-        if (x.evidence.tool_path_error) add(format("tool %.4g mm off", x.tool_path_error_mm.max));
-        if (x.top_tool_speed) add(format("tool speed up to %.3g m/s", x.top_tool_speed->speed));
+        if (x.deepest_contact) add(formatted("contact %.3f mm deep", 1e3 * x.deepest_contact->depth));
+        if (x.nearest_limit)
+          add(x.nearest_limit->joint + formatted(" %.2f deg from its limit", x.nearest_limit->margin * 180 / kPi));
+        if (x.evidence.tool_path_error) add(formatted("tool %.4g mm off", x.tool_path_error_mm.max));
+        if (x.top_tool_speed) add(formatted("tool speed up to %.3g m/s", x.top_tool_speed->speed));
         return "<Measures " + text + ">";
       });
 }
@@ -308,7 +320,7 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("cause", &EmptyLayers::cause, "At the layer that misses least.")
       .def_readonly("most", &EmptyLayers::most, "The most that one of them misses by.")
       .def("__repr__",
-           [](const EmptyLayers& e) { return format("<EmptyLayers %d to %d: ", e.first, e.last) + words(e.cause) + ">"; });
+           [](const EmptyLayers& e) { return formatted("<EmptyLayers %d to %d: ", e.first, e.last) + words(e.cause) + ">"; });
   py::class_<Diagnosis>(m, "Diagnosis", "Why an infeasible problem has no path.")
       .def(pickling<Diagnosis>())
       .def_readonly("reached_layer", &Diagnosis::reached_layer,
@@ -344,7 +356,7 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("layers_known", &Diagnosis::layers_known)
       .def("__repr__", [](const Diagnosis& d) {
         return "<Diagnosis: " + py::str(py::cast(d.cause)).cast<std::string>() +
-               (d.reached_s ? format(" ends every path by s = %.4f m>", *d.reached_s) : std::string(" bars the first layer>"));
+               (d.reached_s ? formatted(" ends every path by s = %.4f m>", *d.reached_s) : std::string(" bars the first layer>"));
       });
   py::class_<Advice>(m, "Advice", "One change of a problem that has no path, and what planning the changed problem gave.")
       .def(pickling<Advice>())
@@ -358,7 +370,7 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("reached_s", &Advice::reached_s, "Where there is no path either, m.")
       .def("__repr__", [](const Advice& a) {
         return "<Advice " + std::string(to_string(a.outcome)) + ": " + words(a) +
-               (a.cost ? format(", cost %.6g>", *a.cost) : std::string(">"));
+               (a.cost ? formatted(", cost %.6g>", *a.cost) : std::string(">"));
       });
   py::class_<SpecialPair>(m, "SpecialPair", "A robot pair without an SRDF's word that is not kept apart as others are.")
       .def(pickling<SpecialPair>())
@@ -367,7 +379,7 @@ void bind_verdicts(py::module_& m) {
       .def_readonly("clearance", &SpecialPair::clearance, "m, kept on layers.")
       .def_readonly("edge_clearance", &SpecialPair::edge_clearance, "m, kept between them.")
       .def("__repr__", [](const SpecialPair& p) {
-        return "<SpecialPair " + p.bodies[0] + " - " + p.bodies[1] + format(": keeps %.3f mm>", 1e3 * p.clearance);
+        return "<SpecialPair " + p.bodies[0] + " - " + p.bodies[1] + formatted(": keeps %.3f mm>", 1e3 * p.clearance);
       });
 }
 
@@ -392,7 +404,7 @@ void bind_trajectory(py::module_& m) {
       .def("__repr__", [](const Trajectory& t) {
         return t.rows->empty()
                    ? std::string("<Trajectory, empty>")
-                   : format("<Trajectory of %zu rows, s %.4g to %.4g m>", t.rows->size(), t.rows->front().s, t.rows->back().s);
+                   : formatted("<Trajectory of %zu rows, s %.4g to %.4g m>", t.rows->size(), t.rows->front().s, t.rows->back().s);
       });
 
   py::class_<TimedPath::Stop>(m, "Stop", "Where the tool comes to rest on its way.")
@@ -400,8 +412,9 @@ void bind_trajectory(py::module_& m) {
       .def_readonly("waypoint", &TimedPath::Stop::waypoint)
       .def_readonly("s", &TimedPath::Stop::s, "m.")
       .def_readonly("t", &TimedPath::Stop::t, "s.")
-      .def("__repr__",
-           [](const TimedPath::Stop& x) { return format("<Stop at waypoint %d, s = %.4f m, t = %.3f s>", x.waypoint, x.s, x.t); });
+      .def("__repr__", [](const TimedPath::Stop& x) {
+        return formatted("<Stop at waypoint %d, s = %.4f m, t = %.3f s>", x.waypoint, x.s, x.t);
+      });
   py::class_<TimedPath::Slow>(m, "Slow", "A stretch that is slower than asked for.")
       .def(pickling<TimedPath::Slow>())
       .def_property_readonly(
@@ -416,8 +429,8 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "singular", [](const TimedPath::Slow& x) { return or_none(x.singular); }, "'shoulder', 'elbow', 'wrist' or None.")
       .def("__repr__", [](const TimedPath::Slow& x) {
-        return format("<Slow from s = %.4f to %.4f m: %.0f %% of the speed, for the %s of joint %d>", x.from_s, x.to_s,
-                      100 * x.share, to_string(x.reason), x.joint);
+        return formatted("<Slow from s = %.4f to %.4f m: %.0f %% of the speed, for the %s of joint %d>", x.from_s, x.to_s,
+                         100 * x.share, to_string(x.reason), x.joint);
       });
   py::class_<Motion>(m, "Motion", "A motion in time, from rest to rest, or why there is none. Arrays are read-only views.")
       .def(pickling<Motion>())
@@ -507,7 +520,7 @@ void bind_plan(py::module_& m) {
       .def_readonly("complete", &LatticeInfo::complete, "False: \"no path\" means \"none found\".")
       .def_readonly("cost", &LatticeInfo::cost, "What the search minimised.")
       .def("__repr__", [](const LatticeInfo& x) {
-        return format("<LatticeInfo %d layers, %lld nodes, ", x.layers, static_cast<long long>(x.nodes)) + x.method + ">";
+        return formatted("<LatticeInfo %d layers, %lld nodes, ", x.layers, static_cast<long long>(x.nodes)) + x.method + ">";
       });
   py::class_<Plan>(m, "Plan", "The answer of a planner: a trajectory, or why there is none. It outlives the planner.")
       .def(pickling<Plan>())
@@ -625,6 +638,9 @@ void bind_plan(py::module_& m) {
       .def_property_readonly(
           "min_margin", [](const Check& c) { return c.result.min_margin; }, "m, least clearance less what the pair must keep.")
       .def_property_readonly(
+          "deepest_contact", [](const Check& c) { return c.result.deepest_contact; },
+          "DeepestContact; None where no allowed pair was found to touch.")
+      .def_property_readonly(
           "duration",
           [](const Check& c) { return c.result.motion ? py::object(py::float_(c.result.motion->duration)) : py::none(); },
           "Of motions, s.")
@@ -640,11 +656,12 @@ void bind_plan(py::module_& m) {
           "Of motions: the largest over what the joint can do, by name.")
       .def("__repr__", [](const Check& c) {
         const CheckResult& r = c.result;
-        std::string text = format("<Check passed: cost %.6g", r.cost);
+        std::string text = formatted("<Check passed: cost %.6g", r.cost);
         if (!r.passed)
-          text = format("<Check failed, %lld failures: ", static_cast<long long>(r.failure_count)) + r.failures.front();
+          text = formatted("<Check failed, %lld failures: ", static_cast<long long>(r.failure_count)) + r.failures.front();
         if (r.min_clearance)
-          text += format(", least clearance %.3f mm, %.3f mm more than asked", 1e3 * *r.min_clearance, 1e3 * *r.min_margin);
+          text += formatted(", least clearance %.3f mm, %.3f mm more than asked", 1e3 * *r.min_clearance, 1e3 * *r.min_margin);
+        if (r.deepest_contact) text += formatted(", contact %.3f mm deep", 1e3 * r.deepest_contact->depth);
         return text + ">";
       });
 }

@@ -26,6 +26,9 @@ export function verdict(host, { result, rows, map }, jump) {
   } else {
     say(`Solved: ${rows.length} layers, cost ${number(result.cost)}`);
     if (clearance) say(`least clearance ${number(1e3 * clearance.value, 3)} mm (asked ${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`, clearance.s);
+    const contact = result.deepest_contact;
+    if (contact)
+      say(`contact ${contact.at_most === null ? 'at least ' : ''}${number(1e3 * contact.depth, 3)} mm deep${contact.allowed === null ? '' : ` (allowed ${number(1e3 * contact.allowed)})`}: ${contact.bodies.join(' – ')}`, result.trajectory[contact.row]?.s);
     if (limit) say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s);
     if (error) say(`tool ${number(error.max_mm, 2)} mm off${error.allowed_mm === null || error.allowed_mm === undefined ? '' : ` (allowed ${number(error.allowed_mm)})`}`, error.s);
     if (speed) say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s);

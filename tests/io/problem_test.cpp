@@ -167,7 +167,7 @@ TEST(ProblemFile, EveryKey) {
       {"scene", R"(
   - {name: table, box: [1, 1, 0.05], xyz: [0.6, 0, 0.4], rpy: [0, 0, 0]}
   - {name: post, cylinder: {radius: 0.05, length: 0.8}}
-  - {name: ball, sphere: {radius: 0.2}}
+  - {name: ball, sphere: {radius: 0.2}, allow: {grip: 0.02}}
   - {name: rod, capsule: {radius: 0.05, length: 0.8}}
   - {name: door, mesh: box.stl, scale: [1, -1, 1], quat: [2, 0, 0, 0], allow: [grinder, link_7]})"},
       {"path",
@@ -204,7 +204,8 @@ TEST(ProblemFile, EveryKey) {
   EXPECT_EQ(std::get<Capsule>(problem.scene[3].shape).radius, 0.05);
   EXPECT_DOUBLE_EQ(volume(*std::get<MeshPtr>(problem.scene[4].shape)), 6);
   EXPECT_TRUE(problem.scene[4].pose.isApprox(Pose::Identity()));
-  EXPECT_EQ(problem.scene[4].allow, (std::vector<std::string>{"grinder", "link_7"}));
+  EXPECT_EQ(problem.scene[4].allow, (std::vector<Allowed>{{"grinder"}, {"link_7"}}));
+  EXPECT_EQ(problem.scene[2].allow, (std::vector<Allowed>{{"grip", 0.02}}));
   EXPECT_EQ(problem.path_frame, "door");
   EXPECT_EQ(problem.waypoints[1].orientation.w(), 0.9995);
   EXPECT_EQ(problem.resolution.dalpha, 0.3);

@@ -105,6 +105,22 @@ class Plans(unittest.TestCase):
             statuses.add(str(one.status))
         print("verdicts:", statuses)
 
+    def test_how_deep_bodies_may_touch(self):
+        plate = swivel.SceneObject("plate", swivel.Box([1, 1, 0.1]), allow={"disc": 0.003, "tool": None})
+        self.assertEqual((plate.allow, plate.allow_depth), (["disc", "tool"], {"disc": 0.003}))
+        self.assertEqual(pickle.loads(pickle.dumps(plate)).allow_depth, {"disc": 0.003})
+        self.assertEqual(swivel.SceneObject("a", swivel.Sphere(1), allow=["disc"]).allow_depth, {})
+        problem = swivel.load_problem(DATA / "problems" / "xarm7_polish_raster.yaml")
+        problem.waypoints = np.array(problem.waypoints)[:2] - [0, 0, 0.005, 0, 0, 0, 0]
+        problem.resolution.ds = 0.02
+        plan = swivel.plan(problem, evidence=True)
+        self.assertTrue(plan.solved)
+        contact = plan.measures.deepest_contact
+        self.assertEqual((contact.bodies, contact.allowed), (("disc", "plate"), None))
+        self.assertLess(abs(contact.depth - 0.002), 1.2e-3)
+        self.assertLessEqual(contact.at_most, contact.depth + 0.51e-3)
+        self.assertEqual(swivel.check(problem, plan.trajectory).deepest_contact.bodies, contact.bodies)
+
     def test_refine_time_measure_check_advise(self):
         problem = experiment("c", ds=0.01)
         planner = swivel.Planner(problem)

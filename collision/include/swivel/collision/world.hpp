@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,9 +26,25 @@ struct BodyPair {
   bool operator==(const BodyPair&) const = default;
 };
 
-/// How near a pair may come, m.
+/// How deep two bodies are in each other, m: the greatest sum, over all points of space, of how deep the point lies beneath the
+/// surface of one body and beneath that of the other, where a point outside of a body counts by its distance from it, less than
+/// zero. So bodies that are apart have minus their distance. As the bodies move, the depth changes by no more than they do; no
+/// translation by less takes them apart; a body that contains another is as deep or deeper. A mesh that is not closed has no
+/// inside.
+struct Depth {
+  double at_least = 0;  ///< minus infinity where nothing is known
+  double at_most = 0;   ///< infinity where nothing is known: of two meshes, and of meshes that are not closed
+};
+
+/// A body of the robot and a scene object that may touch each other.
+struct AllowedPair {
+  BodyPair pair;
+  std::optional<double> depth;  ///< how deep, m; unset: however deep, and the pair is none of World::pairs()
+};
+
+/// How near a pair may come, m; less than zero: how deep the two may be in each other.
 struct PairKeeps {
-  double node = 0;       ///< on layers; contact is never allowed
+  double node = 0;       ///< on layers; contact is never allowed, save by a depth
   double motion = 0;     ///< between layers
   double tolerance = 0;  ///< h: a motion is proved by midpoints that are clear by motion + h; > 0
 };
@@ -52,14 +69,14 @@ struct RobotPair {
 enum class Keep {
   kNothing,
   kNode,      ///< PairKeeps::node
-  kMotion,    ///< PairKeeps::motion; pairs that are near by design are left to EdgeRule
+  kMotion,    ///< PairKeeps::motion; pairs that are near by design, or may touch, are left to EdgeRule
   kMidpoint,  ///< the same and PairKeeps::tolerance
 };
 struct Level {
   Level(double distance) : more(distance) {}  // implicit: "all pairs below 5 mm"
   Level(Keep what, double and_more = 0) : keep(what), more(and_more) {}
   Keep keep = Keep::kNothing;
-  double more = 0;  ///< m; no pair is below a level less than zero
+  double more = 0;  ///< m; no pair is below a level less than zero, save those that may touch
 };
 
 /// A stretch of a motion that is straight in joint space, from q - half to q + half about its middle posture q. How much nearer a
@@ -80,11 +97,12 @@ inline constexpr double kVerdictBand = 0.05e-3;
 struct EdgeRule {
   std::array<double, kDof> radii{};  ///< core motion_radii, m
   double h = 0.0005;                 ///< m; > 0
-  /// A pair that is near by design (RobotPair). On most motions it would need many midpoints; how its bodies move against each
-  /// other, by the joints between them alone, proves it with few.
+  /// A pair that is near by design (RobotPair), or that may touch and must not be deeper than so much (AllowedPair). On most
+  /// motions it would need many midpoints; how its bodies move against each other, by the joints between them alone, proves it with
+  /// few.
   struct Near {
     BodyPair pair;
-    double d_edge = 0, h = 0;       ///< m
+    double d_edge = 0, h = 0;       ///< m; d_edge less than zero: a depth
     int first_joint = 0, last = 0;  ///< first_joint <= j < last
   };
   std::vector<Near> near;
@@ -130,7 +148,7 @@ enum class Certificates {
 class World {
  public:
   /// Which pairs count: of the robot those of RobotPair that are not dropped; of robot and scene those that move and are not
-  /// allowed to touch. Throws InputError for a mesh without triangles, and Stopped.
+  /// allowed to touch, or to a depth only. Throws InputError for a mesh without triangles, and Stopped.
   World(const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
   /// The same with the trees of every mesh that `like` has met.
   World(const World& like, const RobotModel& robot, const ArmModel& arm, const Problem& problem, const Budget& budget = {});
@@ -153,6 +171,8 @@ class World {
   /// In the order in which first_below asks: the environment before the robot itself, inflated booleans before distances, the tool
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
+  /// Of moving bodies and scene objects those that may touch, in the order of the scene and, for each object, of bodies().
+  [[nodiscard]] const std::vector<AllowedPair>& allowed() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
   /// The joints that move the two bodies of a pair against each other.
   [[nodiscard]] Chain::Joints joints_between(const BodyPair& pair) const;
@@ -167,8 +187,8 @@ class World {
   void make_ready(const std::function<bool()>& stop) const;
   /// One of pairs(): what it must keep, by the limits of this world.
   [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const;
-  /// What is asked of a pair, by its place in pairs(), m: its PairKeeps less what this world forgives. Less than zero where it is
-  /// asked nothing.
+  /// What is asked of a pair, by its place in pairs(), m: its PairKeeps less what this world forgives. Less than zero where it may
+  /// be so deep; minus infinity where it is asked nothing.
   [[nodiscard]] double required(std::size_t pair, Keep keep) const;
   [[nodiscard]] const std::vector<RobotPair>& robot_pairs() const;
   /// The same with every median known, however far.
@@ -221,8 +241,11 @@ class World {
     /// Whether surely_below() proves most of what is below, in a fraction of the time that it takes to prove the rest free: where a
     /// mesh of many triangles is held against a box or a cylinder.
     [[nodiscard]] bool proves_soon(const BodyPair& pair) const;
+    /// How deep the two bodies of a pair are in each other, within 0.02 mm and, of a cylinder, 0.3 % of its radius. The search ends
+    /// early once at_most <= `from`, m. FCL is not asked.
+    [[nodiscard]] Depth depth(const Config& q, const BodyPair& pair, double from = -std::numeric_limits<double>::infinity());
     /// Exact as FCL: the pair with the least margin, the first that has it, and one that touches before any that does not; none
-    /// when there are no pairs.
+    /// when there are no pairs. Pairs that may touch are left out.
     struct Clearance {
       double distance = 0;  ///< m; 0 when touching or one inside the other
       BodyPair pair;
@@ -256,7 +279,8 @@ class World {
 /// N is of the pair's own h. By bisection, coarse to fine: an interval is free when each pair is clear in its middle by as much as
 /// it can come nearer within the interval, blocked when its middle is below PairKeeps::motion. The query is of the world that the
 /// rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `spare`, where there is no such
-/// pair and none is near by design: it would be the same if scene objects stood elsewhere by less than this, m. Throws Stopped.
+/// pair and the rule has none of its own: it would be the same if scene objects stood elsewhere by less than this, m. Throws
+/// Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                                    const Budget& budget = {}, double* spare = nullptr);
 /// Whether one pair of the world is what blocks it, whatever others do: too near at one of the midpoints. Throws Stopped.

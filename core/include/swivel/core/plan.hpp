@@ -129,6 +129,15 @@ struct LeastMargin {
   int row = 0;
 };
 
+/// The deepest contact of bodies that a scene object allows to touch it (SceneObject::allow). docs/model.md, "Contact".
+struct DeepestContact {
+  double depth = 0;               ///< m, found: at a row or at a posture between two rows; the depth is at least this
+  std::optional<double> at_most;  ///< m, proved for all rows and all moves between them; unset where the shapes leave it open
+  std::array<std::string, 2> bodies;
+  std::optional<double> allowed;  ///< Allowed::depth, m
+  int row = 0;                    ///< at it, or on the way from it to the next
+};
+
 /// A robot pair without an SRDF's word that is not kept apart as others are.
 struct SpecialPair {
   std::array<std::string, 2> bodies;
@@ -163,6 +172,7 @@ struct Measures {
   } tool_path_error_mm;                 ///< Evidence::tool_path_error; the others: Evidence::postures
   std::optional<double> min_clearance;  ///< of the nearest pair on any row, m; null when nothing is near
   std::optional<LeastMargin> min_margin;
+  std::optional<DeepestContact> deepest_contact;  ///< null where no allowed pair was found to touch
   double min_manipulability = 0;
   std::vector<double> arm_angle;  ///< conventional arm angle of each row of S-R-S arms, rad
 };

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "swivel/core/robot_model.hpp"
@@ -30,12 +31,22 @@ struct Waypoint {
   bool operator==(const Waypoint&) const = default;
 };
 
+/// A robot link or an attached body that may touch a scene object.
+struct Allowed {
+  Allowed() = default;
+  Allowed(const char* name) : body(name) {}  // implicit, like the next: most are names alone
+  Allowed(std::string name, std::optional<double> most = {}) : body(std::move(name)), depth(most) {}
+  std::string body;
+  std::optional<double> depth;  ///< how deep the two may be in each other, m (docs/model.md, "Contact"); unset: however deep
+  bool operator==(const Allowed&) const = default;
+};
+
 /// A body fixed in the base frame. One shape each.
 struct SceneObject {
   std::string name;
   Shape shape;
-  Pose pose = Pose::Identity();    ///< in base_link
-  std::vector<std::string> allow;  ///< robot links, attached bodies that may touch it
+  Pose pose = Pose::Identity();  ///< in base_link
+  std::vector<Allowed> allow;    ///< what may touch it
 };
 
 /// A tool or held part, rigid in `link`.

@@ -14,6 +14,12 @@ void validate(const RobotModel& robot);
 /// The same of an object's pose.
 void validate(const Pose& pose, const std::string& object);
 
+/// Why one of the scene object's Allowed::depth cannot be kept apart from others, and what can be asked for; none where it can.
+struct DepthFault {
+  std::string what, allowed;  ///< "...: <what>: allowed is <allowed>"
+};
+[[nodiscard]] std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object, const Allowed& allowed);
+
 /// 0 (the joint moves at no cost), or 1e-6 to 1e6.
 [[nodiscard]] bool weight_allowed(double weight);
 inline constexpr const char* kAllowedWeights = "0, or a number from 1e-6 to 1e6";

@@ -17,17 +17,18 @@ namespace swivel {
 /// What an independent look at a trajectory found. Knows the problem, the exact chain and FCL; nothing of planners or their search.
 struct CheckResult {
   bool passed = false;
-  std::vector<std::string> failures;    ///< one line each, with the row; the first 20
-  std::int64_t failure_count = 0;       ///< of all
-  double worst_position = 0;            ///< m, tool against path at the rows
-  double worst_angle = 0;               ///< rad
-  double worst_path_error = 0;          ///< m, between rows
-  double worst_path_angle = 0;          ///< rad, the same at the nearest points of the path
-  double largest_step = 0;              ///< a joint's move between two rows over what joint_step and speeds allow it
-  double cost = 0;                      ///< of the rows as given, by the problem's metric
-  bool rounded = false;                 ///< the rows were judged on the path of motions, whose corners are rounded
-  std::optional<double> min_clearance;  ///< m, of any pair at the rows
-  std::optional<double> min_margin;     ///< m, least clearance of a pair less what it must keep
+  std::vector<std::string> failures;              ///< one line each, with the row; the first 20
+  std::int64_t failure_count = 0;                 ///< of all
+  double worst_position = 0;                      ///< m, tool against path at the rows
+  double worst_angle = 0;                         ///< rad
+  double worst_path_error = 0;                    ///< m, between rows
+  double worst_path_angle = 0;                    ///< rad, the same at the nearest points of the path
+  double largest_step = 0;                        ///< a joint's move between two rows over what joint_step and speeds allow it
+  double cost = 0;                                ///< of the rows as given, by the problem's metric
+  bool rounded = false;                           ///< the rows were judged on the path of motions, whose corners are rounded
+  std::optional<double> min_clearance;            ///< m, of any pair at the rows
+  std::optional<double> min_margin;               ///< m, least clearance of a pair less what it must keep
+  std::optional<DeepestContact> deepest_contact;  ///< of pairs that are allowed to touch; none where none was found to
   struct LimitDistance {
     int joint = 0;  ///< 0..6
     double by = 0;  ///< rad, inside the limits less joint_margin
@@ -53,7 +54,8 @@ struct CheckResult {
 struct CheckOptions {
   /// Whether worst errors and least clearances are found out, and FCL alone is asked. Else the verdict comes sooner: certificates
   /// answer where they prove, the second bodies that come too near are not looked for, worst_path_error and worst_path_angle are
-  /// those of moves that fail by them, and min_clearance and min_margin stay unset.
+  /// those of moves that fail by them, and min_clearance, min_margin and deepest_contact
+  /// stay unset.
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
 };

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "swivel/collision/world.hpp"
+#include "swivel/core/budget.hpp"
+#include "swivel/core/plan.hpp"
+
+namespace swivel {
+
+/// The deepest contact of the world's allowed pairs at these postures and on the straight joint motions from each to the next; none
+/// where no pair was found to touch. What is between postures is searched until no contact there can be deeper than the one found
+/// by more than 0.5 mm. Of two meshes the postures alone are looked at. Throws Stopped.
+[[nodiscard]] std::optional<DeepestContact> deepest_contact(const World& world, const EdgeRule& rule,
+                                                            const std::vector<Config>& rows, const Budget& budget);
+
+}  // namespace swivel

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How deep bodies that may touch are in each other: measured, and bounded in everything that judges nodes, edges and motions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "robots.hpp"
+#include "seed.hpp"
+#include "swivel/core/answer_text.hpp"
+#include "swivel/core/invalid_argument.hpp"
+#include "swivel/io/io.hpp"
+#include "swivel/planner/check.hpp"
+#include "swivel/planner/cut.hpp"
+#include "swivel/planner/motion.hpp"
+#include "swivel/planner/planner.hpp"
+
+namespace swivel {
+namespace {
+
+using namespace test;
+
+/// A disc is led along a plate, `deep` beneath its surface.
+Problem polishing(double deep, std::optional<double> allowed = {}) {
+  static const Problem loaded = io::load_problem(data_dir() / "problems" / "xarm7_polish_raster.yaml");
+  Problem problem = loaded;
+  problem.waypoints.resize(2);
+  problem.waypoints[1].position.y() = 0;
+  problem.resolution.ds = 0.03;
+  problem.resolution.arc = 0.4;
+  for (Waypoint& waypoint : problem.waypoints) waypoint.position.z() -= deep + 0.003;  // the disc ends 3 mm above the tool
+  for (SceneObject& object : problem.scene)
+    if (object.name == "plate") object.allow = {Allowed("disc", allowed)};
+  return problem;
+}
+PlanResult planned(const Problem& problem, PlannerKind planner = PlannerKind::kLazy) {
+  PlanOptions options;
+  options.planner = planner;
+  options.evidence = Evidence::all();
+  return plan(problem, options);
+}
+
+TEST(Contact, IsMeasuredAndSaid) {
+  for (const double deep : {-0.002, 0.001, 0.004}) {
+    const Problem problem = polishing(deep);
+    const PlanResult result = planned(problem);
+    ASSERT_EQ(result.status, PlanStatus::kSolved);
+    ASSERT_EQ(result.deepest_contact.has_value(), deep > 0);
+    const CheckResult check = check_trajectory(problem, result.trajectory);
+    EXPECT_TRUE(check.passed);
+    ASSERT_EQ(check.deepest_contact.has_value(), deep > 0);
+    const bool said = answer_text(result).find("contact") != std::string::npos;
+    EXPECT_EQ(said, deep > 0) << answer_text(result);
+    if (deep < 0) continue;
+    for (const DeepestContact& contact : {*result.deepest_contact, *check.deepest_contact}) {
+      // Between layers joints move straight: the tool leaves its path by up to a millimetre.
+      EXPECT_GE(contact.depth, deep - 0.1e-3);
+      EXPECT_LE(contact.depth, deep + 1.1e-3);
+      ASSERT_TRUE(contact.at_most);
+      EXPECT_GE(*contact.at_most, contact.depth);
+      EXPECT_LE(*contact.at_most, contact.depth + 0.51e-3);
+      EXPECT_EQ(contact.bodies, (std::array<std::string, 2>{"disc", "plate"}));
+      EXPECT_FALSE(contact.allowed);
+    }
+  }
+}
+
+TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
+  const double deep = 0.004;
+  const Problem as_deep_as_it_likes = polishing(deep);
+  const PlanResult free = planned(as_deep_as_it_likes);
+  ASSERT_EQ(free.status, PlanStatus::kSolved);
+  for (const PlannerKind planner : {PlannerKind::kEager, PlannerKind::kEagerDp, PlannerKind::kLazy, PlannerKind::kParallel}) {
+    SCOPED_TRACE(to_string(planner));
+    const PlanResult enough = planned(polishing(deep, 0.006), planner);
+    ASSERT_EQ(enough.status, PlanStatus::kSolved);
+    EXPECT_EQ(enough.cost, free.cost);
+    ASSERT_TRUE(enough.deepest_contact);
+    EXPECT_EQ(enough.deepest_contact->allowed, 0.006);
+
+    const PlanResult little = planned(polishing(deep, 0.003), planner);
+    ASSERT_EQ(little.status, PlanStatus::kInfeasible);
+    const Cause& cause = little.diagnosis.cause;
+    EXPECT_EQ(cause.kind, Cause::Kind::kPair);
+    EXPECT_EQ(cause.bodies, (std::array<std::string, 2>{"disc", "plate"}));
+    ASSERT_TRUE(cause.value && cause.limit);
+    EXPECT_NEAR(*cause.value, -deep, 0.1e-3);
+    EXPECT_EQ(*cause.limit, -0.003);
+    EXPECT_NE(answer_text(little).find("4 mm deep, allowed 3 mm"), std::string::npos) << answer_text(little);
+  }
+  const CheckResult check = check_trajectory(polishing(deep, 0.003), free.trajectory);
+  EXPECT_FALSE(check.passed);
+  EXPECT_NE(check.failures.at(0).find("deep in each other: allowed are 3.000 mm"), std::string::npos) << check.failures[0];
+  CheckOptions quick;
+  quick.margins = false;
+  EXPECT_FALSE(check_trajectory(polishing(deep, 0.003), free.trajectory, quick).passed);
+  EXPECT_TRUE(check_trajectory(polishing(deep, 0.006), free.trajectory, quick).passed);
+}
+
+TEST(Contact, ThatIsTooDeepHasACertificate) {
+  const Problem problem = polishing(0.004, 0.003);
+  Planner planner(problem);
+  const PlanResult result = planner.plan();
+  ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+  const Cut cut = find_cut(planner.view());
+  EXPECT_TRUE(std::any_of(cut.witnesses.begin(), cut.witnesses.end(), [](const Cause& witness) {
+    return witness.bodies == std::array<std::string, 2>{"disc", "plate"};
+  }));
+  const CutCheck check = check_cut(PreparedRobot(problem), problem, cut);
+  EXPECT_TRUE(check.passed) << check.failure;
+  // Of the same problem where the disc may be so deep it proves nothing.
+  EXPECT_FALSE(check_cut(PreparedRobot(problem), polishing(0.004, 0.006), cut).passed);
+}
+
+TEST(Contact, BetweenLayersIsBoundedAsWell) {
+  // At layers the disc is as deep as it may be; on the way from one to the next it swings deeper.
+  Problem problem = polishing(0.003);
+  problem.resolution.ds = 0.15;
+  problem.limits.tool_path_error = 0.02;
+  problem.limits.joint_step = 1.5;
+  const PlanResult free = planned(problem);
+  ASSERT_EQ(free.status, PlanStatus::kSolved);
+  ASSERT_TRUE(free.deepest_contact);
+  Problem bounded = problem;
+  for (SceneObject& object : bounded.scene)
+    if (object.name == "plate") object.allow = {Allowed("disc", 0.00302)};
+  int deeper_at_rows = 0;
+  const World world(*bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool),
+                    bounded);
+  World::Query query(world);
+  for (const TrajectoryRow& row : free.trajectory) deeper_at_rows += query.first_below(row.q, Keep::kNode).has_value();
+  EXPECT_EQ(deeper_at_rows, 0);
+  EXPECT_FALSE(check_trajectory(bounded, free.trajectory).passed);
+  const PlanResult result = planned(bounded);
+  if (result.status == PlanStatus::kSolved) {
+    ASSERT_TRUE(result.deepest_contact);
+    EXPECT_LE(result.deepest_contact->depth, 0.00302 + 1e-6);
+  }
+}
+
+TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {
+  const auto led_in_base = [](Problem problem) {  // else the path goes with the plate
+    problem.waypoints = waypoints_in_base(problem);
+    problem.path_frame = problem.base_link;
+    return problem;
+  };
+  Planner planner(led_in_base(polishing(0.001, 0.002)));
+  int solved = 0, infeasible = 0;
+  for (const double lift : {0.0, 0.003, 0.0, -0.002, 0.004, 0.0005}) {
+    Pose pose = polishing(0).scene[1].pose;
+    pose.translation() += lift * pose.linear().col(2);
+    planner.move("plate", pose);
+    Problem problem = planner.problem();
+    const PlanResult again = planner.plan(), fresh = planned(problem);
+    EXPECT_EQ(again.status, fresh.status) << lift;
+    EXPECT_EQ(again.cost, fresh.cost) << lift;
+    (fresh.status == PlanStatus::kSolved ? solved : infeasible) += 1;
+  }
+  EXPECT_GE(solved, 1);
+  EXPECT_GE(infeasible, 1);
+  std::printf("%d solved, %d infeasible\n", solved, infeasible);
+}
+
+TEST(Contact, OfMotionsIsBoundedAsWell) {
+  Problem problem = polishing(0.001, 0.002);
+  problem.limits.joint_acceleration = std::array<double, kDof>{10, 10, 10, 10, 10, 10, 10};
+  problem = with_motion_defaults(problem);
+  const PlanResult result = planned(problem);
+  ASSERT_EQ(result.status, PlanStatus::kSolved);
+  TimingOptions timing;
+  timing.speed = 0.05;
+  const MotionResult motion = time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
+  ASSERT_TRUE(motion.motion) << (motion.failure ? motion.failure->reason : "");
+  EXPECT_TRUE(check_motion(PreparedRobot(problem), problem, motion.motion->rows).passed);
+  Problem strict = problem;
+  for (SceneObject& object : strict.scene)
+    if (object.name == "plate") object.allow = {Allowed("disc", 0.0005)};
+  EXPECT_FALSE(check_motion(PreparedRobot(strict), strict, motion.motion->rows).passed);
+}
+
+TEST(Contact, DepthsThatMeanNothingAreRefused) {
+  const auto message = [](const Shape& object, std::optional<double> depth) {
+    Problem problem = polishing(0.001, depth);
+    problem.scene[1].shape = object;
+    try {
+      static_cast<void>(plan(problem));
+    } catch (const InvalidArgument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto mesh = [](bool closed) {
+    TriangleMesh box;
+    for (int k = 0; k < 8; ++k) box.vertices.push_back(0.1 * Vector3d(k & 1, k >> 1 & 1, k >> 2 & 1));
+    box.triangles = {{0, 2, 1}, {1, 2, 3}};
+    box.source = "part.stl";
+    box.closed = closed;
+    return std::make_shared<const TriangleMesh>(box);
+  };
+  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.0).find("scene[1].allow[0].depth: is 0: allowed is a number > 0"), std::string::npos);
+  EXPECT_NE(message(Box{{0.3, 0.4, 0.02}}, 0.015).find("at most 0.015 m deep"), std::string::npos);  // half of 10 mm, half of 20 mm
+  EXPECT_NE(message(MeshPtr(mesh(false)), 0.001).find("part.stl is not closed"), std::string::npos);
+  Problem problem = polishing(0.001, 0.002);
+  problem.attached[1].shape = MeshPtr(mesh(true));
+  problem.scene[1].shape = MeshPtr(mesh(true));
+  EXPECT_THROW(static_cast<void>(plan(problem)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace swivel
