@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/formatted.hpp"
 
 namespace swivel {
 
@@ -17,9 +17,7 @@ void for_each_joint(const RobotModel& robot, const Chain& chain, const Visit& vi
 }
 
 std::string text(double number) {
-  char digits[32];
-  std::snprintf(digits, sizeof digits, "%.6g", number);
-  return digits;
+  return formatted("%.6g", number);
 }
 
 std::string range(double lower, double upper) {

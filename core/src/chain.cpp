@@ -124,7 +124,7 @@ bool is_outside(const Joint& joint, double position) {
 }
 
 std::string limits_allowed(const Joint& joint) {
-  return "is outside its limits: allowed is " + std::to_string(joint.lower) + " to " + std::to_string(joint.upper);
+  return "is outside its limits: allowed is " + formatted("%f", joint.lower) + " to " + formatted("%f", joint.upper);
 }
 
 /// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
@@ -152,8 +152,8 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     position[j] = leads[j].multiplier * position[leader] + leads[j].offset;
     const std::string& name = robot.joints[leader].name;
     if (joint.movable() && hold.count(name) > 0 && is_outside(joint, position[j]))
-      fail(robot, "robot.hold: joint '" + name + "' at " + std::to_string(position[leader]) + ": joint '" + joint.name +
-                      "', which mimics it, is then at " + std::to_string(position[j]) + " and " + limits_allowed(joint));
+      fail(robot, "robot.hold: joint '" + name + "' at " + formatted("%f", position[leader]) + ": joint '" + joint.name +
+                      "', which mimics it, is then at " + formatted("%f", position[j]) + " and " + limits_allowed(joint));
   }
   return position;
 }

@@ -3,23 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstddef>
-#include <cstdio>
 #include <limits>
+
+#include "swivel/core/formatted.hpp"
 
 namespace swivel {
 
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
-  char text[400];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 /// A motion's samples in time, as a controller takes them that moves joints straight from each to the next: speeds are steady
 /// between samples and change at them. Joints rest before the first sample and after the last.
@@ -81,7 +72,7 @@ bool ascend(const std::vector<TimedRow>& rows, const std::function<void(const st
   for (std::size_t k = 1; k < rows.size(); ++k) {
     if (rows[k].t > rows[k - 1].t && std::isfinite(rows[k].t) && std::isfinite(rows[k - 1].t)) continue;
     all = false;
-    fail(line("rows %zu-%zu: t is %.9g s after %.9g s: allowed are times that ascend", k - 1, k, rows[k].t, rows[k - 1].t));
+    fail(formatted("rows %zu-%zu: t is %.9g s after %.9g s: allowed are times that ascend", k - 1, k, rows[k].t, rows[k - 1].t));
   }
   return all;
 }
@@ -108,10 +99,11 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
         const double ratio = std::abs(by_order[order][j]) / (*bounds[order])[j];
         if (!(ratio <= 1 + 1e-6)) {
           const double longest = std::max({samples.step(k), samples.step(k + 1), samples.step(k + 2)});
-          fail(line("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t, names[order],
-                    chain.joint_names[static_cast<std::size_t>(j)].c_str(), ratio) +
-               (order > 0 && longest > 1.5 * usual ? line(", at a gap in time: %.6g s, where rows are %.6g s apart", longest, usual)
-                                                   : ""));
+          fail(formatted("t = %.6g s: %s of joint '%s' is %.6g times what it can do", t, names[order],
+                         chain.joint_names[static_cast<std::size_t>(j)].c_str(), ratio) +
+               (order > 0 && longest > 1.5 * usual
+                    ? formatted(", at a gap in time: %.6g s, where rows are %.6g s apart", longest, usual)
+                    : ""));
         }
         if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, t};
       }
@@ -122,8 +114,8 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
     for (int j = 0; j < kDof; ++j) {
       if (!(std::abs(row.v[j] - v[j]) <= rates.acceleration[j] * dt + 1e-6) ||
           !(std::abs(row.a[j] - a[j]) <= rates.jerk[j] * dt + 1e-3))
-        fail(line("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", t,
-                  chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j], v[j], a[j]));
+        fail(formatted("t = %.6g s: joint '%s' is said to have %.6g rad/s and %.6g rad/s^2, its positions say %.6g and %.6g", t,
+                       chain.joint_names[static_cast<std::size_t>(j)].c_str(), row.v[j], row.a[j], v[j], a[j]));
     }
   }
   for (std::ptrdiff_t k = 1; k < n; ++k) {
@@ -133,9 +125,10 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
     motion.turn_speed = std::max(motion.turn_speed, Eigen::AngleAxisd(from.linear().transpose() * to.linear()).angle() / dt);
   }
   if (limits.tool_speed && !(motion.tool_speed <= 1.001 * *limits.tool_speed))
-    fail(line("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed, *limits.tool_speed));
+    fail(formatted("the tool moves at up to %.6g m/s: limits.tool_speed is %.6g", motion.tool_speed, *limits.tool_speed));
   if (limits.tool_turn_speed && !(motion.turn_speed <= 1.001 * *limits.tool_turn_speed))
-    fail(line("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g", motion.turn_speed, *limits.tool_turn_speed));
+    fail(formatted("the tool turns at up to %.6g rad/s: limits.tool_turn_speed is %.6g", motion.turn_speed,
+                   *limits.tool_turn_speed));
   return motion;
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "swivel/core/angle.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/arm_angle.hpp"
+#include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/validate.hpp"
@@ -25,9 +25,7 @@ namespace {
 
 template <class... Values>
 [[noreturn]] void refuse(const char* format, Values... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  throw InputError(text);
+  throw InputError(formatted(format, values...));
 }
 
 class Completion {
