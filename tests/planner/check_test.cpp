@@ -718,7 +718,7 @@ TEST(Check, ManySmallMovesInOneStepDoNotAddUp) {
   EXPECT_GE(tried, 1);
 }
 
-/// 3 turns a waypoint, some of them by noise alone, so that 360 deg are made of 180 layers at one s.
+/// 3 layers a waypoint, some apart by noise alone, so that 360 deg are made of 180 layers at one s.
 Problem turning_problem(double noise, bool back) {
   Problem problem = problem_for(continuous_robot());
   Random random(seed("Turning"));
@@ -729,7 +729,7 @@ Problem turning_problem(double noise, bool back) {
     at = moved(at, noise * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)), turn * Vector3d::UnitZ());
     problem.waypoints.push_back(at);
   }
-  problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.05};
+  problem.resolution = {.ds = 0.01, .dphi = 0.2, .dalpha = 0.035};
   problem.limits.edges = EdgeMode::kNodes;
   return problem;
 }
