@@ -81,7 +81,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
   for (const TestRobot& robot : all_robots()) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
-    for (int trial = 0; trial < trials(robot.name == "windings" ? 4 : 10); ++trial) {
+    for (int trial = 0; trial < trials(robot.name == "windings" ? 4 : 16); ++trial) {
       Problem problem = problem_for(robot);
       const Config q0 = random_config(arm.chain, random);
       Config q1 = q0;

@@ -29,14 +29,18 @@ TestRobot arm_of_data(const std::string& name) {
   return robot;
 }
 
-/// Offsets in the wrist, in the shoulder, in both; continuous joints; one without a closed form; one whose last joint alone has a
-/// range of more than a turn.
+/// Offsets in the wrist, in the shoulder, in both; continuous joints; one without a closed form; one with two joints of two turns,
+/// one whose last joint alone has a range of more than a turn.
 std::vector<TestRobot> arms() {
   TestRobot wound = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
     if (number % 2 == 0) joint.lower = number == 6 ? -3.4 : -3.1, joint.upper = number == 6 ? 3.3 : 3.1;
   });
   wound.name = "xarm7_like, one joint of more than a turn";
-  return {arm_of_data("panda_like"), arm_of_data("gen3_like"), arm_of_data("fetch_like"), offset_robot(), wound};
+  TestRobot turns = with_limits(arm_of_data("xarm7_like"), [](int number, Joint& joint) {
+    if (number % 2 == 0) joint.upper = number < 4 ? 3.1 : kTwoPi, joint.lower = -joint.upper;
+  });
+  turns.name = "xarm7_like, two joints of two turns";
+  return {arm_of_data("panda_like"), arm_of_data("gen3_like"), arm_of_data("fetch_like"), offset_robot(), turns, wound};
 }
 
 Problem random_task(const TestRobot& robot, Random& random) {
@@ -126,6 +130,7 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(started, at_least(count / 10));
   EXPECT_GE(continuous, at_least(count / 5));
   EXPECT_GE(sampled, at_least(count / 8));
+  EXPECT_GE(chosen, at_least(count / 40));
 }
 
 /// A path that turns the last joint on from near its limit: the first answer on circles leaves the limits.

@@ -6,7 +6,7 @@
 
 #include "answer_order.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/make_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/planner.hpp"
 
@@ -25,15 +25,12 @@ TestRobot with_odd_joints_between(const std::string& name, const std::string& ti
 }
 
 /// A straight line of 5 cm from a random pose.
-Problem random_line(const TestRobot& robot, const Chain& chain, Random& random) {
-  Problem problem = problem_for(robot);
+std::vector<Waypoint> random_line(const Chain& chain, Random& random) {
   Pose pose = chain.tool(random_config(chain, random));
-  problem.waypoints = {waypoint_of(pose)};
+  const Waypoint first = waypoint_of(pose);
   const Vector3d way(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
   pose.translation() += 0.05 * way.normalized();
-  problem.waypoints.push_back(waypoint_of(pose));
-  problem.resolution = {.ds = 0.01, .dphi = 0.15, .arc = 0.3};
-  return problem;
+  return {first, waypoint_of(pose)};
 }
 
 /// Joints of two turns begin within half a turn of the middle, at the cost that they have where they have one turn.
@@ -45,7 +42,9 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
     Random random(base + static_cast<std::uint64_t>(trial));
     const auto [name, tip] = trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
     const TestRobot one = with_odd_joints_between(name, tip, kPi), two = with_odd_joints_between(name, tip, kTwoPi);
-    Problem problem = random_line(one, arm_of(one).chain, random);
+    Problem problem = problem_for(one);
+    problem.waypoints = random_line(arm_of(one).chain, random);
+    problem.resolution = {.ds = 0.01, .dphi = 0.15, .arc = 0.3};
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
     problem.cost.metric = random.coin(0.3) ? CostMetric::kMax : CostMetric::kL2;
     if (random.coin(0.3)) problem.cost.weights[static_cast<std::size_t>(random.below(kDof))] = 0;
@@ -65,19 +64,21 @@ TEST(Order, JointsOfTwoTurnsBeginInTheTurnNearestToTheMiddle) {
 /// Branches that are each other's mirror image cost the same but for rounding: which one is taken is no matter of rounding.
 TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
   const std::uint64_t base = seed("Order.Mirrored");
-  const TestRobot robot = with_odd_joints_between("iiwa14", "tool0", kPi);
-  const ArmModel arm = arm_of(robot);
-  const SrsArm srs = fit_srs(arm.chain, robot.name);
   int solved = 0, rivals = 0, dearer = 0;
   double furthest = 0;
-  const int count = trials(40);
+  const int count = trials(60);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
-    Problem problem = random_line(robot, arm.chain, random);
-    problem.resolution.ds = 1e-3;  // many costs to add up
-    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const ToolPath path(waypoints_in_base(problem), problem.resolution, what);
-    const SrsLattice lattice(arm.chain, srs, path, problem);
+    const auto [name, tip] = trial % 2 == 0 ? std::pair{"iiwa14", "tool0"} : std::pair{"xarm7_like", "flange"};
+    Problem problem = problem_for(with_odd_joints_between(name, tip, kPi));
+    const PreparedRobot robot(problem);
+    const Chain& chain = robot.arm().chain;
+    problem.waypoints = random_line(chain, random);
+    problem.resolution = {.ds = 2e-4, .dphi = 0.15, .arc = 0.3};  // many costs to add up
+    const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + name;
+    const ToolPath path = problem_path(problem, chain);
+    const std::unique_ptr<Lattice> made = make_lattice(chain, robot.arm_class(), path, problem);
+    const Lattice& lattice = *made;
     const auto cost_to_go = make_cost_to_go(lattice);
     cost_to_go->sweep(lattice.layers() - 1);
     std::int64_t expansions = 0;
@@ -88,7 +89,7 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
     dearer += cost_to_go->at(0, best[0]) > least;
     for (int slot = 0; slot < lattice.slots(0); ++slot) {
       const double cost = cost_to_go->at(0, slot);
-      if (slot == best[0] || cost > least + 1e-10) continue;
+      if (slot == best[0] || cost > least + 1e-9) continue;
       ++rivals;
       furthest = std::max(furthest, std::abs(cost - cost_to_go->at(0, best[0])));
       ASSERT_GE(off_middle(lattice, *lattice.node(0, slot)), off) << what << " slot " << slot;
@@ -97,7 +98,7 @@ TEST(Order, MirroredBranchesAreTiesHoweverCostsAreRounded) {
   std::printf("%d solved, %d other starts of the same cost, up to %g apart; %d of those taken were dearer by rounding\n", solved,
               rivals, furthest, dearer);
   EXPECT_GE(rivals, at_least(count / 2));
-  EXPECT_GE(dearer, at_least(2));
+  EXPECT_GE(dearer, at_least(1));
 }
 
 TEST(Order, ShippedArmsBeginInTheTurnNearestToTheMiddle) {
