@@ -22,7 +22,6 @@ class Search {
     for (const AllowedPair& allowed : world_.allowed()) {
       at_rows(allowed);
       if (!is_bounded_) continue;
-      last_joint_ = world_.bodies()[static_cast<std::size_t>(allowed.pair.a)].group;
       for (std::size_t k = 1; k < rows_.size(); ++k) settle(allowed, k - 1, 0, 1);
     }
     if (!found_) return std::nullopt;
@@ -52,7 +51,7 @@ class Search {
   void settle(const AllowedPair& allowed, std::size_t row, double from, double to) {
     budget_.poll();
     const Config &first = rows_[row], &next = rows_[row + 1];
-    const double reach = (to - from) / 2 * rule_.motion(first, next, 0, last_joint_), middle = (from + to) / 2;
+    const double reach = (to - from) / 2 * rule_.motion(first, next), middle = (from + to) / 2;
     const Depth depth = look(allowed, row, first + middle * (next - first), deepest_ + kBetween - reach);
     if (depth.at_most + reach <= deepest_ + kBetween) return;
     if (!std::isfinite(depth.at_most)) {
@@ -72,7 +71,6 @@ class Search {
   const std::vector<Config>& rows_;
   const Budget& budget_;
   World::Query query_;
-  int last_joint_ = 0;       // joints before it move the pair's body
   bool is_bounded_ = true;   // of the pair at hand
   bool is_complete_ = true;  // of all pairs so far
   double deepest_ = kTouching, beyond_ = 0;

@@ -54,8 +54,7 @@ struct CheckResult {
 struct CheckOptions {
   /// Whether worst errors and least clearances are found out, and FCL alone is asked. Else the verdict comes sooner: certificates
   /// answer where they prove, the second bodies that come too near are not looked for, worst_path_error and worst_path_angle are
-  /// those of moves that fail by them, and min_clearance, min_margin and deepest_contact
-  /// stay unset.
+  /// those of moves that fail by them, and min_clearance, min_margin and deepest_contact stay unset.
   bool margins = true;
   Budget budget = {};  ///< Stopped is thrown once it is spent
 };
