@@ -21,8 +21,22 @@ from ._swivel import __version__  # noqa: F401
 from .runs import campaign, place  # noqa: F401
 
 __all__ = [name for name in vars(_swivel) if not name.startswith("_")]
+
+
+def _restore(kind, state):
+    """What was pickled, whole, or an exception: pickle's own way leaves an object without contents where its last step is damaged."""
+    thing = kind.__new__(kind)
+    thing.__setstate__(state)
+    return thing
+
+
 for _name in __all__:
-    getattr(_swivel, _name).__module__ = __name__
+    _thing = getattr(_swivel, _name)
+    _thing.__module__ = __name__
+    if hasattr(_thing, "__members__"):
+        _thing.__reduce__ = lambda member: (getattr, (type(member), member.name))
+    elif hasattr(_thing, "__setstate__"):
+        _thing.__reduce__ = lambda thing: (_restore, (type(thing), thing.__getstate__()))
 campaign.__module__ = place.__module__ = __name__
 __all__ += ["advise", "campaign", "check", "compute_cartesian_path", "measure", "place", "plan", "refine", "time"]
 
