@@ -357,19 +357,19 @@ TEST(Validate, MessagesWithoutAFileBeginWithTheKey) {
   const std::vector<std::pair<const char*, std::function<void(Problem&)>>> breaks = {
       {"path: 1 waypoint", [](Problem& p) { p.waypoints.resize(1); }},
       {"path: all waypoints are one pose", [](Problem& p) { p.waypoints.assign(3, p.waypoints[0]); }},
-      {"path: waypoints 0 and 1",
+      {"path: waypoint 1: turns by 180 deg",
        [](Problem& p) { p.waypoints[1].orientation = p.waypoints[0].orientation * Quaterniond(0, 1, 0, 0); }},
-      {"path.frame: unknown frame", [](Problem& p) { p.path_frame = "nowhere"; }},
+      {"problem: path_frame: unknown frame", [](Problem& p) { p.path_frame = "nowhere"; }},
       {"start.joints: joint", [](Problem& p) { p.start = Config::Constant(9); }},
       {"start.joints: the tool", [](Problem& p) { p.start = Config::Zero(); }},
       {"start_at: is", [](Problem& p) { p.start = Config::Zero(), p.start_at = 50; }},
       {"limits.joint_margin: leaves no range", [](Problem& p) { p.limits.joint_margin = 3; }},
       {"resolution", [](Problem& p) { p.resolution.ds = p.resolution.dphi = 1e-7; }},
-      {"robot.attached: 'link_3' is a link",
+      {"problem: attached[0].name: 'link_3' is a link",
        [](Problem& p) {
          p.attached = {{"link_3", Sphere{0.1}, Pose::Identity(), "tool0"}};
        }},
-      {"robot.attached.grip.link: unknown link", [](Problem& p) { p.attached[0].link = "nothing"; }},
+      {"problem: attached[0].link: unknown link", [](Problem& p) { p.attached[0].link = "nothing"; }},
       {"robot.tip_link: ", [](Problem& p) { p.tip_link = "nothing"; }},
       {"robot.tip_link: only", [](Problem& p) { p.tip_link = "link_3"; }},
   };
