@@ -47,12 +47,13 @@ TriangleMesh placed(const TriangleMesh& mesh, const Pose& pose) {
                          const std::map<std::string, std::filesystem::path>& packages) {
   const char* const of_links = arguments.links.empty() ? "" : " of --link";
   if (arguments.visual)
-    throw InputError(robot.source + ": no visual meshes" + of_links +
-                     " on links without collision shapes: allowed is a robot that has some");
+    throw InputError(robot.source, std::string("no visual meshes") + of_links +
+                                       " on links without collision shapes: allowed is a robot that has some");
   io::ShapeSurvey shapes;
   static_cast<void>(io::load_kinematics(arguments.urdf, {}, packages, {}, shapes));
-  throw InputError(robot.source + ": no collision meshes" + of_links + ": allowed is a robot that has some" +
-                   (shapes.visual_meshes == 0 ? "" : ", or --visual, which fits capsules about its visual meshes"));
+  throw InputError(robot.source,
+                   std::string("no collision meshes") + of_links + ": allowed is a robot that has some" +
+                       (shapes.visual_meshes == 0 ? "" : ", or --visual, which fits capsules about its visual meshes"));
 }
 
 int run(const FitArguments& arguments) {

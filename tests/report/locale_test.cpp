@@ -92,7 +92,7 @@ std::map<std::string, std::string> texts() {
     if (result.status != PlanStatus::kSolved) continue;
     const fs::path file = fs::temp_directory_path() / ("swivel-locale-" + std::to_string(getpid()) + ".csv");
     io::write_trajectory(file, result);
-    for (const TrajectoryRow& row : io::load_trajectory(file, planner.view().lattice.chain().joint_names))
+    for (const TrajectoryRow& row : io::load_trajectory_file(file, planner.view().lattice.chain().joint_names).rows)
       texts["trajectory"] += formatted("%.17g %.17g %.17g\n", row.s, row.phi, row.q.sum());
     fs::remove(file);
   }
