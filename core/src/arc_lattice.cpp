@@ -458,7 +458,7 @@ ArcLattice::ArcLattice(const Chain& chain, const LockMethod& method, const ToolP
     : ExplicitLattice(chain, path, problem, std::move(layers.points), layers.circles),
       method_(method),
       problem_(problem),
-      layers_{{}, layers.circles, std::move(layers.windings), layers.arcs} {}
+      layers_{{}, layers.circles, std::move(layers.windings), std::move(layers.next), layers.arcs} {}
 
 int arc_branch(const Chain& chain, const LockMethod& method, const Config& q) {
   const auto J = chain.jacobian(q);
@@ -492,6 +492,11 @@ int ArcLattice::branch(int layer, int slot) const {
 
 double ArcLattice::phi(int layer, int slot) const {
   return arc_angle(chain(), point(layer, slot).q);
+}
+
+int ArcLattice::next_on_arc(int layer, int slot) const {
+  return layers_.next.empty() ? beside(layer, slot, 1)
+                              : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 
 ArcLattice::Rows ArcLattice::followed(const std::vector<int>& slots) const {
@@ -561,6 +566,7 @@ ArcLattice ArcLattice::with_windings(const Joints& joints) const {
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
   for (int i = 0; i < layers(); ++i) {
     auto& points = wound.points.emplace_back();
+    std::vector<std::size_t> first;  // image of each slot
     for (int slot = 0; slot < slots(i); ++slot) {
       std::vector<Config> images{point(i, slot).q};
       if (i == 0 && problem_.start) images[0] = *problem_.start;
@@ -575,11 +581,22 @@ ArcLattice ArcLattice::with_windings(const Joints& joints) const {
           });
         images.swap(more);
       }
+      first.push_back(points.size());
       for (const Config& q : images) {
         Point image;
         image.q = q;
         points.push_back(image);
       }
+    }
+    first.push_back(points.size());
+    // An arc goes on from an image to that of the next node to which no joint turns by half a turn.
+    auto& next = wound.next.emplace_back(points.size(), -1);
+    for (int slot = 0; slot < slots(i); ++slot) {
+      const int after = next_on_arc(i, slot);
+      if (after < 0) continue;
+      for (std::size_t a = first[static_cast<std::size_t>(slot)]; a < first[static_cast<std::size_t>(slot) + 1]; ++a)
+        for (std::size_t b = first[static_cast<std::size_t>(after)]; b < first[static_cast<std::size_t>(after) + 1]; ++b)
+          if ((points[b].q - points[a].q).cwiseAbs().maxCoeff() < kPi) next[a] = static_cast<int>(b);
     }
   }
   return {chain(), method_, path(), problem_, std::move(wound)};

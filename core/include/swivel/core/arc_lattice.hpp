@@ -34,6 +34,8 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] int branch(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
 
+  /// The slot after a node on its arc of self-motion, -1: none. That of beside(), which nodes of a lattice with_windings() lack.
+  [[nodiscard]] int next_on_arc(int layer, int slot) const;
   /// Arcs of all layers.
   [[nodiscard]] std::int64_t arcs() const { return layers_.arcs; }
   /// Joints taken as circles although they are bounded.
@@ -57,6 +59,7 @@ class ArcLattice final : public ExplicitLattice {
     std::vector<std::vector<Point>> points;
     std::array<bool, kDof> circles{};
     std::vector<std::array<bool, kDof>> windings{};
+    std::vector<std::vector<int>> next{};  // with_windings: next_on_arc, by layer and slot
     std::int64_t arcs = 0;
   };
   static Layers build(const Chain& chain, const LockMethod& method, const ToolPath& path, const Problem& problem,
