@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <optional>
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
@@ -15,14 +17,101 @@ namespace swivel {
 
 namespace {
 
-constexpr int kCells = 90;  // of a turn, where there is no grid
+constexpr int kCells = 90;  // of a panel, where there is no grid
 
 /// What took FCL to find is told before what a certificate proves.
 std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
   return {node.state, !node.certified};
 }
 
+/// Of the nodes of each layer, in the order of slots: their values of the coordinate, in [-pi, pi], and branches.
+struct Values {
+  std::vector<double> value;
+  std::vector<int> branch;
+  std::vector<std::size_t> first;  // of each layer
+};
+
+Values values_of(const Lattice& lattice, const Budget& budget) {
+  Values values;
+  for (int layer = 0; layer < lattice.layers(); ++layer) {
+    budget.poll(Stage::kDrawing, layer, lattice.layers());
+    values.first.push_back(values.value.size());
+    for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+      values.value.push_back(wrap_angle(lattice.phi(layer, slot)));
+      values.branch.push_back(lattice.branch(layer, slot));
+    }
+  }
+  return values;
+}
+
+/// The cells of a panel cover the turn but for the widest gap between the values; all of it where that gap is less than an eighth.
+void fit_cells(LatticeMap& map, std::vector<double> values) {
+  constexpr double kNarrow = 0.01;  // rad: so little is one cell
+  std::sort(values.begin(), values.end());
+  double gap = values.empty() ? 0 : values.front() + kTwoPi - values.back();
+  std::size_t after = 0;
+  for (std::size_t k = 1; k < values.size(); ++k)
+    if (values[k] - values[k - 1] > gap) gap = values[k] - values[k - 1], after = k;
+  const double span = kTwoPi - gap;
+  map.closed = gap < kTwoPi / 8;
+  map.angles = map.closed || span > kNarrow ? kCells : 1;
+  map.step = map.closed || span <= kNarrow ? kTwoPi / kCells : span / (kCells - 1);
+  if (!map.closed) map.low = values[after] + (span > kNarrow ? 0 : span / 2);
+}
+
+/// Whose node each cell of a layer shows, -1: none. A node has its cell and those up to half the way to its neighbours on the arc;
+/// of several the path's is shown, or the most important. `nodes`: of the layer's slots. `on_path`: the path's slot, or -1.
+std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, int layer, const Values& values,
+                                const std::vector<LatticeMap::Node>& nodes, int on_path) {
+  const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice);
+  const double* const value = values.value.data() + values.first[static_cast<std::size_t>(layer)];
+  const int* const branch = values.branch.data() + values.first[static_cast<std::size_t>(layer)];
+  std::vector<int> shown(static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles), -1);
+  const auto offer = [&](int slot, int angle) {
+    int& best = shown[static_cast<std::size_t>(branch[slot] * map.angles + angle)];
+    const auto worth = [&](int k) { return std::pair(k == on_path, importance(nodes[static_cast<std::size_t>(k)])); };
+    if (best < 0 || worth(slot) > worth(best)) best = slot;
+  };
+  for (int slot = 0; slot < static_cast<int>(nodes.size()); ++slot) {
+    const double from = map.place(value[slot]);
+    offer(slot, std::clamp(static_cast<int>(std::lround(from)), 0, map.angles - 1));
+    const int next = arcs ? arcs->next_on_arc(layer, slot) : lattice.beside(layer, slot, 1);
+    if (next < 0) continue;
+    const double way = wrap_angle(value[next] - value[slot]) / map.step;
+    for (auto k = static_cast<int>(std::ceil(std::min(from, from + way))); k <= std::max(from, from + way); ++k) {
+      const int angle = map.closed ? (k + map.angles) % map.angles : k;
+      if (angle >= 0 && angle < map.angles) offer(std::abs(k - from) <= std::abs(way) / 2 ? slot : next, angle);
+    }
+  }
+  return shown;
+}
+
 }  // namespace
+
+double LatticeMap::place(double value) const {
+  const double turn = kTwoPi / step, before = closed ? 0.5 : (turn - (angles - 1)) / 2, k = (value - low) / step;
+  return k - turn * std::floor((k + before) / turn);
+}
+
+double LatticeMap::value(double k) const {
+  const double value = low + k * step;
+  return value > kPi ? value - kTwoPi : value;
+}
+
+const char* LatticeMap::coordinate_name() const {
+  if (coordinate == Coordinate::kRoll) return "roll";
+  return grid() ? "arm angle" : "generalised arm angle";
+}
+
+const char* LatticeMap::letter(int panel) const {
+  return coordinate == Coordinate::kRoll || shows_rolls(panel) ? "ρ" : "φ";
+}
+
+const char* LatticeMap::emptiness() const {
+  if (!grid()) return "no solution: out of reach, beyond a joint limit, or beside the given start";
+  return turns ? "no node: out of reach, beside the given start, or turned further than allowed"
+               : "no node: out of reach, or beside the given start";
+}
 
 std::vector<int> LatticeMap::inhabited_sheets() const {
   std::vector<int> inhabited;
@@ -43,7 +132,7 @@ std::string LatticeMap::blocker_name(const Node& node) const {
 std::string LatticeMap::sheet_name(int sheet) const {
   if (shows_rolls(sheet)) return "roll of the tool, where the path is";
   const int branch = sheet / windings;
-  if (!grid) return "solutions " + std::to_string(branch);
+  if (!grid()) return "solutions " + std::to_string(branch);
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
   std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
   if (windings > 1) name += ", winding " + std::to_string(sheet % windings);
@@ -75,11 +164,11 @@ std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int
   return result;
 }
 
-int map_cell(const Lattice& lattice, int layer, int slot) {
+int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot) {
   if (dynamic_cast<const SrsLattice*>(&lattice)) return slot;
   if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->inner(layer, slot);
-  const int angle = static_cast<int>((wrap_angle(lattice.phi(layer, slot)) + kPi) / kTwoPi * kCells);
-  return lattice.branch(layer, slot) * kCells + std::clamp(angle, 0, kCells - 1);
+  const int angle = static_cast<int>(std::lround(map.place(lattice.phi(layer, slot))));
+  return lattice.branch(layer, slot) * map.angles + std::clamp(angle, 0, map.angles - 1);
 }
 
 LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
@@ -88,24 +177,27 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
 
   LatticeMap map;
   map.layers = lattice.layers();
-  map.angles = kCells;
-  map.grid = false;
+  Values values;
   if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice)) {
     map.angles = grid->angles();
     map.windings = grid->windings();
-    map.grid = true;
-  }
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
+  } else if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
     map.angles = rolls->at_roll(0).angles();
     map.windings = rolls->at_roll(0).windings();
-    map.grid = true;
     map.turns = rolls->rolls() > 1 && !view.path.empty();
+  } else {
+    using Coordinate = LatticeMap::Coordinate;
+    map.coordinate = lattice.chain().roll ? Coordinate::kRoll : Coordinate::kGeneralisedArmAngle;
+    values = values_of(lattice, budget);
+    fit_cells(map, values.value);
   }
+  if (map.grid()) map.step = kTwoPi / map.angles;
   map.joint_names = lattice.chain().joint_names;
-  for (const int slot : view.path) map.path.push_back(map_cell(lattice, static_cast<int>(map.path.size()), slot));
+  for (const int slot : view.path) map.path.push_back(map_cell(map, lattice, static_cast<int>(map.path.size()), slot));
   map.complete = full || view.verdicts == nullptr;
   const std::size_t cells = static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
   map.nodes.resize(static_cast<std::size_t>(map.layers) * cells);
+  if (!map.grid()) map.slots.reserve(map.nodes.size());
   std::vector<std::pair<std::size_t, std::pair<std::string, std::string>>> blocked;  // cell, by what
   std::vector<Lattice::Node> listed;
   const auto of_fault = [&](int layer, int slot) {
@@ -142,14 +234,32 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
       if (last > rolls->width()) first = rolls->slot_of(rank, 0), last = first + rolls->width();
     }
     lattice.layer_nodes(layer, listed);
+    if (!map.grid()) {  // all slots exist
+      std::vector<LatticeMap::Node> nodes;
+      std::vector<std::optional<BodyPair>> pairs;
+      for (const Lattice::Node& node : listed) {
+        pair.reset();
+        nodes.push_back(look_at(layer, node.slot, node.q));
+        pairs.push_back(pair);
+      }
+      const int on_path = layer < static_cast<int>(view.path.size()) ? view.path[static_cast<std::size_t>(layer)] : -1;
+      for (const int slot : slots_of_cells(map, lattice, layer, values, nodes, on_path)) {
+        const std::size_t cell = map.slots.size(), k = static_cast<std::size_t>(slot);
+        map.slots.push_back(slot);
+        if (slot < 0) continue;
+        map.nodes[cell] = nodes[k];
+        if (pairs[k]) blocked.emplace_back(cell, std::pair(view.world.names(*pairs[k])[0], view.world.names(*pairs[k])[1]));
+      }
+      continue;
+    }
     auto next = std::find_if(listed.begin(), listed.end(), [&](const Lattice::Node& node) { return node.slot >= first; });
     for (int slot = first; slot < last; ++slot) {
       const bool exists = next != listed.end() && next->slot == slot;
       pair.reset();
       const LatticeMap::Node node = exists ? look_at(layer, slot, next->q) : of_fault(layer, slot);
       next += exists;
-      const std::size_t cell = static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(map_cell(lattice, layer, slot));
-      if (!map.grid && importance(node) <= importance(map.nodes[cell])) continue;
+      const std::size_t cell =
+          static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(map_cell(map, lattice, layer, slot));
       map.nodes[cell] = node;
       if (pair) blocked.emplace_back(cell, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
     }

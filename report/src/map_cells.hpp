@@ -73,8 +73,7 @@ class MapLegend {
   [[nodiscard]] std::string meaning(const LatticeMap::Node& node) const {
     switch (node.state) {
       case NodeState::kNoIk:
-        return map_.turns ? "no node: out of reach, beside the given start, or turned further than allowed"
-                          : "no node: out of reach, or beside the given start";
+        return map_.emptiness();
       case NodeState::kSingular:
         return "singular";
       case NodeState::kJointLimit:

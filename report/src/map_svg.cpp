@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <cmath>
 
 #include "drawing.hpp"
 #include "map_cells.hpp"
+#include "swivel/core/angle.hpp"
 
 namespace swivel {
 
@@ -26,6 +28,23 @@ std::string colour_of(const LatticeMap::Node& node) {
       return kBlockerColour[node.cause % kBlockerColour.size()];
   }
   return "#ffffff";
+}
+
+/// Where marks of the coordinate are, in cells from the lower edge of a panel, and what they say, rad.
+std::vector<std::pair<double, std::string>> marks(const LatticeMap& map) {
+  if (map.closed) {
+    const double quarter = map.angles / 4.0;
+    return {{0, "-π"}, {quarter, "-π/2"}, {2 * quarter, "0"}, {3 * quarter, "π/2"}, {4 * quarter, "π"}};
+  }
+  const double high = map.low + (map.angles - 1) * map.step;
+  if (map.angles == 1) return {{0.5, number(map.value(0))}};
+  double each = 1;
+  for (const double candidate : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002})
+    if ((high - map.low) / each < 3) each = candidate;
+  std::vector<std::pair<double, std::string>> marks;
+  for (double k = std::ceil(map.low / each); k * each <= high; ++k)
+    marks.emplace_back((k * each - map.low) / map.step + 0.5, number(wrap_angle(k * each)));
+  return marks;
 }
 
 }  // namespace
@@ -72,7 +91,8 @@ std::string to_svg(const LatticeMap& map) {
       const int slot = path[i], angle = slot % map.angles;
       const bool here = slot / map.angles == sheet;
       const bool changes = i > 0 && path[i - 1] / map.angles != slot / map.angles;
-      if (here && i > 0 && !changes && std::abs(path[i - 1] % map.angles - angle) > map.angles / 2) flush();  // through pi
+      if (here && i > 0 && !changes && map.closed && std::abs(path[i - 1] % map.angles - angle) > map.angles / 2)
+        flush();  // through pi
       if (!here) {
         flush();
         continue;
@@ -84,9 +104,8 @@ std::string to_svg(const LatticeMap& map) {
     flush();
     drawing.frame(kLeft, top, kPanelWidth, kPanelHeight);
     drawing.text(kLeft, top - 7, "start", map.sheet_name(sheet));
-    for (const auto& [angle, name] : {std::pair{0.0, "-π"}, {0.25, "-π/2"}, {0.5, "0"}, {0.75, "π/2"}, {1.0, "π"}})
-      drawing.text(kLeft - 6, y_of(angle * map.angles) + 4, "end", name);
-    drawing.text(14, top + kPanelHeight / 2, "middle", map.shows_rolls(sheet) ? "ρ" : "φ");
+    for (const auto& [angle, name] : marks(map)) drawing.text(kLeft - 6, y_of(angle) + 4, "end", name);
+    drawing.text(14, top + kPanelHeight / 2, "middle", map.letter(sheet));
     for (int k = 0; k <= 5; ++k) {
       const double layer = (map.layers - 1) * k / 5.0;
       drawing.text(x_of(layer), top + kPanelHeight + 15, "middle", number(map.s[static_cast<std::size_t>(layer + 0.5)]));
@@ -102,7 +121,13 @@ std::string to_svg(const LatticeMap& map) {
   };
   if (!map.path.empty()) legend("#000000", seen.path_meaning() + "; dots: change of branch");
   for (const auto& [node, meaning] : seen.entries()) legend(colour_of(node), meaning);
-  if (cells.layers_each * cells.angles_each > 1) {
+  if (!map.grid()) {
+    drawing.text(kLeft, top, "start",
+                 map.letter(sheets.empty() ? 0 : sheets.front()) + std::string(": ") + map.coordinate_name() +
+                     ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
+                     (cells.layers_each * cells.angles_each > 1 ? ", of several a blocked one first, then a free one." : "."));
+    top += 18;
+  } else if (cells.layers_each * cells.angles_each > 1) {
     drawing.text(kLeft, top, "start",
                  "A cell stands for up to " + std::to_string(cells.layers_each) + " x " + std::to_string(cells.angles_each) +
                      " nodes and shows a blocked one first, then a free one.");

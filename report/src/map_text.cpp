@@ -53,8 +53,8 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   for (const int sheet : map.inhabited_sheets()) {
     text += map.sheet_name(sheet) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
-      const double phi = -kPi + kTwoPi * row * cells.angles_each / map.angles;
-      text += row % 4 == 0 ? formatted("%6.2f  ", phi) : std::string(kMargin, ' ');
+      const double value = map.value(row * cells.angles_each);
+      text += row % 4 == 0 ? formatted("%6.2f  ", value) : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
         const LatticeMap::Node node = cells.node(sheet, column, row);
         seen.see(node);
@@ -72,8 +72,14 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   };
   if (!map.path.empty()) legend({'*', 231}, seen.path_meaning());
   for (const auto& [node, meaning] : seen.entries()) legend(look_of(node), meaning);
-  const std::string rows = map.turns ? "Rows are arm angles, in the last panel rolls, rad. " : "Rows are arm angles, rad. ";
-  if (cells.layers_each * cells.angles_each > 1)
+  const std::string name = map.coordinate_name();
+  const std::string rows = "Rows are " + name + "s" + (map.turns ? ", in the last panel rolls, rad. " : ", rad. ");
+  if (!map.grid())
+    text +=
+        rows + "Between two nodes of an arc of solutions the nearer one is shown" +
+        (cells.layers_each * cells.angles_each > 1 ? ", of several a blocked node before a free one, and that before the others.\n"
+                                                   : ".\n");
+  else if (cells.layers_each * cells.angles_each > 1)
     text += rows + "A cell stands for up to " + std::to_string(cells.layers_each) + " layers x " +
             std::to_string(cells.angles_each) +
             " arm angles and shows a blocked node before a free one, and that before the others.\n";

@@ -26,90 +26,86 @@ using namespace detail;
 
 namespace {
 
-/// A row of the page: of the lattice, or off its grid.
+/// A row of a trajectory, and where it is in the map.
 struct Row {
-  Config q;
-  double phi = 0, angle = 0;  ///< angle: in cells
+  TrajectoryRow at;
+  double layer = 0;  ///< of the lattice; between two of them where only every so many layers of the path are layers of the lattice
   int sheet = 0;
-  std::optional<double> roll = {};  ///< rad
+  double angle = 0;              ///< in cells
+  std::optional<double> roll{};  ///< rad
 };
 
-/// The answer layer by layer, or the way to the furthest layer.
-std::vector<Row> lattice_rows(const Lattice& lattice, const LatticeMap& map, const std::vector<int>& slots) {
-  std::vector<Row> rows;
-  for (int layer = 0; layer < static_cast<int>(slots.size()); ++layer) {
-    const int slot = slots[static_cast<std::size_t>(layer)];
-    const int cell = map.path[static_cast<std::size_t>(layer)];
-    Row row{*lattice.row(layer, slot), lattice.phi(layer, slot), static_cast<double>(cell % map.angles), cell / map.angles};
-    if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) row.roll = rolls->roll(layer, slot);
-    if (!rows.empty())
-      row.q = rows.back().q + lattice.delta(rows.back().q, row.q);  // unwraps continuous joints, as the trajectory does
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-/// Of a refined path. Its sheets are mostly those of the path that it comes from, else of the nodes that are nearest.
-std::vector<Row> refined_rows(const Lattice& lattice, const LatticeMap& map, const std::vector<TrajectoryRow>& refined,
-                              const std::vector<int>& slots) {
+/// `rows`: of the path's layers, from the first on. Their sheets are mostly those of the lattice's path (`slots`); where their
+/// branch is another, those of the nodes that are nearest.
+std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map, const std::vector<TrajectoryRow>& rows,
+                        const std::vector<int>& slots) {
   const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
-  std::vector<Row> rows;
+  const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
+  const std::vector<double> turns = rolls_of(rows);
+  const ToolPath& path = lattice.path_of_rows();
+  std::vector<Row> shown;
   LayerNodes nodes;
-  for (int layer = 0; layer < static_cast<int>(refined.size()); ++layer) {
-    const TrajectoryRow& from = refined[static_cast<std::size_t>(layer)];
-    const double angle = (wrap_angle(from.phi) + kPi) / kTwoPi * map.angles;
-    Row row{from.q, from.phi, angle, grid ? grid->sheet_of(slots[static_cast<std::size_t>(layer)]) : from.branch};
-    if (grid && row.sheet / grid->windings() != from.branch) {
-      grid->solve(layer, nodes);
-      const int cell = static_cast<int>(std::lround(angle)) % grid->angles();
+  std::size_t knot = 0;  // the layer of the lattice at the row, or before it
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto layer_of = [&](std::size_t k) { return rolls ? static_cast<std::size_t>(rolls->knots()[k]) : k; };
+    if (knot + 1 < slots.size() && layer_of(knot + 1) <= i) ++knot;
+    Row row{rows[i], static_cast<double>(knot)};
+    if (const std::size_t first = layer_of(knot); i > first) {
+      const std::size_t last = layer_of(knot + 1);
+      const auto s = [&](std::size_t layer) { return path.layer(static_cast<int>(layer)).s; };
+      const auto count = static_cast<double>(i - first) / static_cast<double>(last - first);
+      row.layer += s(last) > s(first) ? (s(i) - s(first)) / (s(last) - s(first)) : count;
+    }
+    row.angle = map.place(row.at.phi);
+    row.sheet = map.path[knot] / map.angles;
+    if (rolls) row.roll = turns[i];
+    if (const int branch = row.at.branch; row.sheet / map.windings != branch) {
+      row.sheet = branch * map.windings;
       double least = std::numeric_limits<double>::infinity();
-      row.sheet = from.branch * grid->windings();
-      for (int sheet = row.sheet, end = sheet + grid->windings(); sheet < end; ++sheet) {
+      if (grid) grid->solve(static_cast<int>(i), nodes);
+      for (int sheet = row.sheet, end = sheet + map.windings; grid && sheet < end; ++sheet) {
+        const int cell = static_cast<int>(std::lround(row.angle)) % map.angles;
         if (!nodes.valid(sheet, cell)) continue;
-        const double away = (nodes.config(sheet, cell) - from.q).norm();
+        const double away = (nodes.config(sheet, cell) - row.at.q).norm();
         if (away < least) least = away, row.sheet = sheet;
       }
     }
-    rows.push_back(row);
+    shown.push_back(std::move(row));
   }
-  return rows;
+  return shown;
 }
 
-/// How far the tool leaves its path on the way to each layer, mm.
-std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& shown, const std::vector<TrajectoryRow>& rows) {
-  std::vector<double> errors(shown.size(), 0);
-  const auto add = [&](std::size_t layer, int step, const Config& from, const Config& to) {
-    for (const double error : path_deviation(lattice.chain(), lattice.path_of_rows(), step, from, to - from))
-      errors[layer] = std::max(errors[layer], 1e3 * error);
-  };
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
-    for (std::size_t layer = 1; layer < shown.size(); ++layer)
-      for (int i = rolls->knots()[layer - 1]; i < rolls->knots()[layer]; ++i)
-        add(layer, i, rows[static_cast<std::size_t>(i)].q, rows[static_cast<std::size_t>(i) + 1].q);
-  } else {
-    for (std::size_t layer = 1; layer < shown.size(); ++layer)
-      add(layer, static_cast<int>(layer) - 1, shown[layer - 1].q, shown[layer].q);
+/// How far the tool leaves its path on the way from each row to the next, mm; one less than there are rows.
+std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& rows) {
+  std::vector<double> errors;
+  for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
+    const Config &from = rows[i].at.q, &to = rows[i + 1].at.q;
+    double most = 0;
+    for (const double error : path_deviation(lattice.chain(), lattice.path_of_rows(), static_cast<int>(i), from, to - from))
+      most = std::max(most, 1e3 * error);
+    errors.push_back(most);
   }
   return errors;
 }
 
-Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const std::vector<double>& errors,
-               const Budget& budget) {
+/// Where a row is in the map.
+Json place_json(const Row& row) {
+  Json json = {{"layer", row.layer}, {"phi", row.at.phi}, {"sheet", row.sheet}, {"angle", row.angle}};
+  if (row.roll) json["roll"] = *row.roll;
+  return json;
+}
+
+Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
   World::Query query(world, Certificates::kOn);
+  const std::vector<double> errors = errors_mm(lattice, shown);
   Json rows = Json::array();
-  for (int layer = 0; layer < static_cast<int>(shown.size()); ++layer) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
     budget.poll();
-    const Row& at = shown[static_cast<std::size_t>(layer)];
-    Json error = nullptr;
-    if (layer > 0) error = errors[static_cast<std::size_t>(layer)];
-    Json row = {{"layer", layer},
-                {"s", lattice.path().layer(layer).s},
-                {"phi", at.phi},
-                {"sheet", at.sheet},
-                {"angle", at.angle},
-                {"q", std::vector<double>(at.q.begin(), at.q.end())},
-                {"error_mm", std::move(error)}};
-    if (at.roll) row["roll"] = *at.roll;
+    const TrajectoryRow& at = shown[i].at;
+    Json row = place_json(shown[i]);
+    row["s"] = at.s;
+    row["q"] = std::vector<double>(at.q.begin(), at.q.end());
+    row["error_mm"] = i < errors.size() ? Json(errors[i]) : Json(nullptr);
     if (const auto clearance = query.clearance(at.q)) {
       row["clearance_mm"] = 1e3 * clearance->distance;
       row["pair"] = {world.body_names()[clearance->pair.a], world.body_names()[clearance->pair.b]};
@@ -128,14 +124,11 @@ Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row
 /// The path beside which a refined one is drawn.
 Json beside_json(const std::vector<Row>& rows) {
   Json json = Json::array();
-  for (std::size_t layer = 0; layer < rows.size(); ++layer) {
-    json.push_back({{"layer", layer}, {"sheet", rows[layer].sheet}, {"angle", rows[layer].angle}});
-    if (rows[layer].roll) json.back()["roll"] = *rows[layer].roll;
-  }
+  for (const Row& row : rows) json.push_back(place_json(row));
   return json;
 }
 
-/// A motion over time, at as many samples as a plot has room for: where it is, in layers; the tool's speed; the largest share of
+/// A motion over time, at as many samples as a plot has room for: where it is, in rows; the tool's speed; the largest share of
 /// what a joint can do since the sample shown before, of speed, acceleration and jerk.
 Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& chain, const std::vector<Row>& rows,
                  const ToolPath& path) {
@@ -155,8 +148,8 @@ Json motion_json(const TimedPath& motion, const JointRates& rates, const Chain& 
     double share = 0;
     for (;; ++step) {
       const PathLayer& from = path.layer(static_cast<int>(step));
-      const Config way = rows[step + 1].q - rows[step].q;
-      share = from.step_length > 0 ? (row.s - from.s) / from.step_length : (row.q - rows[step].q).dot(way) / way.squaredNorm();
+      const Config way = rows[step + 1].at.q - rows[step].at.q;
+      share = from.step_length > 0 ? (row.s - from.s) / from.step_length : (row.q - rows[step].at.q).dot(way) / way.squaredNorm();
       if (share < 1 || step + 2 >= rows.size()) break;
     }
     const Config move = q(k) - q(k - 1), before = q(k - 1) - q(k - 2), first = q(k - 2) - q(k - 3);
@@ -232,10 +225,24 @@ Nearness nearness(const World& world, const std::array<std::string, 2>& names, c
   return apart;
 }
 
+/// A node's joints with those turns of continuous and wide joints that come nearest to a row of the path, as the trajectory has
+/// them; a joint that they would take out of its limits stays as it is.
+Config turned_towards(const Lattice& lattice, const Config& q, const std::vector<Row>& rows, std::size_t row) {
+  if (rows.empty()) return q;
+  const Config& near = rows[std::min(row, rows.size() - 1)].at.q;
+  Config result = near + lattice.delta(near, q);
+  for (std::size_t j = 0; j < kDof; ++j) {
+    const JointLimit& limit = lattice.chain().limit[j];
+    double& x = result[static_cast<Eigen::Index>(j)];
+    if (!limit.continuous && (x < limit.lower || x > limit.upper)) x = q[static_cast<Eigen::Index>(j)];
+  }
+  return result;
+}
+
 /// Where every path has ended: the node past it that the path's last would have moved to. It is blocked by what the diagnosis
 /// names; where that is no pair of bodies, it is the next node that exists. Null where there is none, or the problem is solved.
 Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::vector<int>& path,
-              const Json& diagnosis) {
+              const std::vector<Row>& rows, const Json& diagnosis) {
   const int layer = static_cast<int>(map.path.size());
   if (layer >= map.layers) return nullptr;
   const std::string reason = diagnosis["reason"];
@@ -244,25 +251,33 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   const int from = map.path.empty() ? 0 : map.path.back();  // a cell
   std::vector<Lattice::Node> listed;
   lattice.layer_nodes(layer, listed);
+  const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
+  const int rank = rolls && !path.empty() ? rolls->rank_of(layer - 1, path.back()) : 0;  // at which the map is drawn
+  const auto is_drawn = [&](const Lattice::Node& node, int cell) {
+    if (rolls) return rolls->rank_of(layer, node.slot) == rank;
+    const std::size_t cells = static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
+    return map.grid() || map.slots[static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(cell)] == node.slot;
+  };
   const Lattice::Node* best = nullptr;
   int least = 0;
   for (const bool by_bodies : {true, false}) {
     for (const Lattice::Node& candidate : listed) {
-      const int cell = map_cell(lattice, layer, candidate.slot), sheet = cell / map.angles, angle = cell % map.angles;
+      const int cell = map_cell(map, lattice, layer, candidate.slot), sheet = cell / map.angles, angle = cell % map.angles;
+      if (!is_drawn(candidate, cell)) continue;
       const LatticeMap::Node& node = map.at(layer, sheet, angle);
       const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
                            bodies[0] == map.blockers[node.cause].first && bodies[1] == map.blockers[node.cause].second;
       if (blocked != by_bodies) continue;
       const int away = std::abs(angle - from % map.angles);
-      const int far = std::min(away, map.angles - away) + (sheet == from / map.angles ? 0 : map.angles);
+      const int far = (map.closed ? std::min(away, map.angles - away) : away) + (sheet == from / map.angles ? 0 : map.angles);
       if (!best || far < least) best = &candidate, least = far;
     }
     if (best) break;
   }
   if (!best) return nullptr;
-  const int cell = map_cell(lattice, layer, best->slot);
+  const int cell = map_cell(map, lattice, layer, best->slot);
   const LatticeMap::Node& node = map.at(layer, cell / map.angles, cell % map.angles);
-  const Config q = lattice.row(layer, best->slot, best->q).value_or(best->q);
+  const Config q = turned_towards(lattice, lattice.row(layer, best->slot, best->q).value_or(best->q), rows, rows.size());
   std::string what = "no valid pose here: " + reason;
   Json pair = nullptr, line = nullptr;
   if (node.state == NodeState::kBlocked) {
@@ -285,13 +300,17 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
       what += ", " + map.joint_names[joint] + text;
     }
   }
-  return {{"layer", layer},
-          {"s", lattice.path().layer(layer).s},
-          {"phi", lattice.phi(layer, best->slot)},
-          {"q", std::vector<double>(q.begin(), q.end())},
-          {"pair", std::move(pair)},
-          {"line", std::move(line)},
-          {"what", std::move(what)}};
+  Json json = {{"layer", layer},
+               {"s", lattice.path().layer(layer).s},
+               {"phi", lattice.phi(layer, best->slot)},
+               {"sheet", cell / map.angles},
+               {"angle", map.place(lattice.phi(layer, best->slot))},
+               {"q", std::vector<double>(q.begin(), q.end())},
+               {"pair", std::move(pair)},
+               {"line", std::move(line)},
+               {"what", std::move(what)}};
+  if (rolls) json["roll"] = rolls->roll(layer, best->slot);
+  return json;
 }
 
 /// Clearances of cells, in tenths of a millimetre and 16 bits; `kUnknown` where nothing is near or nobody asked.
@@ -302,7 +321,7 @@ class Clearances {
     values.push_back(kUnknown);
     if (asked_++ % each_ != 0 && !surely) return;
     if (const auto clearance = query_.clearance(q))
-      values.back() = static_cast<std::uint16_t>(std::min(1e4 * clearance->least, kUnknown - 1.0));
+      values.back() = static_cast<std::uint16_t>(std::lround(std::clamp(1e4 * clearance->distance, 0.0, kUnknown - 1.0)));
   }
   void skip() { values.push_back(kUnknown); }
   std::vector<std::uint16_t> values;
@@ -314,16 +333,21 @@ class Clearances {
   std::size_t each_, asked_ = 0;  // one cell in so many is asked about, and those of the path
 };
 
-/// Joints of one node for each shown cell, in 16 bits: for drawing.
+/// One node for each shown cell, once for those above each other that show the same: its joints in 16 bits, for drawing, its layer
+/// (counted from the cell's first), phi and roll.
 Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::vector<int>& path,
-              const Budget& budget) {
+              const std::vector<Row>& rows, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
   const std::vector<int> sheets = map.inhabited_sheets();
   const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, sheets.size()) * 252));
   const MapCells cells(map, std::max(100, most_columns), 252);
-  const double reach = 4 * kTwoPi;  // rad, for 16 bits; no arm's joint turns further
+  struct Shown {
+    int layer = -1, slot = -1;
+    double phi = 0, roll = 0;
+    Config q;
+  };
+  std::vector<Shown> poses;
   std::vector<std::uint8_t> states, causes;
-  std::vector<std::int16_t> joints;
   const auto looked_at = [](const LatticeMap::Node& node) { return node.state >= NodeState::kFree; };
   std::size_t asked = 0;
   for (const int sheet : sheets)
@@ -337,24 +361,35 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
     panel_of[sheet] = static_cast<int>(panels.size());
     panels.push_back({{"sheet", sheet}, {"name", map.sheet_name(sheet)}, {"rolls", map.shows_rolls(sheet)}});
   }
+  std::vector<std::size_t> row_of_layer;
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    if (rows[row].layer == static_cast<double>(row_of_layer.size())) row_of_layer.push_back(row);
   int rank = 0;  // of the roll that the path has, as in make_map()
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
-    std::vector<Config> shown(sheets.size() * cells.rows, Config::Constant(2 * reach));
+    std::vector<Shown> shown(sheets.size() * static_cast<std::size_t>(cells.rows));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.layer_nodes(layer, listed);
+      const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
       const auto show = [&](const Lattice::Node& node, int sheet, int angle) {
         const int row = angle / cells.angles_each, k = panel_of[sheet] * cells.rows + row;
-        if (panel_of[sheet] < 0 || shown[k][0] < 2 * reach || map.at(layer, sheet, angle) != cells.node(sheet, column, row)) return;
-        shown[k] = lattice.row(layer, node.slot, node.q).value_or(node.q);
+        if (panel_of[sheet] < 0 || shown[k].layer >= 0 || map.at(layer, sheet, angle) != cells.node(sheet, column, row)) return;
+        const auto near = static_cast<std::size_t>(layer);
+        const Config q = turned_towards(lattice, lattice.row(layer, node.slot, node.q).value_or(node.q), rows,
+                                        near < row_of_layer.size() ? row_of_layer[near] : rows.size());
+        const double roll = rolls ? roll_between(lattice.path().layer(layer).tool, lattice.chain().tool(q)) : 0;
+        shown[k] = {layer, node.slot, lattice.phi(layer, node.slot), roll, q};
       };
-      const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
       const bool on_path = layer < static_cast<int>(path.size());
       if (rolls && on_path) rank = rolls->rank_of(layer, path[static_cast<std::size_t>(layer)]);
+      const int panel_cells = map.panels() * map.angles;
+      for (int cell = 0; cell < panel_cells && !map.grid(); ++cell)
+        if (const int slot = map.slots[static_cast<std::size_t>(layer) * panel_cells + cell]; slot >= 0)
+          show(listed[static_cast<std::size_t>(slot)], cell / map.angles, cell % map.angles);
       for (const Lattice::Node& node : listed) {
-        if (rolls && rolls->rank_of(layer, node.slot) != rank) continue;
-        const int cell = map_cell(lattice, layer, node.slot);
+        if (!map.grid() || (rolls && rolls->rank_of(layer, node.slot) != rank)) continue;
+        const int cell = map_cell(map, lattice, layer, node.slot);
         show(node, cell / map.angles, cell % map.angles);
       }
       if (!map.turns || !on_path) continue;
@@ -365,23 +400,39 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
         if (at != listed.end() && at->slot == slots[static_cast<std::size_t>(k)]) show(*at, map.sheets(), k);
       }
     }
+    const auto is_of_path = [&](const Shown& pose) {
+      const auto layer = static_cast<std::size_t>(pose.layer);
+      return layer < path.size() && path[layer] == pose.slot;
+    };
     std::size_t k = 0;
     for (const int sheet : sheets)
       for (int row = 0; row < cells.rows; ++row, ++k) {
         const LatticeMap::Node cell = cells.node(sheet, column, row);
-        const bool posed = shown[k][0] < 2 * reach;
-        states.push_back(
-            static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
+        const bool posed = shown[k].layer >= 0,
+                   is_again = posed && row > 0 && shown[k].slot == shown[k - 1].slot && shown[k].layer == shown[k - 1].layer;
+        states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (is_again ? 32u : 0u) |
+                                                   (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
         causes.push_back(cell.cause);
-        if (!posed) continue;
+        if (!posed || is_again) continue;
         budget.poll();
         if (looked_at(cell))
-          clearances.add(shown[k], cells.on_path(sheet, column, row));
+          clearances.add(shown[k].q, cells.on_path(sheet, column, row) || is_of_path(shown[k]));
         else
           clearances.skip();
-        for (int j = 0; j < kDof; ++j)
-          joints.push_back(static_cast<std::int16_t>(std::lround(std::clamp(shown[k][j] / reach, -1.0, 1.0) * 32767)));
+        poses.push_back(shown[k]);
+        poses.back().layer -= first;
       }
+  }
+  double reach = 1;  // rad, for 16 bits
+  for (const Shown& pose : poses) reach = std::max(reach, pose.q.cwiseAbs().maxCoeff());
+  std::vector<std::int16_t> joints;
+  std::vector<std::uint16_t> layers;
+  std::vector<float> phis, rolls;
+  for (const Shown& pose : poses) {
+    for (const double q : pose.q) joints.push_back(static_cast<std::int16_t>(std::lround(q / reach * 32767)));
+    layers.push_back(static_cast<std::uint16_t>(pose.layer));
+    phis.push_back(static_cast<float>(pose.phi));
+    if (dynamic_cast<const RollLattice*>(&lattice)) rolls.push_back(static_cast<float>(pose.roll));
   }
   return {{"layers", map.layers},
           {"angles", map.angles},
@@ -389,12 +440,22 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
           {"rows", cells.rows},
           {"layers_each", cells.layers_each},
           {"angles_each", cells.angles_each},
+          {"coordinate", map.coordinate_name()},
+          {"letter", map.letter(0)},
+          {"low", map.low},
+          {"step", map.step},
+          {"closed", map.closed},
+          {"arcs", !map.grid()},
+          {"nothing", map.emptiness()},
           {"panels", std::move(panels)},
           {"states", base64(states)},
           {"causes", base64(causes)},
           {"joints", base64(joints)},
           {"clearances", base64(clearances.values)},
           {"joint_unit", reach / 32767},
+          {"pose_layers", base64(layers)},
+          {"pose_phis", base64(phis)},
+          {"pose_rolls", base64(rolls)},
           {"blockers", map.blockers},
           {"complete", map.complete},
           {"s", map.s}};
@@ -418,25 +479,17 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   const Problem& problem = view.problem;
   const World& world = view.world;
   const Lattice& lattice = view.lattice;
-  const ToolPath& path = lattice.path();
   Json result = Json::parse(result_json);
   const Json& diagnosis = result["diagnosis"];
   Bodies bodies(world, problem.scene);
-  const std::vector<Row> found = lattice_rows(lattice, map, view.path);
-  std::vector<TrajectoryRow> all = motion.refined ? *motion.refined : path_rows(lattice, view.path), refined = all;
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
-      rolls && motion.refined) {  // as many as the lattice has layers
-    refined.clear();
-    for (const int knot : rolls->knots()) refined.push_back(all[static_cast<std::size_t>(knot)]);
-  }
-  std::vector<Row> rows = motion.refined ? refined_rows(lattice, map, refined, view.path) : found;
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
-    const std::vector<double> turns = rolls_of(all);
-    for (std::size_t layer = 0; layer < rows.size(); ++layer)
-      rows[layer].roll = turns[static_cast<std::size_t>(rolls->knots()[layer])];
-  }
+  std::vector<TrajectoryRow> trajectory;
+  for (std::vector<int> slots = view.path; !slots.empty() && trajectory.empty(); slots.pop_back())
+    trajectory = path_rows(lattice, slots);  // of a path that may end anywhere: as far as its joints stay within their limits
+  const std::vector<Row> found = placed(lattice, map, trajectory, view.path);
+  const std::vector<Row> rows = motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;
+  const ToolPath& every = lattice.path_of_rows();
   Json tool_path = Json::array();
-  for (int layer = 0; layer < path.size(); ++layer) tool_path.push_back(vector_json(path.layer(layer).tool.translation()));
+  for (int layer = 0; layer < every.size(); ++layer) tool_path.push_back(vector_json(every.layer(layer).tool.translation()));
 
   const std::string name = std::filesystem::path(problem.source).filename().string();
   const std::string title = words.which.empty() ? name : name + ", " + words.which;
@@ -454,13 +507,13 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
       {"bodies", std::move(bodies.bodies)},
       {"meshes", std::move(bodies.meshes)},
       {"tool_path", std::move(tool_path)},
-      {"rows", rows_json(world, lattice, rows, errors_mm(lattice, rows, all), budget)},
+      {"rows", rows_json(world, lattice, rows, budget)},
       {"beside", motion.refined ? beside_json(found) : Json::array()},
       {"motion", motion.motion ? motion_json(*motion.motion, joint_rates(lattice.chain(), problem.limits, problem.source),
-                                             lattice.chain(), rows, path)
+                                             lattice.chain(), rows, every)
                                : Json(nullptr)},
-      {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, diagnosis) : Json(nullptr)},
-      {"map", map_json(map, lattice, world, view.path, budget)}};
+      {"cut", diagnosis.is_object() ? cut_json(map, lattice, world, view.path, rows, diagnosis) : Json(nullptr)},
+      {"map", map_json(map, lattice, world, view.path, rows, budget)}};
   return fill(page_template(), data.dump(-1, ' ', false, Json::error_handler_t::replace),
               {{"@@ANSWER@@", escaped_lines(title + "\n\n" + words.answer)}, {"@@MAP@@", to_svg(map)}});
 }

@@ -4,9 +4,12 @@ import { bytes } from './bytes.js';
 
 // States in the order of report/lattice_map.hpp.
 export const [NO_IK, SINGULAR, LIMIT, UNSEEN, FREE, BLOCKED] = [0, 1, 2, 3, 4, 5];
-const kState = 7, kCertified = 64, kPosed = 128, kUnknown = 65535;
+const kState = 7, kAgain = 32, kCertified = 64, kPosed = 128, kUnknown = 65535;
 // After Okabe & Ito's palette, told apart by all kinds of colour vision: one hue for limits, one for each object in the way.
 const LIMITS = '#a6d3ef', SELF = '#6a4c93', OBJECTS = ['#d55e00', '#e6b800', '#8c2d04', '#f39a6b', '#7a6000', '#c23b22'];
+
+/** An angle less its whole turns. */
+export const wrapped = (angle) => angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 
 export class Cells {
   /** objects: names of the scene's objects, in its order. */
@@ -17,20 +20,30 @@ export class Cells {
     this.causes = new Uint8Array(bytes(map.causes));
     this.poses = new Int16Array(bytes(map.joints));
     this.clearances = new Uint16Array(bytes(map.clearances));
+    this.poseLayers = new Uint16Array(bytes(map.pose_layers));  // counted from the cell's first
+    this.posePhis = new Float32Array(bytes(map.pose_phis));
+    this.poseRolls = new Float32Array(bytes(map.pose_rolls));  // none where the tool has no roll to choose
     this.pose = new Int32Array(this.states.length);  // which of the poses is a cell's, -1: none
     let next = 0;
-    for (let k = 0; k < this.states.length; ++k) this.pose[k] = this.states[k] & kPosed ? next++ : -1;
+    for (let k = 0; k < this.states.length; ++k) this.pose[k] = this.states[k] & kAgain ? next - 1 : this.states[k] & kPosed ? next++ : -1;
   }
   index(panel, column, row) { return (column * this.panels.length + panel) * this.rows + row; }
   state(k) { return this.states[k] & kState; }
   /** How many cells are of the states that `wanted` accepts. */
   count(wanted) { return this.states.reduce((n, state) => n + wanted(state & kState), 0); }
+  /** Where a value of the coordinate, rad, is in a panel, in cells from below: k at the middle of cell k. */
+  place(value) {
+    const turn = (2 * Math.PI) / this.step, before = this.closed ? 0.5 : (turn - (this.angles - 1)) / 2, k = (value - this.low) / this.step;
+    return k - turn * Math.floor((k + before) / turn);
+  }
+  /** What a cell stands for; where it has a pose (q), all that is said is of that pose, which may be that of another node of the cell, or beside it. */
   at(panel, column, row) {
-    const k = this.index(panel, column, row), state = this.state(k), pose = this.pose[k];
-    const layer = Math.min(this.layers - 1, column * this.layers_each), clearance = pose < 0 ? kUnknown : this.clearances[pose];
-    const angle = -Math.PI + (2 * Math.PI * row * this.angles_each) / this.angles, { rolls, name } = this.panels[panel];
+    const k = this.index(panel, column, row), state = this.state(k), pose = this.pose[k], posed = pose >= 0;
+    const layer = column * this.layers_each + (posed ? this.poseLayers[pose] : 0), clearance = posed ? this.clearances[pose] : kUnknown;
+    const value = wrapped(this.low + this.step * row * this.angles_each), { rolls, name, sheet } = this.panels[panel];
+    const phi = posed ? wrapped(this.posePhis[pose]) : rolls ? undefined : value, roll = posed && this.poseRolls.length ? this.poseRolls[pose] : rolls ? value : undefined;
     return {
-      layer, s: this.s[layer], ...(rolls ? { roll: angle } : { phi: angle }), branch: name,
+      layer, s: this.s[layer], phi, roll, sheet, rolls, angle: phi === undefined ? NaN : this.place(phi), branch: name,
       what: this.meaning(k) + (state === BLOCKED ? (this.states[k] & kCertified ? ' (proved by a certificate)' : ' (found by FCL)') : ''),
       q: pose < 0 ? null : Array.from(this.poses.subarray(7 * pose, 7 * pose + 7), (v) => v * this.joint_unit),
       pair: state === BLOCKED ? this.blockers[this.causes[k]] : null,
@@ -42,8 +55,7 @@ export class Cells {
     if (state === LIMIT) return `limit of ${this.jointNames[this.causes[k]]}`;
     if (state === BLOCKED) return `blocked by ${this.blockers[this.causes[k]].join(' - ')}`;
     if (state === FREE) return this.states[k] & kCertified ? 'free, proved by a certificate' : 'free, found by FCL';
-    const none = this.panels.some(({ rolls }) => rolls) ? 'no node: out of reach, beside the given start, or turned further than allowed' : 'no node: out of reach, or beside the given start';
-    return { [NO_IK]: none, [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
+    return { [NO_IK]: this.nothing, [SINGULAR]: 'singular', [UNSEEN]: 'not looked at' }[state];
   }
   colour(k, { nothing, unseen }) {
     const state = this.state(k);
@@ -62,7 +74,7 @@ export class Cells {
     return this.meaning(k);
   }
   /** Cells of equal state and cause mean the same. */
-  kind(k) { return (this.states[k] & ~kPosed) << 8 | this.causes[k]; }
+  kind(k) { return (this.states[k] & ~(kPosed | kAgain)) << 8 | this.causes[k]; }
   /** [meaning, colour] of what is there, the most telling first. */
   legend(colours) {
     const kinds = new Map();

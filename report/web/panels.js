@@ -1,16 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The (s, phi) map drawn: a panel for each branch, where the tool may turn one more for its roll, the cells, the path above.
 import * as Plot from '@observablehq/plot';
+import { ticks } from 'd3';
 import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
+import { wrapped } from './map.js';
 import { style } from './page.js';
 
-const kAngles = [[-Math.PI, '−180'], [-Math.PI / 2, '−90'], [0, '0'], [Math.PI / 2, '90'], [Math.PI, '180']], kLimit = 2, kBlocked = 5;
+const kDegrees = 180 / Math.PI, kLimit = 2, kBlocked = 5;
+
+/** [place in cells, degrees] of an axis of the coordinate: quarters of a turn, or round values between its ends. */
+function marks(cells) {
+  const name = (degrees) => String(degrees).replace('-', '−');
+  if (cells.closed) return [-180, -90, 0, 90, 180].map((degrees) => [((degrees + 180) / 360) * cells.angles - (degrees === 180 ? 0.5 : 0), name(degrees)]);
+  const low = cells.low * kDegrees, high = low + (cells.angles - 1) * cells.step * kDegrees;
+  if (cells.angles === 1) return [[0, name(Number((wrapped(cells.low) * kDegrees).toFixed(1)))]];
+  return ticks(low, high, 4).map((degrees) => [(degrees - low) / (cells.step * kDegrees), name(Number((wrapped(degrees / kDegrees) * kDegrees).toFixed(6)))]);
+}
 
 export class Panels {
   /** cells: Cells; rows: of the path; beside: rows of the path that it was refined from, or none; cut: { layer } where every path has ended, or null; hover, pick: called with a cell, or null. */
   constructor(host, cells, rows, beside, cut, hover, pick) {
-    Object.assign(this, { cells, rows, beside, cut, cursor: 0 });
+    Object.assign(this, { cells, rows, beside, cut, marks: marks(cells), pose: null });
     this.panels = cells.panels.map((panel, index) => {
       const box = document.createElement('div');
       box.className = 'panel';
@@ -36,17 +47,16 @@ export class Panels {
     const layer = x.invert(event.clientX - r.left) + 0.5, angle = y.invert(event.clientY - r.top) + 0.5;
     return cells.at(index, bounded(Math.floor(layer / cells.layers_each), cells.columns), bounded(Math.floor(angle / cells.angles_each), cells.rows));
   }
-  angleOf(phi) { return ((phi + Math.PI) / (2 * Math.PI)) * this.cells.angles; }
-  /** Where a row of a path is in a panel, in cells from below; NaN: in another panel. */
+  /** Where a row of a path or a pose is in a panel, in cells from below; NaN: in another panel. */
   height(panel, row) {
-    if (panel.rolls) return this.angleOf(row.roll - 2 * Math.PI * Math.round(row.roll / (2 * Math.PI)));
+    if (panel.rolls) return this.cells.place(row.roll);
     return row.sheet === panel.sheet ? row.angle : NaN;
   }
   /** vector: cells as rectangles, not as a picture. */
   drawing(panel, width, height, colours, vector = false) {
-    const { cells, rows, beside, cut } = this, letter = panel.rolls ? 'ρ' : 'φ';
+    const { cells, rows, beside, cut, marks } = this, letter = panel.rolls ? 'ρ' : cells.letter;
     const lineOf = (path) => path.flatMap((row, k) => {
-      const point = { x: row.layer, y: this.height(panel, row) }, jump = k && Math.abs(this.height(panel, path[k - 1]) - point.y) > cells.angles / 2;
+      const point = { x: row.layer, y: this.height(panel, row) }, jump = k && cells.closed && Math.abs(this.height(panel, path[k - 1]) - point.y) > cells.angles / 2;
       return jump ? [{ x: row.layer, y: NaN }, point] : [point];
     });
     const path = lineOf(rows), before = lineOf(beside);
@@ -55,8 +65,7 @@ export class Panels {
     return Plot.plot({
       width, height, ...frame, style: { color: colours.soft, background: 'none', fontSize: '10px' },
       x: { domain: [-0.5, cells.layers - 0.5], ...alongPath(cells.s, 5), label: vector || large ? 's, m' : null, labelArrow: 'none' },
-      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null, labelArrow: 'none', labelAnchor: 'top', ticks: kAngles.map(([phi]) => this.angleOf(phi) - (phi === Math.PI ? 0.5 : 0)),
-        tickFormat: (_, k) => kAngles[k][1] },
+      y: { domain: [-0.5, cells.angles - 0.5], label: vector ? `${letter}, deg: ${panel.name}` : large ? `${letter}, deg` : null, labelArrow: 'none', labelAnchor: 'top', ticks: marks.map(([place]) => place), tickFormat: (_, k) => marks[k][1] },
       marks: [
         vector ? Plot.rect(this.runs(panel.index, colours), { x1: 'x1', x2: 'x2', y1: 'y1', y2: 'y2', fill: 'fill', shapeRendering: 'crispEdges' })
           : this.picture(panel.index, colours, width - frame.marginLeft - frame.marginRight, height - frame.marginTop - frame.marginBottom),
@@ -139,12 +148,11 @@ export class Panels {
       entry.append(swatch, meaning);
       return entry;
     }));
-    this.draw(this.cursor);
+    this.draw(this.pose);
   }
-  /** The cursor alone, which moves with every frame. */
-  draw(cursor) {
-    this.cursor = cursor;
-    const here = this.rows[Math.round(cursor)];
+  /** The cursor alone, which moves with every frame: to a pose, or none. */
+  draw(here) {
+    this.pose = here;
     for (const panel of this.panels) {
       const { line, dot, x, y } = panel;
       line.hidden = !here;
@@ -154,11 +162,6 @@ export class Panels {
       line.style.transform = `translateX(${left}px)`;
       if (!dot.hidden) dot.style.transform = `translate(${left}px, ${y.apply(this.height(panel, here)).toFixed(1)}px)`;
     }
-  }
-  /** The dot alone, to another cell of its panel. */
-  turn({ layer, phi, branch }) {
-    const { dot, x, y } = this.panels.find(({ name }) => name === branch);
-    dot.style.transform = `translate(${x.apply(layer).toFixed(1)}px, ${y.apply(this.angleOf(phi)).toFixed(1)}px)`;
   }
   /** The map as one drawing for papers. */
   figure() {

@@ -5,24 +5,24 @@ import { alongPath } from './axis.js';
 import { PAPER, sheet } from './figure.js';
 import { number, style, tell } from './page.js';
 
-const kBound = '#d55e00';
+const kBound = '#d55e00', kHeight = 112;
 
 export class Plots {
   /**
    * s: of each row, along an axis named `axis`; series: { title, unit, values (one a row, null where unknown), low, high (bounds, or
-   * null), from0: the axis begins at 0 }, or with lines: [{ name, values }], of which one is `bold`, instead of values; seek: called
-   * with the row, not always a whole number, that the user points at.
+   * null), from0: the axis begins at 0, of: its value at a pose, null where unknown }, or with lines: [{ name, values }], of which one
+   * is `bold`, instead of values; seek: called with the row, not always a whole number, that the user points at.
    */
   constructor(host, s, series, seek, axis = 's, m') {
     Object.assign(this, { s, axis });
     this.plots = series.map((one) => {
       const box = document.createElement('div');
       box.className = 'plot';
-      box.innerHTML = '<h3><span></span><b></b></h3><div class="stack"><div class="chart"></div><div class="cursor"></div></div>';
+      box.innerHTML = '<h3><span></span><b></b></h3><div class="stack"><div class="chart"></div><div class="cursor"></div><div class="dot" hidden></div></div>';
       box.querySelector('span').textContent = `${one.title}, ${one.unit}`;
       host.append(box);
       const told = (k) => (one.lines ? one.lines.map(({ name, values }) => `${name}  ${text(values[k])}`).join('\n') : `${one.title}  ${text(one.values[k])} ${one.unit}`);
-      const plot = { ...one, told, chart: box.querySelector('.chart'), value: box.querySelector('b'), line: box.querySelector('.cursor') };
+      const plot = { ...one, told, chart: box.querySelector('.chart'), value: box.querySelector('b'), line: box.querySelector('.cursor'), dot: box.querySelector('.dot') };
       const move = (event) => {
         const at = plot.x.invert(event.clientX - plot.chart.getBoundingClientRect().left);
         if (event.type !== 'pointermove' || event.buttons) seek(at);
@@ -56,19 +56,26 @@ export class Plots {
     const colours = { soft: style('--soft'), accent: style('--accent') };
     const width = this.plots.length ? this.plots[0].chart.clientWidth : 0;
     for (const plot of this.plots) {
-      const drawing = this.drawing(plot, width, 112, colours);
-      plot.x = drawing.scale('x');
+      const drawing = this.drawing(plot, width, kHeight, colours);
+      Object.assign(plot, { x: drawing.scale('x'), y: drawing.scale('y') });
       plot.chart.replaceChildren(drawing);
     }
-    this.draw(this.cursor ?? 0);
+    this.draw(this.cursor === undefined ? 0 : this.cursor, this.pose);
   }
-  /** The cursor and the values at it, which move with every frame. */
-  draw(cursor) {
-    this.cursor = cursor;
-    for (const { values, lines, bold, value, line, x } of this.plots) {
-      line.style.transform = `translateX(${x.apply(cursor).toFixed(1)}px)`;
-      const here = text((lines ? lines[bold].values : values)[Math.round(cursor)]);
+  /**
+   * The cursor and the values at it, which move with every frame. cursor: a row, or null beyond the last; pose: the one that is shown,
+   * whose values are told instead of the nearest row's; a pose off the path (`off`) has a dot of its own.
+   */
+  draw(cursor, pose = null) {
+    Object.assign(this, { cursor, pose });
+    for (const { values, lines, bold, of, value, line, dot, x, y } of this.plots) {
+      line.hidden = cursor === null;
+      const left = cursor === null ? 0 : x.apply(cursor), v = pose && of ? of(pose) : (lines ? lines[bold].values : values)[Math.round(cursor)];
+      line.style.transform = `translateX(${left.toFixed(1)}px)`;
+      const here = text(v, pose?.off ? 3 : 4), up = pose?.off && cursor !== null && v !== null && v !== undefined ? y.apply(v) : NaN;
       if (value.textContent !== here) value.textContent = here;
+      dot.hidden = !(up >= 0 && up <= kHeight);
+      if (!dot.hidden) dot.style.transform = `translate(${left.toFixed(1)}px, ${up.toFixed(1)}px)`;
     }
   }
   /** All plots as one drawing for papers. */
@@ -77,7 +84,7 @@ export class Plots {
   }
 }
 
-const text = (v) => (v === null || v === undefined ? '–' : v.toPrecision(4));
+const text = (v, digits = 4) => (v === null || v === undefined ? '–' : v.toPrecision(digits));
 
 /** A little wider than the values, and never empty. */
 function extent(values) {

@@ -2,16 +2,17 @@
 // The plan in words and numbers.
 import { $, number, table } from './page.js';
 
-/** The answer in one line; what it names along the path are buttons that go there. jump: called with s, m. */
-export function verdict(host, { result, rows, map }, jump) {
+/** The answer in one line; what it names along the path are buttons that go there. jump: called with s, m, and with what is least at the row that is meant, of several at that s. */
+export function verdict(host, { result, chain, map }, jump) {
   const helps = result.advice?.filter(({ outcome }) => outcome === 'solved') ?? [];
   const { clearance, joint_limit: limit, tool_path_error: error, top_tool_speed: speed } = result.summary ?? {}, d = result.diagnosis, held = result.held ?? [];
-  const say = (text, s) => {
+  const margin = (k, q) => Math.min(q[k] - chain.joints[k].lower, chain.joints[k].upper - q[k]);
+  const say = (text, s, off) => {
     if (host.childNodes.length) host.append(' · ');
     if (s === undefined || s === null) return host.append(text);
     const button = document.createElement('button');
     Object.assign(button, { textContent: `${text} at s ${s.toFixed(3)}`, title: 'Go there' });
-    button.addEventListener('click', () => jump(s));
+    button.addEventListener('click', () => jump(s, off));
     host.append(button);
   };
   host.classList.add(result.status === 'solved' ? 'solved' : 'failed');
@@ -24,14 +25,14 @@ export function verdict(host, { result, rows, map }, jump) {
     if (helps.length) say(`What would help: ${helps[0].words}${helps.length > 1 ? `, or one of ${helps.length - 1} more` : ''}`);
     else say(result.advice ? 'Nothing that was tried helps' : 'What would help is planned with --advise 1');
   } else {
-    say(`Solved: ${rows.length} layers, cost ${number(result.cost)}`);
-    if (clearance) say(`least clearance ${number(1e3 * clearance.value, 3)} mm (asked ${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`, clearance.s);
+    say(`Solved: ${map.layers} layers, cost ${number(result.cost)}`);
+    if (clearance) say(`least clearance ${number(1e3 * clearance.value, 3)} mm (asked ${number(1e3 * clearance.asked)}): ${clearance.bodies.join(' – ')}`, clearance.s, (_, k) => k !== result.min_margin.row);
     const contact = result.deepest_contact;
     if (contact)
-      say(`contact ${contact.at_most === null ? 'at least ' : ''}${number(1e3 * contact.depth, 3)} mm deep${contact.allowed === null ? '' : ` (allowed ${number(1e3 * contact.allowed)})`}: ${contact.bodies.join(' – ')}`, result.trajectory[contact.row]?.s);
-    if (limit) say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s);
-    if (error) say(`tool ${number(error.max_mm, 2)} mm off${error.allowed_mm === null || error.allowed_mm === undefined ? '' : ` (allowed ${number(error.allowed_mm)})`}`, error.s);
-    if (speed) say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s);
+      say(`contact ${contact.at_most === null ? 'at least ' : ''}${number(1e3 * contact.depth, 3)} mm deep${contact.allowed === null ? '' : ` (allowed ${number(1e3 * contact.allowed)})`}: ${contact.bodies.join(' – ')}`, result.trajectory[contact.row]?.s, (_, k) => k !== contact.row);
+    if (limit) say(`${limit.joint} ${number(limit.margin_deg, 2)}° from its limit`, limit.s, ({ q }) => margin(chain.joints.findIndex(({ name }) => name === limit.joint), q));
+    if (error) say(`tool ${number(error.max_mm, 2)} mm off${error.allowed_mm === null || error.allowed_mm === undefined ? '' : ` (allowed ${number(error.allowed_mm)})`}`, error.s, ({ error_mm }) => -error_mm);
+    if (speed) say(`tool up to ${number(speed.speed, 3)} m/s (${speed.joint})`, speed.s, (_, k) => -k);
     if (held.length) say(`held: ${held.map(({ joint, position, unit }) => `${joint} at ${number(position)} ${unit}`).join(', ')}`);
   }
   for (const warning of result.warnings ?? []) {

@@ -6,11 +6,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
+#include <random>
+#include <set>
 #include <sstream>
 
 #include "robots.hpp"
 #include "swivel/collision/world.hpp"
+#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
@@ -100,6 +104,117 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     const std::string name = map.sheet_name(map.sheets());
     EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
     EXPECT_NE(to_svg(map).find(name), std::string::npos);
+  }
+}
+
+/// Every cell that an arc passes through between two nodes shows a node, its own or the nearer neighbour's; every other cell is
+/// empty. Checked against the arcs alone: each pair of neighbours in each layer.
+TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
+  using Coordinate = LatticeMap::Coordinate;
+  for (const auto& [name, coordinate] : {std::pair{"panda_weld_seam", Coordinate::kGeneralisedArmAngle},
+                                         {"gen3_glue_bead", Coordinate::kGeneralisedArmAngle},
+                                         {"ur5e_deburr_edge", Coordinate::kRoll},
+                                         {"kr6_weld_pipe", Coordinate::kRoll}}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    problem.resolution.ds = 0.05;
+    Planner arm(problem);
+    (void)arm.plan({});
+    const PlanView view = arm.view();
+    const auto& lattice = dynamic_cast<const ArcLattice&>(view.lattice);
+    const LatticeMap map = make_map(view, true);
+    World::Query query(view.world);
+    EXPECT_EQ(map.coordinate, coordinate);
+    EXPECT_EQ(map.slots.size(), map.nodes.size());
+    const double high = map.low + (map.angles - 1) * map.step;
+    int filled = 0, own = 0, empty = 0, holes = 0;
+    for (int layer = 0; layer < map.layers; ++layer) {
+      std::map<std::pair<int, int>, std::vector<int>> of_cell;  // by branch and cell: the slots that have it
+      std::set<std::pair<int, int>> with_node, unsure;          // unsure: as near to one neighbour as to the other
+      for (int slot = 0; slot < lattice.slots(layer); ++slot) {
+        const double at = map.place(lattice.phi(layer, slot));
+        ASSERT_TRUE(map.closed ? at < map.angles - 0.5 + 1e-9 : at <= map.angles - 1 + 1e-6);
+        ASSERT_GE(at, map.closed ? -0.5 : -1e-6);
+        const std::pair cell(lattice.branch(layer, slot), static_cast<int>(std::lround(at)) % map.angles);
+        of_cell[cell].push_back(slot);
+        with_node.insert(cell);
+        const int next = lattice.next_on_arc(layer, slot);
+        if (next < 0) continue;
+        const double from = lattice.phi(layer, slot), way = std::remainder(lattice.phi(layer, next) - from, kTwoPi);
+        for (int k = 0; k < map.angles; ++k) {
+          const double along = std::remainder(map.low + k * map.step - from, kTwoPi);
+          if (along * way < 0 || std::abs(along) > std::abs(way)) continue;
+          const int nearer = std::abs(2 * along) < std::abs(way) ? slot : next;
+          of_cell[{lattice.branch(layer, nearer), k}].push_back(nearer);
+          if (std::abs(std::abs(2 * along) - std::abs(way)) < 1e-9)
+            for (const int either : {slot, next}) unsure.insert({lattice.branch(layer, either), k});
+        }
+      }
+      const int on_path = layer < static_cast<int>(view.path.size()) ? view.path[static_cast<std::size_t>(layer)] : -1;
+      for (int sheet = 0; sheet < map.sheets(); ++sheet)
+        for (int cell = 0; cell < map.angles; ++cell) {
+          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + sheet)) * static_cast<std::size_t>(map.angles) +
+                                static_cast<std::size_t>(cell);
+          const auto found = of_cell.find({sheet, cell});
+          if (unsure.count({sheet, cell})) continue;
+          if (found == of_cell.end()) {
+            ++empty;
+            EXPECT_EQ(map.slots[k], -1) << name << ' ' << layer << ' ' << sheet << ' ' << cell;
+            continue;
+          }
+          const std::vector<int>& slots = found->second;
+          (with_node.count({sheet, cell}) ? own : filled) += 1;
+          holes += map.slots[k] < 0;
+          if (std::find(slots.begin(), slots.end(), on_path) != slots.end()) {
+            EXPECT_EQ(map.slots[k], on_path);
+            continue;
+          }
+          EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end()) << layer << ' ' << cell;
+          const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
+            return query.first_below(lattice.point(layer, slot).q, problem.limits.clearance).has_value();
+          });
+          EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree) << name << ' ' << layer << ' ' << cell;
+        }
+      if (layer >= static_cast<int>(view.path.size())) continue;
+      const int cell = map.path[static_cast<std::size_t>(layer)];  // the path shows itself
+      EXPECT_EQ(map.slots[static_cast<std::size_t>(layer * map.panels() * map.angles + cell)],
+                view.path[static_cast<std::size_t>(layer)]);
+      EXPECT_EQ(map.at(layer, cell / map.angles, cell % map.angles).state, NodeState::kFree);
+    }
+    std::printf("%s: %d cells with nodes, %d between them, %d empty; %.2f to %.2f rad%s\n", name, own, filled, empty, map.low, high,
+                map.closed ? ", closed" : "");
+    EXPECT_EQ(holes, 0);
+    EXPECT_GT(filled, 100);
+    EXPECT_GT(own, 500);
+    const std::string text = to_text(map, 80, false), svg = to_svg(map), words = map.coordinate_name();
+    EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
+    EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
+    EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
+    const auto sheets = map.inhabited_sheets();
+    const bool some_are_empty = std::any_of(sheets.begin(), sheets.end(), [&](int sheet) {
+      for (int layer = 0; layer < map.layers; ++layer)
+        for (int cell = 0; cell < map.angles; ++cell)
+          if (map.at(layer, sheet, cell).state == NodeState::kNoIk) return true;
+      return false;
+    });
+    EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos, some_are_empty);
+  }
+}
+
+/// A value's cell stands for that value, wherever the range begins and however often the value has gone around.
+TEST(MapOfArcs, CellsStandForTheirValues) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> any(-kPi, kPi), width(0.02, 5.4);
+  std::uniform_int_distribution<int> turns(-3, 3), count(2, 120);
+  for (int trial = 0; trial < 2000; ++trial) {
+    LatticeMap map;
+    map.closed = trial % 2 == 0;
+    map.angles = count(random);
+    map.low = map.closed ? -kPi : any(random);
+    map.step = map.closed ? kTwoPi / map.angles : width(random) / (map.angles - 1);
+    for (int cell = 0; cell < map.angles; ++cell) {
+      ASSERT_NEAR(map.place(map.value(cell) + turns(random) * kTwoPi), cell, 1e-9) << trial;
+      ASSERT_LE(std::abs(map.value(cell)), kPi + 1e-12);
+    }
   }
 }
 

@@ -10,11 +10,12 @@ import { assertFits, elements, saved, until, withBrowser } from './browser.mjs';
 const [swivel, problems, packages, shots] = process.argv.slice(2).map((path) => resolve(path));
 const wide = { width: 1280, height: 800 }, phone = { width: 390, height: 844 };
 
-function plan(folder, name, ...options) {
+const plan = (folder, name, ...options) => planned(folder, `experiment_${name}`, ...options);
+function planned(folder, name, ...options) {
   const html = join(folder, `${name}.html`), csv = join(folder, `${name}.csv`);
-  const done = spawnSync(swivel, ['plan', join(problems, `experiment_${name}.yaml`), '--quiet', '--planner', 'lazy', '--report', html, '--out', csv, ...options]);
+  const done = spawnSync(swivel, ['plan', join(problems, `${name}.yaml`), '--quiet', '--planner', 'lazy', '--report', html, '--out', csv, ...options]);
   assert.ok(existsSync(html), String(done.stderr));
-  const rows = existsSync(csv) ? readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(',').slice(3).map(Number)) : null;
+  const rows = existsSync(csv) ? readFileSync(csv, 'utf8').trim().split('\n').slice(1).map((line) => line.split(',').slice(-7).map(Number)) : null;
   const data = JSON.parse(readFileSync(html, 'utf8').match(/<script id="data"[^>]*>(.*?)<\/script>/s)[1]);
   return { html, rows, data, status: done.status, bytes: statSync(html).size };
 }
@@ -25,6 +26,8 @@ const slide = (page, row) => page.evaluate((value) => {
   slider.value = value;
   slider.dispatchEvent(new Event('input'));
 }, row);
+/** s of the pose that the numbers beside the arm speak of. */
+const told = async (page) => Number((await page.textContent('#readout')).match(/^s ([\d.]+) m/)[1]);
 const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const dark = (page) => page.evaluate(() => document.documentElement.dataset.theme === 'dark');
 
@@ -86,17 +89,54 @@ async function checkExports(page, name, panels) {
   }
 }
 
+/** Where the tool is, in the base frame. */
+function toolOf(chain, q) {
+  let point = [3, 7, 11].map((k) => chain.home[k]);
+  for (let j = 6; j >= 0; --j) {  // Rodrigues' rotation about each joint's line, the last one first
+    const { axis: u, point: p } = chain.joints[j], v = point.map((x, k) => x - p[k]), c = Math.cos(q[j]), s = Math.sin(q[j]), along = u.reduce((sum, x, k) => sum + x * v[k], 0);
+    const cross = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+    point = p.map((x, k) => x + v[k] * c + cross[k] * s + u[k] * along * (1 - c));
+  }
+  return point;
+}
+const plotted = async (page, title) => Number(await page.locator('#plots .plot h3').filter({ has: page.locator('span', { hasText: new RegExp(`^${title}, `) }) }).locator('b').textContent());
+
+/** The numbers beside the arm, those of the plots and the arm itself speak of one pose; its tool is on the path where they say, within 1.5 mm. */
+async function checkAgrees(page, data) {
+  const readout = await page.textContent('#readout'), q = await joints(page), off = await page.isVisible('#plots .dot');
+  for (const [k, { name }] of data.chain.joints.entries()) {
+    const degrees = (q[k] * 180) / Math.PI, beside = Number(readout.match(new RegExp(`^${name}  (\\S+)°$`, 'm'))[1]), plot = await plotted(page, name);
+    assert.ok(Math.abs(beside - degrees) < 0.051, `${name}: ${beside}° beside an arm at ${degrees}°`);
+    assert.ok(Math.abs(plot - degrees) <= Math.max(0.051, 0.005 * Math.abs(degrees)), `${name}: ${plot}° above the plot of an arm at ${degrees}°`);
+  }
+  const s = await told(page), k = data.rows.findIndex((row) => Math.abs(row.s - s) < 6e-5);
+  if (k < 0) return off;
+  const away = 1e3 * Math.hypot(...toolOf(data.chain, q).map((x, c) => x - data.tool_path[k][c]));
+  assert.ok(away < 1.5, `the tool is ${away} mm from the path at s ${s}`);
+  return off;
+}
+
 /** The page opens at the pose that comes nearest to something; every part of the answer goes to where it is true; views move the camera. */
 async function checkAnswer(page, data) {
-  const { summary } = data.result, at = async () => Number((await page.textContent('#readout')).match(/s ([\d.]+) m/)[1]);
-  const near = (a, b) => assert.ok(Math.abs(a - b) < 0.01, `${a} for ${b}`);
-  near(await at(), summary.clearance?.s ?? summary.joint_limit.s);
-  const places = ['clearance', 'joint_limit', 'tool_path_error', 'top_tool_speed'].map((key) => summary[key]?.s).filter((s) => s !== undefined && s !== null);
-  const parts = page.locator('#verdict button');
+  const { summary } = data.result;
+  const near = (a, b) => assert.ok(Math.abs(a - b) < 6e-5, `${a} for ${b}`);
+  near(await told(page), summary.clearance?.s ?? summary.joint_limit.s);
+  const places = ['clearance', 'joint_limit', 'tool_path_error', 'top_tool_speed'].filter((key) => (summary[key]?.s ?? null) !== null);
+  const parts = page.locator('#verdict button'), digits = (v, count) => Number(v.toPrecision(count));
   assert.equal(await parts.count(), places.length);
   for (let k = 0; k < places.length; ++k) {
     await parts.nth(k).click();
-    near(await at(), places[k]);
+    const part = summary[places[k]];
+    near(await told(page), part.s);
+    await checkAgrees(page, data);
+    // What was promised is read there.
+    if (places[k] === 'clearance') assert.equal(digits(Number((await page.textContent('#readout')).match(/clearance ([\d.]+) mm: /)[1]), 3), digits(1e3 * part.value, 3));
+    if (places[k] === 'tool_path_error') assert.equal(await plotted(page, 'tool-path error'), digits(part.max_mm, 4));
+    const joint = data.chain.joints.findIndex(({ name }) => name === part.joint);
+    if (places[k] === 'joint_limit') {
+      const { lower, upper } = data.chain.joints[joint], q = (await joints(page))[joint];
+      near((Math.min(q - lower, upper - q) * 180) / Math.PI, part.margin_deg);
+    }
   }
   assert.match(await page.locator('#plots .plot h3').first().textContent(), new RegExp(`bold: ${summary.joint_limit.joint}, % of range`));
   const frames = await page.evaluate(() => window.swivel.frames);
@@ -106,28 +146,31 @@ async function checkAnswer(page, data) {
 
 /** Arrows turn the arm while the tool stands still: up and down again is the same pose; the cursor's next step ends it. */
 async function checkSelfMotion(page, data) {
-  await page.keyboard.press('Home');
-  const before = await joints(page);
+  const middle = data.rows.findIndex(({ layer }) => layer === Math.floor(data.map.layers / 2)), { q } = data.rows[middle];
+  await slide(page, middle);
+  assert.deepEqual(await joints(page), q);
   await page.keyboard.press('ArrowUp');
   const turned = await joints(page);
-  assert.notDeepEqual(turned, before);
+  assert.ok(turned.some((v, k) => Math.abs(v - q[k]) > 1e-3));
+  assert.equal(await checkAgrees(page, data), true);
   await page.keyboard.press('ArrowUp');
   await page.keyboard.press('ArrowDown');
   assert.deepEqual(await joints(page), turned);
-  await page.keyboard.press('Home');
-  assert.deepEqual(await joints(page), data.rows[0].q);
+  await slide(page, middle);
+  assert.deepEqual(await joints(page), q);
 }
 
 /** Some cell of the middle column has joints: hovering shows them and moves the arm, a click keeps them. The path's tell clearance. */
-async function checkHover(page) {
-  const dot = await page.locator('.dot:visible').boundingBox();
+async function checkHover(page, data) {
+  const rest = await joints(page), dot = await page.locator('.panel .dot:visible').first().boundingBox();
   await page.mouse.move(dot.x + dot.width / 2, dot.y + dot.height / 2);
-  assert.match(await page.textContent('#tip'), /free, (proved by a certificate|found by FCL)\n[^]*clearance [\d.]+ mm$/);
-  const rest = await joints(page), box = await page.locator('.panel .chart').first().boundingBox();
+  if (!data.beside.length) assert.match(await page.textContent('#tip'), /free, (proved by a certificate|found by FCL)\n[^]*clearance [\d.]+ mm$/);
+  const box = await page.locator('.panel .chart').first().boundingBox();
   let moved = false;
   for (let k = 1; k < 20 && !moved; ++k) {
     await page.mouse.move(box.x + box.width * 0.4, box.y + (box.height * k) / 21);
     assert.ok(await page.isVisible('#tip'));
+    await checkAgrees(page, data);
     moved = JSON.stringify(await joints(page)) !== JSON.stringify(rest);
   }
   assert.ok(moved, 'no cell of the path\'s branch moves the arm');
@@ -136,6 +179,7 @@ async function checkHover(page) {
   await page.mouse.up();
   await page.mouse.move(5, 5);
   assert.deepEqual(await joints(page), hovered, 'a click keeps the pose');
+  await checkAgrees(page, data);
 }
 
 await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
@@ -163,7 +207,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     await shoot(page, `report_${name}.png`);
     await checkSelfMotion(page, data);
     await slide(page, Math.floor(rows.length / 2));
-    await checkHover(page);
+    await checkHover(page, data);
     await checkExports(page, name, data.map.panels.length);
     await page.keyboard.press('t');
     assert.equal(await dark(page), name !== 'b');
@@ -187,6 +231,51 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     console.log(`experiment ${name}: ${(bytes / 1e6).toFixed(2)} MB, first picture after ${median(times).toFixed(0)} ms (median of ${times.length})${rate === null ? '' : `, ${rate.toFixed(0)} frames a second`}`);
     assert.ok(median(times) < 10_000);  // not the aim, 2 s and 30 frames: this must hold on any machine, however busy
     assert.ok(rate === null || rate > 3);
+  }
+
+  // Rolls: every row of the trajectory is there, those between the layers of the lattice as well. Arcs: joints of several turns stand as in the
+  // trajectory; cells between two nodes of an arc are filled, and the coordinate has its name and range.
+  for (const [name, letter, options] of [['torch_door', 'φ', []], ['torch_door', 'φ', ['--refine', '--speed', '0.1']], ['panda_weld_seam', 'φ', ['--ds', '0.01']], ['kr6_weld_pipe', 'ρ', []]]) {
+    const { html, rows, data, status } = planned(folder, name, ...options);
+    assert.equal(status, 0);
+    const { map } = data, arcs = name !== 'torch_door';
+    assert.deepEqual(data.rows.map(({ q }) => q), data.result.trajectory.map((row) => row.joints));
+    assert.equal(data.tool_path.length, data.rows.length);
+    assert.deepEqual([data.rows[0].layer, data.rows.at(-1).layer], [0, map.layers - 1]);
+    assert.ok(data.rows.every(({ layer }, k) => !k || layer > data.rows[k - 1].layer));
+    if (!arcs) assert.ok(data.rows.length > 4 * map.layers);
+    const { page, close } = await open(html, { viewport: wide, colorScheme: 'light' });
+    await drawn(page);
+    await checkAnswer(page, data);
+    for (const k of [1, 2, Math.floor(data.rows.length / 2), data.rows.length - 2]) {
+      await slide(page, k);
+      if (!data.motion) rows[k].forEach((value, j) => assert.ok(Math.abs(value - data.rows[k].q[j]) < 1e-12));
+      assert.ok(Math.abs((await told(page)) - data.rows[k].s) < 6e-5);
+      assert.equal(await checkAgrees(page, data), false);
+    }
+    await slide(page, 0.5);  // between two rows
+    assert.ok(Math.abs((await told(page)) - (data.rows[0].s + data.rows[1].s) / 2) < 6e-5);
+    await checkAgrees(page, data);
+    await slide(page, Math.floor(data.rows.length / 2));
+    await checkHover(page, data);
+    await checkSelfMotion(page, data);
+    assert.equal(await page.textContent('#map-section h2 >> text=/map/').then((text) => text.includes(letter)), true);
+    if (arcs) {
+      const states = Buffer.from(map.states, 'base64'), panels = map.panels.length;
+      let holes = 0, between = 0;
+      for (let column = 0; column < map.columns; ++column)
+        for (let panel = 0; panel < panels; ++panel) {
+          const run = [...states.subarray((column * panels + panel) * map.rows, (column * panels + panel + 1) * map.rows)].map((state) => state & 7);
+          const first = run.findIndex((state) => state), last = run.findLastIndex((state) => state);
+          if (first >= 0) holes += run.slice(first, last + 1).filter((state) => !state).length, between += last - first + 1;
+        }
+      console.log(`${name}: ${((100 * holes) / between).toFixed(1)} % of ${between} cells between the lowest and highest of a layer are empty`);
+      assert.ok(between > 1000 && holes < 0.25 * between);
+      assert.ok(map.closed || map.step * (map.angles - 1) < 5.5);
+    }
+    await assertFits(page, wide.width);
+    await shoot(page, `report_${name}.png`);
+    await close();
   }
 
   // Refined, and in time: the page plays at the motion's own speed, and shows the rows that are executed.
@@ -275,6 +364,7 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
     for (const { words } of data.result.advice) assert.ok((await page.textContent('#tables')).includes(words));
     assert.equal((await page.textContent('#readout')).split('\n').at(-1), data.cut.what);
     assert.deepEqual(await joints(page), data.cut.q);
+    if (reached) await checkAgrees(page, data);
     assert.equal(data.cut.layer, data.rows.length);
     if (reached) {
       assert.equal(await page.inputValue('#slider'), await page.getAttribute('#slider', 'max'));
@@ -291,7 +381,8 @@ await withBrowser({ packages, shots }, async ({ folder, open, shoot }) => {
       await drawn(other.page);
       assert.ok(await dark(other.page));
       await assertFits(other.page, wide.width);
-      await checkHover(other.page);
+      await other.page.keyboard.press('End');  // back onto the path
+      await checkHover(other.page, data);
       await other.close();
     }
     await page.waitForTimeout(800);

@@ -21,8 +21,9 @@ enum class NodeState : std::uint8_t {
   kBlocked,      ///< cause: index into LatticeMap::blockers
 };
 
-/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm angles: cells of their generalised
-/// arm angle, each of which shows the most important of the nodes that lie in it.
+/// The task submanifold of the paper's Fig. 5, node by node. Of arms that have no grid of arm angles (ExplicitLattice): cells of
+/// their redundancy coordinate, over the range in which their nodes lie. A node has its own cell and those up to half the way to
+/// its neighbours on its arc of self-motion; a cell that several have shows the path's, or the most important.
 struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
@@ -30,10 +31,18 @@ struct LatticeMap {
     bool certified = false;  ///< of free and blocked nodes: a certificate alone proves it, FCL need not be asked
     bool operator==(const Node&) const = default;
   };
-  bool grid = true;  ///< a cell a node
+  enum class Coordinate : std::uint8_t {
+    kArmAngle,             ///< carried, of S-R-S arms
+    kGeneralisedArmAngle,  ///< of other arms of seven joints: arc_angle()
+    kRoll,                 ///< of the tool: of arms of six joints
+  };
+  Coordinate coordinate = Coordinate::kArmAngle;
   int layers = 0, angles = 0, windings = 1;
+  double low = -kPi, step = 0;                                ///< rad: cell k of a panel stands for low + k step of the coordinate
+  bool closed = true;                                         ///< the cells go once around: the first is the last one's neighbour
   std::vector<double> s;                                      ///< m, of each layer
   std::vector<Node> nodes;                                    ///< [layer][panel][angle], panel = branch * windings + winding
+  std::vector<int> slots;                                     ///< of each of `nodes`: whose it is, -1: none; empty of a grid
   std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
   std::vector<int> path;  ///< one cell in each layer, sheet * angles + angle: the answer, or a way to the furthest layer reached
@@ -43,6 +52,17 @@ struct LatticeMap {
   bool turns = false;
   std::vector<int> path_of_rolls;  ///< one cell in each layer
 
+  [[nodiscard]] bool grid() const { return coordinate == Coordinate::kArmAngle; }  ///< a cell is a node
+  /// Where a value of the coordinate lies, in cells: k at the middle of cell k. Of closed cells at least -0.5 and less than
+  /// angles - 0.5.
+  [[nodiscard]] double place(double value) const;
+  /// What cell k stands for, rad, in [-pi, pi].
+  [[nodiscard]] double value(double k) const;
+  /// "arm angle", "generalised arm angle" or "roll"; and its letter.
+  [[nodiscard]] const char* coordinate_name() const;
+  [[nodiscard]] const char* letter(int panel) const;
+  /// What it means that a cell has no node.
+  [[nodiscard]] const char* emptiness() const;
   [[nodiscard]] int sheets() const { return kBranches * windings; }
   [[nodiscard]] int panels() const { return sheets() + (turns ? 1 : 0); }
   [[nodiscard]] bool shows_rolls(int panel) const { return panel == sheets(); }
@@ -64,15 +84,16 @@ struct LatticeMap {
 /// `like`: a slot of the layer; of a lattice of rolls.
 [[nodiscard]] std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int cells);
 
-/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and generalised arm angle.
-[[nodiscard]] int map_cell(const Lattice& lattice, int layer, int slot);
+/// The cell of a node in its layer: its slot in a grid. Nodes of other lattices: of their branch and coordinate.
+[[nodiscard]] int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot);
 
 /// Evaluates the reasons again, after the plan: about a microsecond for a node, and a question of clearance for each node that the
 /// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// The map in text, one panel per inhabited sheet: s to the right, phi from pi at the top to -pi, the path on it. A cell stands for
-/// as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`: ANSI 256 colours.
+/// The map in text, one panel per inhabited sheet: s to the right, the coordinate from its largest value at the top, the path on
+/// it. A cell stands for as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`:
+/// ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 
 /// The same as an SVG drawing for papers, with axes and a legend.
