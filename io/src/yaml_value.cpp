@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <sstream>
 #include <stdexcept>
@@ -13,6 +14,7 @@
 #include "files.hpp"
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/nearest_name.hpp"
+#include "text_number.hpp"
 
 namespace swivel::io {
 
@@ -30,6 +32,15 @@ std::string shown(const YAML::Node& node) {
   return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "null";
 }
 
+/// The number that a scalar is. yaml-cpp reads digits as the global locale writes them; what is left to it, .inf and .nan, has
+/// none.
+std::optional<double> number_in(const YAML::Node& node) {
+  if (!node.IsScalar()) return std::nullopt;
+  if (node.Scalar().find_first_of("0123456789") != std::string::npos) return to_number<double>(node.Scalar());
+  double value = 0;
+  return YAML::convert<double>::decode(node, value) ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace
 
 YamlValue::YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key, int line)
@@ -45,10 +56,10 @@ void YamlValue::fail(const std::string& what, const std::string& allowed) const 
 
 double YamlValue::number() const {
   const Range& range = schema_->as(Schema::Type::kNumber).range;
-  double value = 0;
-  if (!node_.IsScalar() || !YAML::convert<double>::decode(node_, value)) fail(shown(node_) + " is not a number", range.allowed);
-  if (!range.has(value)) fail("is " + node_.Scalar(), range.allowed);
-  return value;
+  const std::optional<double> value = number_in(node_);
+  if (!value) fail(shown(node_) + " is not a number", range.allowed);
+  if (!range.has(*value)) fail("is " + node_.Scalar(), range.allowed);
+  return *value;
 }
 
 std::vector<double> YamlValue::numbers() const {

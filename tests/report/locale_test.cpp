@@ -14,6 +14,7 @@
 #include "swivel/core/answer_text.hpp"
 #include "swivel/core/formatted.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/io/motion.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
 
