@@ -700,10 +700,14 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   if (result.passed || on_path || problem.smooth) return result;
   // What was planned to be made a motion of follows the rounded path of motions.
   const Problem of_motions = with_motion_defaults(problem);
-  CheckResult rounded = Check(robot, of_motions, robot.world(), rows, options).run();
-  if (rounded.failure_count >= result.failure_count) return result;
-  rounded.rounded = true;
-  return rounded;
+  try {
+    CheckResult rounded = Check(robot, of_motions, robot.world(), rows, options).run();
+    if (rounded.failure_count >= result.failure_count) return result;
+    rounded.rounded = true;
+    return rounded;
+  } catch (const InputError&) {  // a given start that is not on that path
+    return result;
+  }
 }
 
 CheckResult check_motion(const PreparedRobot& robot, const Problem& problem, const std::vector<TimedRow>& rows,

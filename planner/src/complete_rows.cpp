@@ -309,8 +309,12 @@ std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Prob
   robot.require_prepared_for(problem);
   auto own = std::make_unique<Completion>(robot, problem, rows, stated, of_motion, budget);
   if (problem.smooth || own->off_path() == 0) return own;
-  auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated, of_motion, budget);
-  return rounded->off_path() < own->off_path() ? std::move(rounded) : std::move(own);
+  try {
+    auto rounded = std::make_unique<Completion>(robot, with_motion_defaults(problem), rows, stated, of_motion, budget);
+    return rounded->off_path() < own->off_path() ? std::move(rounded) : std::move(own);
+  } catch (const InputError&) {  // a given start that is not on that path
+    return own;
+  }
 }
 
 }  // namespace
