@@ -269,7 +269,7 @@ class Files(WithFolder):
         with out.open("w", newline="") as file:
             csv.writer(file).writerows(rows)
         lines = run("check", PROBLEMS / "experiment_a.yaml", out, *coarse).stdout.splitlines()
-        self.assertTrue(lines[0].startswith("failed: 26 rows, 26 failures; "), lines)
+        self.assertTrue(lines[0].startswith("failed: 26 rows, 26 failures, held: torso_joint_b1 at 0 rad; "), lines)
         self.assertLessEqual(len(lines), 4, lines)  # not one for each row
         self.assertRegex(lines[1], r"^  row 0: .* \(and \d+ more like it\)$")
         self.assertEqual(lines[-1], "  and 6 more")
@@ -406,7 +406,7 @@ limits: {{clearance: 0.005}}
         def told(words, seconds=5, **changes):
             problem = json.loads(json.dumps(base))
             for section, values in changes.items():
-                problem[section] = {**problem[section], **values} if isinstance(values, dict) else values
+                problem[section] = {**problem.get(section, {}), **values} if section == "robot" else values
             (self.folder / "p.yaml").write_text(json.dumps(problem))
             start = time.monotonic()
             done = run("plan", self.folder / "p.yaml", "--planner", "lazy", "--quiet", "--json", self.folder / "r.json")

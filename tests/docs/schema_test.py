@@ -97,12 +97,13 @@ class Problems(unittest.TestCase):
                     self.assertRegex(done.stderr, "problem.yaml:1: .*allowed")
 
 
-def made_problem(attached=(), walls=(), **path):
+def made_problem(attached=(), walls=(), touched=(), **path):
     """An iiwa 14 along two lines at right angles."""
     down = [0, 3.14159265358979, 0]
     corners = [[0.5, -0.2, 0.4], [0.5, 0.2, 0.4], [0.6, 0.2, 0.4]]
     robot = {"urdf": str(PROBLEMS.parent / "robots" / "iiwa14.urdf"), "base_link": "base_link", "tip_link": "tool0", "attached": list(attached)}
     scene = [{"name": name, "box": [0.3, 0.02, 1], "xyz": [0.5, 0, 0.5]} for name in walls]
+    scene += list(touched)
     if path.get("frame") == "far":  # out of reach
         scene.append({"name": "far", "box": [0.1, 0.1, 0.1], "xyz": [2, 0, 0]})
     return {"robot": robot, "path": {"waypoints": [{"xyz": corner, "rpy": down} for corner in corners], **path}, "scene": scene}
@@ -121,6 +122,9 @@ class Results(unittest.TestCase):
         (made_problem(walls=["one", "two"]),),
         (made_problem(walls=["one"], roll=[0.3, 0.6]),),
         (made_problem(frame="far"),),
+        # The nib, 0.1 m below the flange, is pressed 10 mm deep into the bed.
+        (made_problem(attached=[{"name": "nib", "sphere": 0.02, "xyz": [0, 0, 0.1]}],
+                      touched=[{"name": "bed", "box": [1, 1, 0.1], "xyz": [0.5, 0, 0.24], "allow": {"nib": 0.015}}]),),
         # The ball touches link_5 in every posture, and is always 4 mm from link_4.
         (made_problem(attached=[{"name": "ball", "sphere": 0.211, "xyz": [0, 0, -0.126]}]),),
     ]
