@@ -124,7 +124,7 @@ class Results(unittest.TestCase):
         (made_problem(frame="far"),),
         # The nib, 0.1 m below the flange, is pressed 10 mm deep into the bed.
         (made_problem(attached=[{"name": "nib", "sphere": 0.02, "xyz": [0, 0, 0.1]}],
-                      touched=[{"name": "bed", "box": [1, 1, 0.1], "xyz": [0.5, 0, 0.24], "allow": {"nib": 0.015}}]),),
+                      touched=[{"name": "bed", "box": [0.4, 0.8, 0.1], "xyz": [0.6, 0, 0.24], "allow": {"nib": 0.015}}]),),
         # The ball touches link_5 in every posture, and is always 4 mm from link_4.
         (made_problem(attached=[{"name": "ball", "sphere": 0.211, "xyz": [0, 0, -0.126]}]),),
     ]
