@@ -218,8 +218,9 @@ class Solid {
       most = std::max(most, patch.depth[k] + tangent_.depth + slope.dot(patch.at[k] - point_));
     return most;
   }
-  /// Of a point outside of a mesh, whose nearest point lies on a plane that no triangle crosses which may be the nearest to a point
-  /// within `radius`: there the mesh is as deep as what is behind the plane, or less.
+  /// The normal of a plane beside which a mesh is nowhere deeper than the half-space behind the plane, for all points within
+  /// `radius` of this one, which lies outside of the mesh; none where a triangle crosses the plane that may be the nearest to one
+  /// of these points.
   [[nodiscard]] std::optional<Vector3d> slope_outside(double radius) const {
     const TriangleTree& tree = shape_->mesh->triangles();
     const Vector3d nearest = tree.nearest_on(point_, nearest_), normal = (nearest - point_) / tangent_.depth;

@@ -25,7 +25,7 @@ class TriangleTree {
   /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
                                 TrianglePair& first) const;
-  /// Of a point from one of the triangles, m.
+  /// The distance of a point from one of the triangles, m.
   [[nodiscard]] double distance_at(const Vector3d& point, int triangle) const;
   /// The nearest point of one of the triangles.
   [[nodiscard]] Vector3d nearest_on(const Vector3d& point, int triangle) const;

@@ -151,7 +151,7 @@ struct World::Impl {
       return {-*depth, -*depth, std::min(limits.edge_tolerance, std::max(*depth / 8, kVerdictBand))};
     return {limits.clearance, limits.d_edge(), limits.edge_tolerance};
   }
-  /// Of a pair that may be so deep and no deeper.
+  /// How deep, m, a pair may be in each other; none where nothing bounds it.
   [[nodiscard]] std::optional<double> depth_of(const BodyPair& p) const {
     const auto found = std::find_if(allowed.begin(), allowed.end(), [&](const AllowedPair& x) { return x.pair == p; });
     return found == allowed.end() ? std::nullopt : found->depth;
@@ -426,7 +426,7 @@ struct World::Query::Impl {
     if (group_b != common) speed += speed_against(common, group_b, p.b);
     return speed;
   }
-  /// Of any point of a body of a group, as seen from another group.
+  /// The highest speed of any point of a body of a group, as seen from another group.
   [[nodiscard]] double speed_against(int still, int group, int body) const {
     const Twist &far = twists[static_cast<std::size_t>(group)], &near = twists[static_cast<std::size_t>(still)];
     const Vector3d turn = far.turn - near.turn;

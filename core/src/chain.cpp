@@ -27,7 +27,7 @@ Pose at(const Chain::Turn& turn, double cosine, double sine) {
   return Pose(turn.still + cosine * turn.cosine + sine * turn.sine);
 }
 
-/// Of what a follower carries, where the group that carries it has displacement `parent`.
+/// The displacement of what a follower carries, given the displacement `parent` of the group that carries the follower.
 Pose displacement_of(const Chain::Follower& follower, const Config& q, const Pose& parent) {
   const double motion = follower.multiplier * q[follower.leader];
   if (follower.slides) return parent * Eigen::Translation3d(motion * follower.axis);

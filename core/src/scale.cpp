@@ -11,7 +11,7 @@ namespace swivel {
 
 namespace {
 
-/// Of the arm without the tool, m.
+/// How far the arm reaches without the tool, m: the sum of the distances from axis to axis.
 double reach_of_arm(const Chain& chain, const Pose& tool) {
   const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll is no joint: its axis is the tool's
   double reach = ((chain.home * tool.inverse()).translation() - chain.point[joints - 1]).norm();

@@ -589,7 +589,8 @@ void bind_plan(py::module_& m) {
             for (const HeldJoint& joint : p.result().held) held[joint.name] = joint.position;
             return held;
           },
-          "Joints between base and tip that are not planned -> where they stand, rad or m; the answer is of the arm with them there.")
+          "Joints between base and tip that are not planned -> where they stand, rad or m; the answer is of the arm with them "
+          "there.")
       .def_property_readonly("lattice", [](const Plan& p) -> const LatticeInfo& { return p.result().lattice; })
       .def_property_readonly(
           "counters", [](const Plan& p) { return counters_of(p.result().counters); }, "Work done, by name.")

@@ -276,12 +276,13 @@ TEST(Names, AreUtf8WithoutControlCharacters) {
   EXPECT_FALSE(is_valid_name(""));
   EXPECT_EQ(printable("a\x1b[31m\xff\xc3\xa4\xe2\x82"), "a?[31m?ä??");
   for (const char* name : kBadNames) EXPECT_TRUE(is_valid_name(printable(name)));
-  for (const char* control : {"\u202e", "\u202a", "\u2066", "\u2069", "\u200e", "\u200f", "\u061c", "\u2028", "\u2029", "\ufeff", "\u200b",
-                              "\U000e0041", "\ufff9"}) {
+  for (const char* control : {"\u202e", "\u202a", "\u2066", "\u2069", "\u200e", "\u200f", "\u061c", "\u2028", "\u2029", "\ufeff",
+                              "\u200b", "\U000e0041", "\ufff9"}) {
     EXPECT_FALSE(is_valid_name(std::string("gnp") + control + ".stl"));
     EXPECT_EQ(printable(std::string("a") + control + "b"), "a" + std::string(std::string_view(control).size(), '?') + "b");
   }
-  for (const char* joiner : {"\u200c", "\u200d"}) EXPECT_TRUE(is_valid_name(std::string("a") + joiner + "b"));  // of Persian, of emoji
+  for (const char* joiner : {"\u200c", "\u200d"})
+    EXPECT_TRUE(is_valid_name(std::string("a") + joiner + "b"));  // of Persian, of emoji
 }
 
 /// For a double-quoted YAML scalar, byte by byte where YAML would refuse the byte itself.

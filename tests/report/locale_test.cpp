@@ -107,7 +107,8 @@ TEST(Locale, ChangesNothingThatIsReadOrWritten) {
   const auto foreign = texts();
   ASSERT_EQ(classic.size(), foreign.size());
   EXPECT_GE(classic.size(), 8u);
-  for (const auto& [what, text] : classic) EXPECT_TRUE(foreign.at(what) == text) << what << (text.size() < 400 ? foreign.at(what) : "");
+  for (const auto& [what, text] : classic)
+    EXPECT_TRUE(foreign.at(what) == text) << what << (text.size() < 400 ? foreign.at(what) : "");
   EXPECT_EQ(formatted("%.2f", 1234.5), "1234.50");
   if (locale.is_set()) EXPECT_EQ(*std::localeconv()->decimal_point, ',');  // and the program's own is as it was
 }

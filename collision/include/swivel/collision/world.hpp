@@ -88,8 +88,8 @@ struct Stretch {
   double reserve = 0;            ///< m, asked for besides
 };
 
-/// Half width of the band of clearances about a threshold, m, in which no certificate answers, and by which FCL may err. Within it FCL
-/// decides, save for two bodies of triangles: our own trees of triangles decide about them down to 1 um. docs/model.md.
+/// Half width of the band of clearances about a threshold, m, in which no certificate answers, and by which FCL may err. Within it
+/// FCL decides, save for two bodies of triangles: our own trees of triangles decide about them down to 1 um. docs/model.md.
 inline constexpr double kVerdictBand = 0.05e-3;
 
 /// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
@@ -140,11 +140,10 @@ enum class Certificates {
   kOn,   ///< closed forms, where they prove the clearance outside the band; within it triangle trees or FCL
 };
 
-/// The robot's bodies among the scene's, with FCL as the authority on every pair that neither a certificate nor our own distance of triangles
-/// settles. Immutable after construction; const calls are
-/// safe from many threads, each with its own Query.
-/// Verdicts are those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or
-/// capsule the equivalent boolean on the inflated body; closed meshes are solids.
+/// The robot's bodies among the scene's, with FCL as the authority on every pair that neither a certificate nor our own distance of
+/// triangles settles. Immutable after construction; const calls are safe from many threads, each with its own Query. Verdicts are
+/// those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or capsule the
+/// equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:
   /// Which pairs count: of the robot those of RobotPair that are not dropped; of robot and scene those that move and are not
@@ -171,7 +170,7 @@ class World {
   /// In the order in which first_below asks: the environment before the robot itself, inflated booleans before distances, the tool
   /// before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
-  /// Of moving bodies and scene objects those that may touch, in the order of the scene and, for each object, of bodies().
+  /// The pairs of a moving body and a scene object that may touch, ordered by the scene and, for one object, as bodies() are.
   [[nodiscard]] const std::vector<AllowedPair>& allowed() const;
   [[nodiscard]] const std::vector<RobotBody>& bodies() const;
   /// The joints that move the two bodies of a pair against each other.

@@ -72,7 +72,7 @@ class ArcLattice final : public ExplicitLattice {
     std::optional<double> turn;  // rad, by which all rows stay inside the limits, the first as near to the middle as can be
     bool nearest = false;        // they do in the turn in which the first is nearest to the middle
   };
-  /// Of circle j.
+  /// How the rows of a path fit into the limits of circle j.
   [[nodiscard]] Fit fit(std::size_t j, const Rows& rows) const;
 
   LockMethod method_;

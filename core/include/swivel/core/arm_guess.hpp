@@ -22,9 +22,9 @@ struct ArmGuesses {
 /// Every arm of at least six joints that turn, one a chain, in the order of the file: S-R-S arms first, then others of seven
 /// joints, then those of six. Of a longer row the last seven joints are taken. A row begins anew at a link that is called as bases
 /// of arms are (base_link, link_0, ...) and where several arms part. It ends where links part (a hand), at a link called tool0,
-/// tcp, flange, ee or the like, and at joints that slide, mimic or are called as fingers and cameras are; joints of legs are none of
-/// an arm. Linkages beside the arm, whose joints mimic its own, are passed by. Tips are the links called as tools are that are fixed
-/// to the last link, else the last link before the hand.
+/// tcp, flange, ee or the like, and at joints that slide, mimic or are called as fingers and cameras are; joints of legs are none
+/// of an arm. Linkages beside the arm, whose joints mimic its own, are passed by. Tips are the links called as tools are that are
+/// fixed to the last link, else the last link before the hand.
 [[nodiscard]] ArmGuesses guess_arms(const RobotModel& robot);
 
 }  // namespace swivel

@@ -32,7 +32,7 @@ struct Cause {
   Side side = Side::kNone;    ///< of kReach and kLimit
   std::string joint;          ///< of kLimit, kRollSlope, kJointStep and kSpeed
   bool other_joints = false;  ///< of kLimit: every node has several joints beyond their limits; `joint` is the furthest
-  /// Of kLimit: the joint stands within its range, but can follow only beyond the end of it: it would have to unwind by a turn.
+  /// Set for kLimit where the joint stands within its range but the path goes on past its end: it would have to unwind by a turn.
   bool unwinds = false;
   std::array<std::string, 2> bodies;  ///< of kPair and kContact
   bool between_layers = false;        ///< of those and of kCheck: on motions only

@@ -134,7 +134,7 @@ class Lattice {
   }
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
   [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
-  /// Of `groups` below: bodies on followers of the chain, which no two nodes are sure to share.
+  /// The bit of `groups` below for bodies on followers of the chain, whose poses no two nodes are sure to share.
   static constexpr unsigned kFollowers = 1u << (kDof + 1);
   /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
   /// 1..7, or kFollowers. Rows of such nodes: up to rows_apart() of every group.
@@ -171,7 +171,7 @@ class Lattice {
   [[nodiscard]] virtual bool in_window(int layer, int a, int b) const = 0;
   /// The same as far as anything but the roll tells.
   [[nodiscard]] virtual bool in_arm_window(int layer, int a, int b) const { return in_window(layer, a, b); }
-  /// Of a tool that may stand turned: by how much the move from row q0 (slot a) to row q1 (slot b) turns it. None of other tools.
+  /// By how much the move from row q0 (slot a) to row q1 (slot b) turns a tool that may stand turned; none for other tools.
   [[nodiscard]] virtual std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b, const Config& q1) const;
   /// Replaces `out` by the runs of slots b for which in_window(layer, a, b).
   virtual void successors(int layer, int a, std::vector<SlotRun>& out) const = 0;
@@ -211,8 +211,8 @@ class Lattice {
   /// A cost of up to 2048 units, rounded as edge_cost() is.
   [[nodiscard]] double rounded_cost(double cost) const;
   // --- the order of answers: coarse cost, off_middle() and slot of the first node; then cost, then slots (docs/model.md)
-  /// What a path costs, in whole steps of 2^-24 units, rounded to the nearest. Mirrored branches cost the same but for rounding
-  /// far below such a step, so their coarse costs are equal.
+  /// The cost of a path in whole steps of 2^-24 units, rounded to the nearest. Costs of mirrored branches differ by rounding errors
+  /// far below such a step, so that their coarse costs are equal.
   [[nodiscard]] double coarse_cost(double cost) const { return std::round(cost * steps_); }
   /// No cost with the same coarse cost is larger.
   [[nodiscard]] double most_alike(double cost) const { return (coarse_cost(cost) + 0.5) / steps_; }

@@ -110,7 +110,7 @@ class ToolPath {
     double reach = 0;                                                   // of the corner at its start
     bool merged = false;                                                // of several, within the tolerances of smoothing
   };
-  /// Of a waypoint.
+  /// Where a waypoint lies on the path.
   struct Place {
     double travel = 0;
     int row = 0;

@@ -100,7 +100,8 @@ class CostToGo {
 /// than they are. best(), first_slot() and every best path are exact all the same.
 enum class Extent { kWhole, kBounded };
 /// The cost-to-go of a lattice: of a grid (SrsLattice) in vector code, of an explicit lattice by plain loops and always whole, of a
-/// RollLattice layer by layer over rolls and arm angles. What `retired`, of any lattice, had allocated serves again: pages fresh from the system take a quarter of a plan that meets obstacles.
+/// RollLattice layer by layer over rolls and arm angles. What `retired`, of any lattice, had allocated serves again: pages fresh
+/// from the system take a quarter of a plan that meets obstacles.
 [[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent = Extent::kWhole,
                                                         const Budget& budget = {}, std::unique_ptr<CostToGo> retired = nullptr);
 

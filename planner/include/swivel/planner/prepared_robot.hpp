@@ -22,7 +22,8 @@ struct PlanningArm {
 /// Immutable and safe to share between threads.
 class PreparedRobot {
  public:
-  /// Throws InputError: unknown links, an arm of fewer than seven joints (six, where the tool may roll), ...; InvalidArgument: see validate(); Stopped, only with a budget.
+  /// Throws InputError: unknown links, an arm of fewer than seven joints (six, where the tool may roll), ...; InvalidArgument: see
+  /// validate(); Stopped, only with a budget.
   explicit PreparedRobot(const Problem& problem, const Budget& budget = {});
   /// The same of an arm that is known: that of this problem.
   PreparedRobot(const Problem& problem, PlanningArm arm, const Budget& budget);
