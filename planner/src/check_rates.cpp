@@ -35,6 +35,7 @@ class Samples {
     usual_ = sum / count;
     steps_.push_back(usual_);
     for (const double step : steps) steps_.push_back(std::abs(step - usual_) <= same ? usual_ : step);
+    for (std::ptrdiff_t k = 0; k < n_; ++k) usual_at_.push_back(usual_about(k));
   }
 
   [[nodiscard]] std::ptrdiff_t size() const { return n_; }
@@ -47,22 +48,39 @@ class Samples {
   [[nodiscard]] double step(std::ptrdiff_t k) const { return k < 1 || k >= n_ ? usual_ : steps_[static_cast<std::size_t>(k)]; }
   /// From sample k - 1 to sample k.
   [[nodiscard]] Config speed(std::ptrdiff_t k) const { return (at(k).row.q - at(k - 1).row.q) / step(k); }
+  /// The usual step at sample k, s: that of the motion, or what steps on one side of the sample usually take where that is less
+  /// than half of it, as where a motion of few samples goes on with many.
+  [[nodiscard]] double usual_step(std::ptrdiff_t k) const {
+    return k < 0 || k >= n_ ? usual_ : usual_at_[static_cast<std::size_t>(k)];
+  }
   /// At sample k: the change of speed there, made within the time from the middle of the step before to the middle of the step
   /// after, or within a usual step where that is less. So a gap in time leaves no more time for a change than any step does.
   [[nodiscard]] Config acceleration(std::ptrdiff_t k) const {
-    return (speed(k + 1) - speed(k)) / std::min((step(k) + step(k + 1)) / 2, usual_);
+    return (speed(k + 1) - speed(k)) / std::min((step(k) + step(k + 1)) / 2, usual_step(k));
   }
-  /// Between samples k and k + 1, in the same way.
+  /// Between samples k and k + 1: the change of acceleration, made within the mean of the three steps about them or a usual step.
   [[nodiscard]] Config jerk(std::ptrdiff_t k) const {
-    return (acceleration(k + 1) - acceleration(k)) / std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual_);
+    const double usual = std::min(usual_step(k), usual_step(k + 1));
+    return (acceleration(k + 1) - acceleration(k)) / std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual);
   }
   /// At sample k, over both steps beside it.
   [[nodiscard]] Config mean_speed(std::ptrdiff_t k) const { return (at(k + 1).row.q - at(k - 1).row.q) / (step(k) + step(k + 1)); }
 
  private:
+  /// The median of three steps on either side of sample k, the shorter one, where it is less than half of the motion's usual step.
+  [[nodiscard]] double usual_about(std::ptrdiff_t k) const {
+    const auto median = [&](std::ptrdiff_t first) {
+      const double a = step(first), b = step(first + 1), c = step(first + 2);
+      return std::max(std::min(a, b), std::min(std::max(a, b), c));
+    };
+    const double about = std::min(median(k - 2), median(k + 1));
+    return about < usual_ / 2 ? about : usual_;
+  }
+
   const std::vector<TimedRow>* rows_;
   std::ptrdiff_t n_;
-  std::vector<double> steps_;  // [k]: to sample k
+  std::vector<double> steps_;     // [k]: to sample k
+  std::vector<double> usual_at_;  // [k]: at sample k
   double usual_ = 0;
 };
 
@@ -108,7 +126,7 @@ std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limit
         if (ratio > motion.peaks[order].ratio) motion.peaks[order] = {ratio, j, t};
       }
     if (k < 0) continue;
-    const double dt = std::min(std::max(samples.step(k), samples.step(k + 1)), usual);
+    const double dt = std::min(std::max(samples.step(k), samples.step(k + 1)), samples.usual_step(k));
     const Config v = samples.mean_speed(k), a = samples.acceleration(k);
     const TimedRow& row = samples.at(k);
     for (int j = 0; j < kDof; ++j) {
