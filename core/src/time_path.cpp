@@ -703,15 +703,16 @@ class Samples {
   std::vector<double> strayed_;  // m, of the tool between each sample and the one before
 };
 
-/// Completes the warning of an assumed rate where the motion goes as far as it allows.
+/// Completes the warning of an assumed rate where the motion goes as far as it allows, and takes longer than at the speed asked
+/// for.
 std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion, const Chain& chain) {
-  constexpr double kReached = 0.9;  // motions are planned up to 0.99 of a rate, and slowed down to a little less
+  constexpr double kLonger = 1.02, kReached = 0.9;  // motions are planned up to 0.99 of a rate, and slowed down to a little less
   TimedPath::Peak most;
   for (std::size_t j = 0; j < kDof; ++j)
     if (const TimedPath::Peak& peak = motion.peaks[static_cast<std::size_t>(assumed.rate)][j];
         assumed.of[j] && peak.ratio > most.ratio)
       most = peak;
-  if (most.ratio < kReached) return "";
+  if (motion.duration < kLonger * motion.ideal || most.ratio < kReached) return "";
   return ", and this decides how long the motion takes: joint '" + chain.joint_names[static_cast<std::size_t>(most.joint)] +
          formatted("' reaches it at s = %.4f m", most.s);
 }

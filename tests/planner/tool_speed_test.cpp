@@ -162,6 +162,12 @@ TEST(ToolSpeed, LimitsAreKeptAndSaid) {
   const std::string both = warnings({.speed = 0.05, .turn_speed = 0.5, .rate = 100});
   EXPECT_NE(both.find("limits.tool_speed allows 0.02 m/s"), std::string::npos) << both;
   EXPECT_NE(both.find("limits.tool_turn_speed allows 0.1 rad/s"), std::string::npos) << both;
+  problem.limits.tool_speed = problem.limits.tool_turn_speed = std::nullopt;
+  planner.set_task(problem);
+  const char* const decides = "joint jerks are stated neither by the URDF nor as limits.joint_jerk: 100 rad/s^3, and this decides";
+  EXPECT_NE(warnings({.speed = 0.5, .turn_speed = {}, .rate = 250}).find(decides), std::string::npos);
+  const std::string slow = warnings({.speed = 0.001, .turn_speed = 0.01, .rate = 20});
+  EXPECT_NE(slow.find("100 rad/s^3\n"), std::string::npos) << slow;  // nothing more
   const std::string none = warnings({.speed = 0.02, .turn_speed = {}, .rate = 100});
   EXPECT_EQ(none.find("limits.tool"), std::string::npos) << none;
 }
