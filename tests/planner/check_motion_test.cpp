@@ -31,7 +31,7 @@ TEST_P(CheckOf, MutationsFail) {
   const std::uint64_t base = seed("Mutations");
   std::size_t kinds = 0;
   for (const MotionMutation& kind : motion_mutations()) kinds += timed ? kind.of_motions : kind.of_trajectories;
-  const int each = trials(std::max(static_cast<int>(1000 / kinds) + 1, 40));
+  const int each = trials(static_cast<int>(1000 / kinds) + 1);
   int count = 0, number = 0;
   for (const MotionMutation& kind : motion_mutations()) {
     ++number;

@@ -279,20 +279,6 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          const double most = std::max(jolt(m, k - 1, h), jolt(m, k, h));
          return most > kSurely ? words("of %.3g s: the speed jumps by %.3g times what can be", gap, most) : "";
        }},
-      {"crawls, then goes on", true, false, Column::kJoints,
-       [](Judged& m, Random& random) -> std::string {
-         // More than half of the rows stand far apart in time, so that the median of all steps is a long one.
-         const double h = m.t(1) - m.t(0), begin = m.t(0), factor = random.uniform(30, 300);
-         const std::size_t k = some(m.rows.size() / 2 + 2, m.rows.size() - 2, random);
-         const double shift = (m.t(k) - begin) * (factor - 1);
-         for (std::size_t i = 0; i < m.rows.size(); ++i) {
-           TimedRow& row = m.rows[i];
-           row.t = i <= k ? begin + (row.t - begin) * factor : row.t + shift;
-           if (i <= k) row.v /= factor, row.a /= factor * factor;
-         }
-         const double most = jolt(m, k, h);
-         return most > kSurely ? words("the speed jumps by %.3g times what can be", most) : "";
-       }},
       {"time stands nearly still", true, false, Column::kJoints,
        [](Judged& m, Random& random) -> std::string {
          const double h = m.t(1) - m.t(0);
@@ -571,6 +557,20 @@ inline const std::vector<MotionMutation>& motion_mutations() {
          double* const value[] = {&row.s, &row.phi};
          *value[random.below(2)] = random.coin() ? std::nan("") : std::numeric_limits<double>::infinity();
          return "NaN or infinity";
+       }},
+      {"crawls, then goes on", true, false, Column::kJoints,
+       [](Judged& m, Random& random) -> std::string {
+         // More than half of the rows stand far apart in time, so that the median of all steps is a long one.
+         const double h = m.t(1) - m.t(0), begin = m.t(0), factor = random.uniform(30, 300);
+         const std::size_t k = some(m.rows.size() / 2 + 2, m.rows.size() - 2, random);
+         const double shift = (m.t(k) - begin) * (factor - 1);
+         for (std::size_t i = 0; i < m.rows.size(); ++i) {
+           TimedRow& row = m.rows[i];
+           row.t = i <= k ? begin + (row.t - begin) * factor : row.t + shift;
+           if (i <= k) row.v /= factor, row.a /= factor * factor;
+         }
+         const double most = jolt(m, k, h);
+         return most > kSurely ? words("the speed jumps by %.3g times what can be", most) : "";
        }},
   };
   return all;
