@@ -51,8 +51,9 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
   const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed of its own
   for (std::size_t j = 0; j < joints; ++j)
     if ((timed || problem.cost.metric == CostMetric::kTime) && chain.limit[j].velocity <= 0)
-      throw InputError(problem.source + (timed ? ": limits.tool_speed" : ": cost.metric: time") + ": joint '" +
-                       chain.joint_names[j] + "' has no speed limit in the URDF: allowed are robots whose joints all have one");
+      throw InputError(problem.source, std::string(timed ? "limits.tool_speed" : "cost.metric: time") + ": joint '" +
+                                           chain.joint_names[j] +
+                                           "' has no speed limit in the URDF: allowed are robots whose joints all have one");
   std::vector<Config> allowed{Config::Zero()};
   for (int i = 0; i + 1 < path.size(); ++i) {
     double dt = 0;
@@ -490,7 +491,7 @@ class Check {
     if (const auto pair = contacts_.on_the_way(from, to)) fail_move(k, *pair);
   }
 
-  /// Of the move to row k, on which two bodies come too near.
+  /// Fails the move to row k, on which two bodies come too near.
   void fail_move(std::size_t k, const BodyPair& pair) {
     const double keeps = contacts_.keeps(pair).motion;
     fail(keeps < 0 ? "rows %zu-%zu: %s may come more than %.3f mm deep into each other"
