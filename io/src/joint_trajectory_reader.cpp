@@ -122,7 +122,7 @@ class Message {
     line_ = line;
     fail("is an alias", "what it stands for");
   }
-  /// Of the text, for messages.
+  /// Refuses what the text says: names the file, the line that is being read, and the point.
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const {
     std::string where = at_line(file_, line_);
     if (!sizes_.empty() && levels_.size() > 1) where += ": points[" + std::to_string(sizes_.size() - 1) + "]";

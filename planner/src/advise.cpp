@@ -205,7 +205,7 @@ class Adviser {
     return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
   }
 
-  /// Of the trial that is on.
+  /// How long the trial that is being planned may still take, s.
   [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(trial_end_ - Clock::now()).count(); }
 
   /// Plans the problem with the change; an outcome of kUnknown where the time is up.

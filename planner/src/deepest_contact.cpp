@@ -47,7 +47,7 @@ class Search {
     return depth;
   }
 
-  /// Of the move from a row to the next, from one share of it to another.
+  /// Settles how deep two bodies come on the move from a row to the next, between two shares of that move.
   void settle(const AllowedPair& allowed, std::size_t row, double from, double to) {
     budget_.poll();
     const Config &first = rows_[row], &next = rows_[row + 1];

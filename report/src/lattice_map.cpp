@@ -24,7 +24,7 @@ std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
   return {node.state, !node.certified};
 }
 
-/// Of the nodes of each layer, in the order of slots: their values of the coordinate, in [-pi, pi], and branches.
+/// The values of the coordinate, in [-pi, pi], and the branches of the nodes of each layer, in the order of slots.
 struct Values {
   std::vector<double> value;
   std::vector<int> branch;

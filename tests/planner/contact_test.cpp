@@ -107,7 +107,7 @@ TEST(Contact, ThatIsTooDeepHasACertificate) {
   }));
   const CutCheck check = check_cut(PreparedRobot(problem), problem, cut);
   EXPECT_TRUE(check.passed) << check.failure;
-  // Of the same problem where the disc may be so deep it proves nothing.
+  // For the same problem with a disc that may be so deep, the certificate proves nothing.
   EXPECT_FALSE(check_cut(PreparedRobot(problem), polishing(0.004, 0.006), cut).passed);
 }
 

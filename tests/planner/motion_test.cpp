@@ -159,7 +159,7 @@ TEST(Motion, DenseWaypointsAreAsFastAsFewOnes) {
   Planner planner(problem);
   const MotionPlan plan = plan_motion(planner, options, true, TimingOptions{.speed = 0.1, .turn_speed = {}, .rate = 250});
   ASSERT_EQ(plan.result.status, PlanStatus::kSolved);
-  // Of waypoints that lie within half a micrometre of a chord only the ends are layers.
+  // A run of waypoints within half a micrometre of a chord has layers at its ends alone.
   EXPECT_LE(plan.result.trajectory.size(), static_cast<std::size_t>(kCount));
   EXPECT_GE(plan.result.trajectory.size(), 500u);
   EXPECT_LE(plan.result.cost, plan.refinement->cost_before);
