@@ -69,14 +69,16 @@ struct World::Impl {
   std::vector<int> numbers;     // [a * bodies + b] of `pairs`; -1: none of them
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
+  double forgiven;  // m, by which pairs may be nearer than they should
 
   Impl(std::shared_ptr<const RobotPart> robot_part, MeshStore store, const std::vector<SceneObject>& scene,
-       const Limits& of_problem, const Budget& budget, double forgiven, const Impl* like = nullptr)
+       const Limits& of_problem, const Budget& budget, double forgive, const Impl* like = nullptr)
       : robot(std::move(robot_part)),
         meshes(std::move(store)),
         limits(of_problem),
         robot_pairs(robot->pairs(limits)),
-        warnings(robot->warnings()) {
+        warnings(robot->warnings()),
+        forgiven(forgive) {
     const TraceSpan span("world");
     for (const RobotPair& p : robot_pairs)
       if (!p.dropped) pairs.push_back(p.pair);
@@ -146,10 +148,17 @@ struct World::Impl {
   }
   [[nodiscard]] PairKeeps keeps_of(const BodyPair& p) const {
     if (const RobotPair* known = robot_pair(p)) return known->keeps;
-    // A motion is proved as far as it keeps off the depth by the tolerance, which must leave most of the depth to it.
-    if (const auto depth = depth_of(p))
-      return {-*depth, -*depth, std::min(limits.edge_tolerance, std::max(*depth / 8, kVerdictBand))};
+    if (const auto depth = depth_of(p)) return keeps_of_depth(*depth);
     return {limits.clearance, limits.d_edge(), limits.edge_tolerance};
+  }
+  /// What a pair keeps that may be so deep in each other, m. A motion is proved by midpoints that are less deep than that by the
+  /// tolerance. Planned nodes are less deep by twice as much, so that a node from which no motion could be proved is refused at
+  /// once. What is verified (`forgiven` > 0) may be as deep as allowed at every row, however close rows are.
+  [[nodiscard]] PairKeeps keeps_of_depth(double depth) const {
+    if (forgiven > 0) return {-depth, -depth, kVerdictBand};
+    const double tolerance = std::min(limits.edge_tolerance, std::max(depth / 32, kVerdictBand));
+    const double reserve = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
+    return {reserve - depth, -depth, tolerance};
   }
   /// How deep, m, a pair may be in each other; none where nothing bounds it.
   [[nodiscard]] std::optional<double> depth_of(const BodyPair& p) const {

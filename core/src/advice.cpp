@@ -53,6 +53,8 @@ const char* to_string(Advice::Change change) {
       return "free_roll";
     case Advice::Change::kFiner:
       return "finer";
+    case Advice::Change::kDepth:
+      return "allow";
     case Advice::Change::kMoveObject:
       return "move_object";
     case Advice::Change::kWithoutObject:
@@ -91,6 +93,9 @@ std::string words(const Advice& advice) {
       return "a tool free to turn about its axis (path.roll)";
     case Advice::Change::kFiner:
       return "half the steps of the lattice, and nodes on narrow arcs (--ds, --dphi, --arcs)";
+    case Advice::Change::kDepth:
+      return "contact with '" + advice.object +
+             formatted("' up to %.3g mm deep instead of %.3g mm", 1e3 * *advice.to, 1e3 * *advice.from);
     case Advice::Change::kMoveObject:
       return "'" + advice.object + "' moved by " + words(advice.offset);
     default:

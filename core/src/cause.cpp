@@ -140,8 +140,9 @@ std::string figures(const Cause& cause, std::optional<double> most) {
              formatted("%.2f deg", kDegrees * *cause.limit) +
              (cause.unwinds ? ": at the end of its range, it would have to unwind by a turn" : "");
     case Cause::Kind::kPair:
-      return *cause.limit < 0 ? of("%.3g mm deep, allowed %.3g mm", -kMillimetres)
-                              : of("%.3g mm apart, asked %.3g mm", kMillimetres);
+      if (*cause.limit >= 0) return of("%.3g mm apart, asked %.3g mm", kMillimetres);
+      return of("%.3g mm deep, allowed %.3g mm", -kMillimetres) +
+             (cause.over ? formatted(": %.3g mm less what motions need", kMillimetres * *cause.over) : "");
     case Cause::Kind::kContact:
       return formatted("they touch, asked %.3g mm", kMillimetres * *cause.limit);
     case Cause::Kind::kRollSlope:

@@ -50,7 +50,11 @@ Schema cause() {
           key("value", or_null(number()), "what was found there; of two bodies less than zero: how deep they are in each other",
               "`unit`"),
           key("limit", or_null(number()), "what is asked for", "`unit`"),
-          key("over", or_null(number()), "of `roll_slope`: the length of path for which `limit` is allowed", "m"),
+          key("over", or_null(number()),
+              "of `roll_slope`: the length of path for which `limit` is allowed; of a pair that may be so deep in each other: the "
+              "depth "
+              "that `allow` gives, of which `limit` leaves a part to motions between layers",
+              "m"),
           key("unit", or_null(one_of({"m", "rad"})), "of these three"),
       }));
 }
@@ -252,11 +256,12 @@ Schema advice() {
       section("advice", {
                             key("change", text(),
                                 "`free_start`, `free_roll` (no bounds of `path.roll`), `finer` (half the steps of the lattice), "
-                                "the name of a limit, `move_object`, `without_object`"),
+                                "the name of a limit, `allow` (all depths that the object's `allow` gives, by one factor), "
+                                "`move_object`, `without_object`"),
                             key("words", text(), "the change in a phrase"),
-                            key("object", or_null(text()), "of `move_object` and `without_object`"),
-                            key("from", or_null(number()), "of limits: what it is"),
-                            key("to", or_null(number()), "of limits: what was tried"),
+                            key("object", or_null(text()), "of `allow`, `move_object` and `without_object`"),
+                            key("from", or_null(number()), "of limits and `allow`: what it is"),
+                            key("to", or_null(number()), "of limits and `allow`: what was tried"),
                             key("offset", or_null(numbers(3)), "of `move_object`, base frame; zeros where no way helps", "m"),
                             key("outcome", one_of({"solved", "further", "no_help", "unknown"}),
                                 "`further`: paths come further; `unknown`: no time left"),

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/validate.hpp"
 
 namespace swivel {
 
@@ -137,7 +138,10 @@ class Adviser {
     switch (cause.kind) {
       case Cause::Kind::kPair:
       case Cause::Kind::kContact:
-        if (cause.kind == Cause::Kind::kPair && !(cause.limit && *cause.limit < 0)) relax(Change::kClearance);
+        if (cause.kind == Cause::Kind::kPair && cause.limit && *cause.limit < 0)
+          deepen(cause);
+        else if (cause.kind == Cause::Kind::kPair)
+          relax(Change::kClearance);
         if (problem_.start && !problem_.start_at) try_once({.change = Change::kFreeStart});
         free_roll();
         for (const std::string& body : cause.bodies) {
@@ -231,6 +235,10 @@ class Adviser {
         changed.resolution.arc /= 2;
         changed.resolution.arcs = true;
         break;
+      case Change::kDepth:
+        for (SceneObject& object : changed.scene)
+          if (object.name == advice.object) object = deeper(object, *advice.to / *advice.from);
+        break;
       case Change::kMoveObject:
         for (SceneObject& object : changed.scene)
           if (object.name == advice.object) object.pose.translation() += advice.offset;
@@ -283,13 +291,40 @@ class Adviser {
     propose(std::move(advice), &Adviser::plan_relaxed);
   }
 
+  /// Proposes that the cause's bodies may be deeper in each other, where that is what ends the paths.
+  void deepen(const Cause& cause) {
+    for (const std::string& name : cause.bodies)
+      if (is_object(name))
+        propose({.change = Change::kDepth, .object = name, .from = cause.over.value_or(-*cause.limit)}, &Adviser::plan_relaxed);
+  }
+  /// The object, whose bodies that may touch it to a depth may be `factor` times as deep in it.
+  [[nodiscard]] static SceneObject deeper(SceneObject object, double factor) {
+    for (Allowed& allowed : object.allow)
+      if (allowed.depth) *allowed.depth *= factor;
+    return object;
+  }
+  /// The largest factor up to 8 by which bodies can come deeper into the object at all.
+  [[nodiscard]] double most_deeper(const std::string& name) const {
+    const auto object =
+        std::find_if(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
+    for (const double factor : {8., 4., 2., 1.5}) {
+      const SceneObject changed = deeper(*object, factor);
+      if (std::none_of(changed.allow.begin(), changed.allow.end(),
+                       [&](const Allowed& allowed) { return depth_fault(problem_, changed, allowed).has_value(); }))
+        return factor;
+    }
+    return 1.1;
+  }
+
   /// First the limit as far off as makes sense; where that solves, the strictest value that does, to a sixteenth of the way.
   void plan_relaxed(Advice& advice) {
     constexpr double kFactor = 8;
     const Change change = advice.change;
     const bool to_zero = change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability;
     double strict = *advice.from;
-    advice.to = to_zero ? 0 : relaxed_downwards(change) ? strict / kFactor : strict * kFactor;
+    advice.to = to_zero                     ? 0
+                : relaxed_downwards(change) ? strict / kFactor
+                                            : strict * (change == Change::kDepth ? most_deeper(advice.object) : kFactor);
     plan_changed(advice);
     if (advice.outcome != Outcome::kSolved) return;
     for (int k = 0; k < 4; ++k) {

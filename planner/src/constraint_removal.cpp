@@ -15,6 +15,8 @@ void for_each_bit(ConstraintSet set, const Each& each) {
   for (; set != 0; set &= set - 1) each(std::countr_zero(set));
 }
 
+constexpr int kMostMeasured = 16;  // causes of one layer: a clearance takes many questions
+
 /// Of two values of one thing: whether the first misses by less.
 bool misses_less(const Cause& a, const Cause& b) {
   const auto x = a.by(), y = b.by();
@@ -64,7 +66,6 @@ void ConstraintRemoval::blame(Pass& pass, ConstraintSet violated) const {
 void ConstraintRemoval::see(Pass& pass, int removal, int layer, const Constraints::Node& node) {
   ++pass.votes[index(removal)];
   Witness& witness = pass.witness[index(removal)];
-  constexpr int kMostMeasured = 16;  // a clearance takes many questions
   const auto away = [&](int from) { return std::abs(from - deepest_ - 1); };
   if (witness.found && (away(layer) > away(witness.layer) || (witness.layer == layer && witness.measured >= kMostMeasured))) return;
   Cause cause = constraints_.measured(std::countr_zero(constraints_.left(node.violated, waived_)), layer, node.q);
@@ -130,10 +131,13 @@ ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waiv
         ++pass.votes[index(c)];
         Witness& witness = pass.witness[index(c)];
         if (witness.found && std::abs(layer - deepest_) > std::abs(witness.layer - 1 - deepest_)) return;
+        if (witness.layer != layer + 1) witness.measured = 0;
+        if (witness.found && witness.measured >= kMostMeasured) return;
         Cause cause = constraints_.measured(std::countr_zero(constraints_.left(violated, waived_)), layer, a, tail.q, b, head.q);
         if (constraints_.is_object(c)) cause.object = constraints_.cause(c).object;
         if (!witness.found || witness.layer != layer + 1 || misses_less(cause, witness.cause))
           witness = {true, layer + 1, cause, witness.measured};
+        witness.measured += cause.kind == Cause::Kind::kPair;
       });
     };
     // Continuations on the same sheet first: where they exist, most other edges need no question.

@@ -316,6 +316,7 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
       if (!cause.value || (value && *value < *cause.value)) {
         cause.value = value;
         cause.limit = keeps;
+        if (const double allowed = world_.keeps(p).motion; keeps < 0 && allowed < keeps) cause.over = -allowed;
       }
     }
     if (cause.value == 0.0) cause.kind = Cause::Kind::kContact;
@@ -323,8 +324,36 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   return cause;
 }
 
-Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) const {
+/// The deepest contact of the cause's bodies, where they may touch to a depth, at a few postures of the motion from node a to b.
+void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb) {
+  constexpr int kParts = 16;  // of a motion
+  const bool by_rows = lattice_.has_layers_between();
+  std::vector<Config> rows{qa};
+  if (by_rows)
+    for (const Config& q : lattice_.between(layer, a, qa, b, qb).rows) rows.push_back(q);
+  rows.push_back(rows.back() + lattice_.delta(rows.back(), qb));
+  for (const BodyPair& p : world_.pairs()) {  // links may have several bodies
+    const PairKeeps keeps = world_.keeps(p);
+    if (keeps.motion >= 0 || world_.names(p) != cause.bodies) continue;
+    const double allowed = by_rows ? -keeps.node : -(keeps.motion + keeps.tolerance);
+    double deepest = allowed;  // at least: else nothing would be violated
+    for (std::size_t k = 1; k < rows.size(); ++k)
+      for (int part = k == 1 ? 0 : 1; part <= kParts; ++part)
+        deepest = std::max(deepest, query_.depth(rows[k - 1] + (rows[k] - rows[k - 1]) * part / kParts, p, deepest).at_least);
+    if (cause.value && -deepest >= *cause.value) continue;
+    cause.value = -deepest;
+    cause.limit = -allowed;
+    cause.over = keeps.motion < -allowed ? std::optional(-keeps.motion) : std::nullopt;
+  }
+}
+
+Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) {
   Cause cause = this->cause(constraint);
+  if (cause.kind == Cause::Kind::kPair) {
+    cause.between_layers = true;
+    measure_contact(cause, layer, a, qa, b, qb);
+    return cause;
+  }
   if (cause.kind == Cause::Kind::kRollSlope) {
     auto roll = *lattice_.roll_step(layer, a, qa, b, qb);
     if (roll.allowed && lattice_.has_layers_between()) roll = lattice_.between(layer, a, qa, b, qb).roll;  // on the way
@@ -372,7 +401,6 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
     case Cause::Kind::kArmSlope:
       cause.value = std::abs(wrap_angle(lattice_.phi(layer + 1, b) - lattice_.phi(layer, a)));
       break;
-    case Cause::Kind::kPair:
     case Cause::Kind::kCheck:
       cause.between_layers = true;
       break;

@@ -80,7 +80,7 @@ class Constraints {
 
   /// What is violated there and by how much: a cause with its value.
   [[nodiscard]] Cause measured(int constraint, int layer, const Config& q);
-  [[nodiscard]] Cause measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb) const;
+  [[nodiscard]] Cause measured(int constraint, int layer, int a, const Config& qa, int b, const Config& qb);
 
   [[nodiscard]] World::Query& query() { return query_; }
   [[nodiscard]] AskedCheck& check() { return check_; }
@@ -102,6 +102,7 @@ class Constraints {
   [[nodiscard]] std::optional<int> run_out(int k, const Config& from, const Config& moved) const;
   void edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found);
   [[nodiscard]] std::optional<double> clearance(const BodyPair& pair, const Config& q, double most);
+  void measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb);
 
   const Lattice& lattice_;
   const World& world_;

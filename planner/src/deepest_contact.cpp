@@ -9,7 +9,7 @@ namespace swivel {
 
 namespace {
 
-constexpr double kBetween = 0.5e-3;      // m, how much deeper a contact may be between postures than was found
+constexpr double kBetween = 0.5e-3;      // m, how much deeper than found a contact may be between postures, at most
 constexpr double kTouching = 1e-6;       // m
 constexpr double kShortest = 1. / 1024;  // of a move
 
@@ -19,13 +19,15 @@ class Search {
       : world_(world), rule_(rule), rows_(rows), budget_(budget), query_(world, Certificates::kOn) {}
 
   std::optional<DeepestContact> run() {
+    double at_most = 0;
     for (const AllowedPair& allowed : world_.allowed()) {
       at_rows(allowed);
       if (!is_bounded_) continue;
       for (std::size_t k = 1; k < rows_.size(); ++k) settle(allowed, k - 1, 0, 1);
+      at_most = std::max(at_most, to_prove(allowed));
     }
     if (!found_) return std::nullopt;
-    if (is_complete_) found_->at_most = std::max(found_->depth + kBetween, beyond_);
+    if (is_complete_) found_->at_most = std::max(at_most, beyond_);
     return found_;
   }
 
@@ -36,6 +38,12 @@ class Search {
       budget_.poll();
       if (!std::isfinite(look(allowed, k, rows_[k], deepest_).at_most)) is_bounded_ = is_complete_ = false;
     }
+  }
+
+  /// How deep a contact is to be proved not to be, m: no deeper than allowed, where what was found leaves room for that.
+  [[nodiscard]] double to_prove(const AllowedPair& allowed) const {
+    const double most = deepest_ + kBetween;
+    return allowed.depth ? std::max(deepest_ + kVerdictBand, std::min(most, *allowed.depth)) : most;
   }
 
   Depth look(const AllowedPair& allowed, std::size_t row, const Config& q, double from) {
@@ -52,8 +60,8 @@ class Search {
     budget_.poll();
     const Config &first = rows_[row], &next = rows_[row + 1];
     const double reach = (to - from) / 2 * rule_.motion(first, next), middle = (from + to) / 2;
-    const Depth depth = look(allowed, row, first + middle * (next - first), deepest_ + kBetween - reach);
-    if (depth.at_most + reach <= deepest_ + kBetween) return;
+    const Depth depth = look(allowed, row, first + middle * (next - first), to_prove(allowed) - reach);
+    if (depth.at_most + reach <= to_prove(allowed)) return;
     if (!std::isfinite(depth.at_most)) {
       is_complete_ = false;
       return;

@@ -418,6 +418,7 @@ class Change:
     TOOL_PATH_ERROR: ClassVar[Change]
     TOOL_ANGLE_ERROR: ClassVar[Change]
     STEP_ERROR: ClassVar[Change]
+    ALLOW: ClassVar[Change]
     MOVE_OBJECT: ClassVar[Change]
     WITHOUT_OBJECT: ClassVar[Change]
     @property

@@ -9,6 +9,7 @@
 #include "swivel/core/answer_text.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/advise.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/motion.hpp"
@@ -84,8 +85,10 @@ TEST(Contact, DeeperThanAllowedIsACollisionForEveryoneWhoJudges) {
     EXPECT_EQ(cause.bodies, (std::array<std::string, 2>{"disc", "plate"}));
     ASSERT_TRUE(cause.value && cause.limit);
     EXPECT_NEAR(*cause.value, -deep, 0.1e-3);
-    EXPECT_EQ(*cause.limit, -0.003);
-    EXPECT_NE(answer_text(little).find("4 mm deep, allowed 3 mm"), std::string::npos) << answer_text(little);
+    EXPECT_DOUBLE_EQ(*cause.limit, -(0.003 - 2 * 0.003 / 32));
+    EXPECT_EQ(cause.over, 0.003);
+    EXPECT_NE(answer_text(little).find("4 mm deep, allowed 2.81 mm: 3 mm less what motions need"), std::string::npos)
+        << answer_text(little);
   }
   const CheckResult check = check_trajectory(polishing(deep, 0.003), free.trajectory);
   EXPECT_FALSE(check.passed);
@@ -124,8 +127,9 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
   for (SceneObject& object : bounded.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", 0.00302)};
   int deeper_at_rows = 0;
-  const World world(*bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool),
-                    bounded);
+  const World planned_in(
+      *bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool), bounded);
+  const World world(planned_in, bounded, {}, kVerdictBand);  // rows may be as deep as allowed
   World::Query query(world);
   for (const TrajectoryRow& row : free.trajectory) deeper_at_rows += query.first_below(row.q, Keep::kNode).has_value();
   EXPECT_EQ(deeper_at_rows, 0);
@@ -135,6 +139,84 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
     ASSERT_TRUE(result.deepest_contact);
     EXPECT_LE(result.deepest_contact->depth, 0.00302 + 1e-6);
   }
+}
+
+/// A tool led nearly as deep as it may be is planned, or refused at its first row: no node is left from which no motion is proved.
+TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
+  constexpr double kAllowed = 0.003;
+  int solved = 0, refused = 0;
+  for (const double deep : {0.0020, 0.0025, 0.0027, 0.0028, 0.00285, 0.0029, 0.00299}) {
+    SCOPED_TRACE(deep);
+    Problem problem = polishing(deep, kAllowed);
+    problem.resolution.ds = 0.005;  // straight joint motions leave the path by some 0.01 mm between layers
+    problem.limits.joint_acceleration = std::array<double, kDof>{10, 10, 10, 10, 10, 10, 10};
+    problem = with_motion_defaults(problem);
+    const PlanResult result = planned(problem);
+    EXPECT_LE(result.counters.edges_checked, 20 * result.lattice.layers);
+    if (deep > kAllowed - 2 * kAllowed / 32) {
+      ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+      const Cause& cause = result.diagnosis.cause;
+      EXPECT_FALSE(cause.between_layers);
+      ASSERT_TRUE(cause.value);
+      EXPECT_NEAR(*cause.value, -deep, 0.03e-3);
+      ++refused;
+      continue;
+    }
+    ASSERT_EQ(result.status, PlanStatus::kSolved) << answer_text(result);
+    ASSERT_TRUE(result.deepest_contact && result.deepest_contact->at_most);
+    EXPECT_LE(*result.deepest_contact->at_most, kAllowed + 1e-12);
+    const CheckResult check = check_trajectory(problem, result.trajectory);
+    EXPECT_TRUE(check.passed) << check.failures.at(0);
+    EXPECT_LE(*check.deepest_contact->at_most, kAllowed + 1e-12);
+    TimingOptions timing;
+    timing.speed = 0.05;
+    const MotionResult motion = time_trajectory(PreparedRobot(problem), problem, result.trajectory, timing);
+    ASSERT_TRUE(motion.motion) << (motion.failure ? motion.failure->reason : "");
+    for (const std::size_t every : {1, 5, 25}) {  // the verdict is the same for rows further apart
+      std::vector<TimedRow> rows;
+      for (std::size_t k = 0; k < motion.motion->rows.size(); k += every) rows.push_back(motion.motion->rows[k]);
+      if (rows.back().t != motion.motion->rows.back().t) rows.push_back(motion.motion->rows.back());
+      const CheckResult check_of_rows = check_motion(PreparedRobot(problem), problem, rows);
+      EXPECT_TRUE(std::none_of(check_of_rows.failures.begin(), check_of_rows.failures.end(),
+                               [](const std::string& line) { return line.find("deep") != std::string::npos; }))
+          << every << ": " << check_of_rows.failures.at(0);
+    }
+    ++solved;
+  }
+  EXPECT_EQ(solved, 4);
+  EXPECT_EQ(refused, 3);
+}
+
+/// What is too deep between layers alone is told with its depth, and deeper contact is among what is advised.
+TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
+  Problem problem = polishing(0.002, 0.0024);
+  problem.resolution.ds = 0.06;  // the disc swings deeper on the way from one layer to the next
+  problem.limits.joint_step = 1.5;
+  problem.limits.tool_path_error.reset();
+  Planner between(problem);
+  const PlanResult result = between.plan();
+  ASSERT_EQ(result.status, PlanStatus::kInfeasible);
+  const Cause& cause = result.diagnosis.cause;
+  EXPECT_TRUE(cause.between_layers);
+  ASSERT_TRUE(cause.value && cause.limit && cause.over);
+  EXPECT_LT(*cause.value, -0.0023);
+  EXPECT_EQ(*cause.over, 0.0024);
+  EXPECT_NE(answer_text(result).find("mm deep, allowed"), std::string::npos) << answer_text(result);
+
+  Planner planner(polishing(0.004, 0.003));
+  PlanOptions options;
+  options.timeout_s = 60;
+  const std::vector<Advice> advice = advise(planner, planner.plan(), options);
+  const auto deeper =
+      std::find_if(advice.begin(), advice.end(), [](const Advice& one) { return one.change == Advice::Change::kDepth; });
+  ASSERT_NE(deeper, advice.end());
+  EXPECT_EQ(deeper->outcome, Advice::Outcome::kSolved);
+  EXPECT_EQ(deeper->object, "plate");
+  EXPECT_EQ(deeper->from, 0.003);
+  ASSERT_TRUE(deeper->to);
+  EXPECT_GT(*deeper->to, 0.004);
+  EXPECT_LT(*deeper->to, 0.007);
+  EXPECT_NE(advice_text(advice).find("contact with 'plate' up to"), std::string::npos) << advice_text(advice);
 }
 
 TEST(Contact, OfAPlannerThatMovesThePlateIsAskedAgain) {

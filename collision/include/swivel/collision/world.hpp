@@ -44,7 +44,7 @@ struct AllowedPair {
 
 /// How near a pair may come, m; less than zero: how deep the two may be in each other.
 struct PairKeeps {
-  double node = 0;       ///< on layers; contact is never allowed, save by a depth
+  double node = 0;       ///< on layers; contact is never allowed, save by a depth, of which a part is kept for motions
   double motion = 0;     ///< between layers
   double tolerance = 0;  ///< h: a motion is proved by midpoints that are clear by motion + h; > 0
 };

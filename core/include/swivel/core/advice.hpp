@@ -25,6 +25,7 @@ struct Advice {
     kPathError,       ///< limits.tool_path_error
     kAngleError,      ///< limits.tool_angle_error
     kStepError,       ///< limits.step_error
+    kDepth,           ///< an object whose bodies that may touch it (SceneObject::allow) may be deeper in it
     kMoveObject,      ///< an object elsewhere, and the path with it where the path is given in its frame
     kWithoutObject,   ///< an object gone
   };
@@ -38,8 +39,8 @@ struct Advice {
   static constexpr double kMostMove = 0.02;  ///< m, of kMoveObject
 
   Change change = Change::kFreeStart;
-  std::string object;              ///< of the last two
-  std::optional<double> from, to;  ///< of limits: what was asked, and what this is about, in their units
+  std::string object;              ///< of the last three
+  std::optional<double> from, to;  ///< of limits and kDepth: what was asked, and what this is about, in their units
   Vector3d offset{0, 0, 0};        ///< of kMoveObject, m, base frame; zero where none of the ways helps
   Outcome outcome = Outcome::kUnknown;
   std::optional<double> cost;       ///< of kSolved
@@ -50,7 +51,8 @@ struct Advice {
 [[nodiscard]] const char* to_string(Advice::Change change);
 /// "solved", "further", "no_help", "unknown".
 [[nodiscard]] const char* to_string(Advice::Outcome outcome);
-/// The change in a phrase: "clearance of 3.75 mm instead of 5 mm", "'rail' moved by 10 mm along +y".
+/// The change in a phrase: "clearance of 3.75 mm instead of 5 mm", "'rail' moved by 10 mm along +y", "contact
+/// with 'plate' up to 3.5 mm deep instead of 3 mm".
 [[nodiscard]] std::string words(const Advice& advice);
 
 }  // namespace swivel

@@ -40,7 +40,9 @@ struct Cause {
   /// What it is at the node or edge that misses least, and what is allowed: rad for joints and angles, else m; of manipulability
   /// without a unit. None where it was not measured.
   std::optional<double> value, limit;
-  std::optional<double> over;  ///< of kRollSlope: the travel for which `limit` is allowed, m
+  /// Of kRollSlope: the travel for which `limit` is allowed, m. Of kPair where a depth is allowed: that depth, m, of which `limit`
+  /// leaves a part to the motions between layers.
+  std::optional<double> over;
   std::string check;           ///< of kCheck: its name
 
   bool operator==(const Cause&) const = default;
