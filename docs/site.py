@@ -13,7 +13,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # What documents link: kept where it lies, so that the links hold.
-COPIED = ["*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"]
+COPIED = ["*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md", "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"]
 
 
 def missing():

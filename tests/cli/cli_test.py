@@ -915,7 +915,7 @@ resolution: {{ds: 0.005, dphi: 0.05}}
         done, out, result = self.plan(problem)
         self.assertEqual(done.returncode, 1, done.stderr)
         empty = [run for run in result["diagnosis"]["empty_layers"] if run["waypoints"] is not None]
-        # Waypoint 400 is 1.7e-7 rad inside the limit on the exact chain (docs/decisions.md 0009).
+        # Waypoint 400 is 1.7e-7 rad inside the limit on the exact chain (docs/decisions, 0009).
         self.assertEqual([w for run in empty for w in range(run["waypoints"][0], run["waypoints"][1] + 1)], [*range(0, 10), *range(181, 185), *range(396, 400), *range(419, 423)])
         self.assertEqual({run["reason"] for run in empty}, {"joint joint_a4"})
 
