@@ -72,6 +72,7 @@ function(swivel_component name)
     set(scope PUBLIC)
     add_library(${library} ${arg_SOURCES})
     swivel_precompile(${library} ${arg_PRECOMPILE})
+    target_include_directories(${library} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)  # headers of its own: "room/name.hpp"
     target_link_libraries(${library} PRIVATE $<BUILD_INTERFACE:swivel_settings> ${arg_PRIVATE})
     # Position-independent, so that plugins and modules of other languages may hold static libraries. What a library calls of its own is
     # its own, never a namesake of the program's, which other compiler options may have given other bits.
