@@ -17,6 +17,7 @@
 
 #include "arguments.hpp"
 #include "basin_lattice.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/motion.hpp"

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"

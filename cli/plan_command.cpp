@@ -17,6 +17,7 @@
 #include "progress.hpp"
 #include "search_options.hpp"
 #include "swivel/core/answer_text.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"

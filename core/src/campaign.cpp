@@ -7,6 +7,7 @@
 
 #include "episode_draw.hpp"
 #include "swivel/core/placement.hpp"
+#include "swivel/core/rpy.hpp"
 
 namespace swivel {
 
@@ -32,6 +33,18 @@ Spread spread(const std::vector<EpisodeRow>& rows, Value EpisodeRow::*member) {
 }
 
 }  // namespace
+
+Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
+  Problem result = problem;
+  draw_episode(problem.vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
+    for (SceneObject& object : result.scene)
+      if (object.name == one.object) {
+        object.pose.translation() += offset;
+        object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
+      }
+  });
+  return result;
+}
 
 std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary) {
   std::vector<std::string> names;

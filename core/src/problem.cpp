@@ -4,23 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "episode_draw.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/rpy.hpp"
 
 namespace swivel {
-
-Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode) {
-  Problem result = problem;
-  draw_episode(problem.vary, seed, episode, [&](const Variation& one, const Vector3d& offset, const Vector3d& rpy) {
-    for (SceneObject& object : result.scene)
-      if (object.name == one.object) {
-        object.pose.translation() += offset;
-        object.pose.linear() = from_rpy(rpy).toRotationMatrix() * object.pose.linear();
-      }
-  });
-  return result;
-}
 
 std::vector<Waypoint> waypoints_in_base(const Problem& problem) {
   Pose frame = Pose::Identity();

@@ -11,6 +11,7 @@
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/arm_guess.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"

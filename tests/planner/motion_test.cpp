@@ -13,6 +13,7 @@
 #include "motion_problem.hpp"
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"

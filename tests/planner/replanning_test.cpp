@@ -6,6 +6,7 @@
 #include <map>
 
 #include "random_problem.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/planner/planner.hpp"
 

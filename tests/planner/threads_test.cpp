@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "random_problem.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

@@ -12,6 +12,7 @@
 
 #include "robots.hpp"
 #include "swivel/core/answer_text.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/core/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"

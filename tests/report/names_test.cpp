@@ -9,6 +9,7 @@
 
 #include "robots.hpp"
 #include "swivel/core/bounds.hpp"
+#include "swivel/core/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/overview.hpp"

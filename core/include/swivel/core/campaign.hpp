@@ -21,6 +21,10 @@ struct Shard {
   [[nodiscard]] std::uint64_t episode(std::uint64_t k) const { return index + k * count; }
 };
 
+/// The problem of episode `k` under seed `s`: objects named in `vary` moved (SplitMix64 seeded by (s, k) alone; in the order of
+/// `vary`, x y z r p y; p' = p + d, R' = Rz Ry Rx R about the object's origin).
+[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode);
+
 /// The coordinates in which episodes differ, as "door.x", in the order of `vary` and x y z roll pitch yaw.
 [[nodiscard]] std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary);
 /// By how much episode_problem() moves objects along them, m and rad.

@@ -166,10 +166,6 @@ struct Problem : Robot, Task {
   std::vector<Variation> vary;
 };
 
-/// The problem of episode `k` under seed `s`: objects named in `vary` moved (SplitMix64 seeded by (s, k) alone; in the order of
-/// `vary`, x y z r p y; p' = p + d, R' = Rz Ry Rx R about the object's origin).
-[[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode);
-
 /// Waypoints in base_link (path_frame applied, quaternions normalised).
 /// Throws InputError for fewer than two distinct waypoints, NaN, or a quaternion off unit by more than 1e-3.
 [[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
