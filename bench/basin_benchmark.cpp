@@ -19,6 +19,7 @@
 #include "basin_lattice.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"

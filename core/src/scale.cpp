@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "swivel/core/formatted.hpp"
+#include "swivel/core/problem_path.hpp"
 
 namespace swivel {
 

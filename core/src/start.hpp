@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include "swivel/core/arm.hpp"
 #include "swivel/core/tool_path.hpp"
 
 namespace swivel {

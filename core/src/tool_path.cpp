@@ -5,10 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/arm.hpp"
 #include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
 
 namespace swivel {
 
@@ -419,31 +417,6 @@ Pose rolled(const Pose& pose, double roll) {
 double roll_between(const Pose& pose, const Pose& tool) {
   const Matrix3d R = pose.linear().transpose() * tool.linear();
   return std::atan2(R(1, 0) - R(0, 1), R(0, 0) + R(1, 1));
-}
-
-ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget,
-                      const std::optional<PathSmoothing>& otherwise) {
-  ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source, budget, problem.smooth ? problem.smooth : otherwise,
-                problem.roll && problem.roll->circle());
-  if (problem.start) {
-    Pose tool = chain.tool(*problem.start);
-    if (chain.free_roll) {  // it stands turned as it likes
-      const double s = problem.start_at.value_or(0);
-      int i = 0;
-      while (i + 2 < path.size() && path.layer(i + 1).s < s) ++i;
-      const double length = path.layer(i).step_length, t = length > 0 ? std::clamp((s - path.layer(i).s) / length, 0.0, 1.0) : 0;
-      const Pose there = path.at(i, t);
-      tool = rolled(tool, -roll_between(there, tool));
-    }
-    path.begin_at(problem.start_at, tool, problem.start_tolerance, problem.source);
-  }
-  if (!problem.rolls.empty()) {
-    if (problem.rolls.size() != static_cast<std::size_t>(path.size()))
-      throw InvalidArgument("Task: " + std::to_string(problem.rolls.size()) + " rolls: allowed is one for each layer, " +
-                            std::to_string(path.size()));
-    return path.with_rolls(problem.rolls);
-  }
-  return path;
 }
 
 Pose ToolPath::at(int i, double t) const {

@@ -19,6 +19,7 @@
 #include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/core/tool_path.hpp"

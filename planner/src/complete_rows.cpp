@@ -15,6 +15,7 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/formatted.hpp"
 #include "swivel/core/input_error.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/motion.hpp"

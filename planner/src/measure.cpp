@@ -12,6 +12,7 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {

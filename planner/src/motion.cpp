@@ -16,6 +16,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/posture_beside.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/refine.hpp"
 

@@ -13,6 +13,7 @@
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/path_motion.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/redundancy.hpp"
 #include "swivel/core/smooth_path.hpp"
 #include "swivel/core/validate.hpp"

@@ -13,6 +13,7 @@
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 

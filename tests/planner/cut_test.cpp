@@ -17,6 +17,7 @@
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/problem_path.hpp"
 
 namespace swivel {
 namespace {

@@ -17,6 +17,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/explicit_lattice.hpp"
 #include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/graph/path_first.hpp"

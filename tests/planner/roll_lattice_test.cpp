@@ -13,6 +13,7 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 #include "swivel/graph/path_first.hpp"

@@ -9,6 +9,7 @@
 
 #include "motion_problem.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -16,6 +16,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/posture_beside.hpp"
+#include "swivel/core/problem_path.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/core/tool_path.hpp"
 #include "swivel/planner/check.hpp"

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "swivel/core/arm.hpp"
 #include "swivel/core/layer_solver.hpp"
 #include "swivel/core/tool_path.hpp"
 

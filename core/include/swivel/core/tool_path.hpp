@@ -14,8 +14,6 @@
 
 namespace swivel {
 
-struct Chain;
-
 /// One layer of the lattice: a tool pose on the path, and the straight step from it to the next layer.
 struct PathLayer {
   double s = 0;                               ///< arc length from the first waypoint, m; may repeat where the path only turns
@@ -138,10 +136,5 @@ class ToolPath {
 [[nodiscard]] Pose rolled(const Pose& pose, double roll);
 /// The turn about the z axis of a pose that comes nearest to another, rad.
 [[nodiscard]] double roll_between(const Pose& pose, const Pose& tool);
-
-/// The layers of a problem: of its whole path, or from its start on. Corners are rounded by `problem.smooth`, by `otherwise` where
-/// that is unset. Throws InputError as ToolPath does, and for a start_at beyond the path. Throws Stopped.
-[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {},
-                                    const std::optional<PathSmoothing>& otherwise = {});
 
 }  // namespace swivel

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+#include <optional>
+
+#include "swivel/core/arm.hpp"
+#include "swivel/core/tool_path.hpp"
+
+namespace swivel {
+
+/// The layers of a problem: of its whole path, or from its start on. Corners are rounded by `problem.smooth`, by `otherwise` where
+/// that is unset. Throws InputError as ToolPath does, and for a start_at beyond the path. Throws Stopped.
+[[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {},
+                                    const std::optional<PathSmoothing>& otherwise = {});
+
+}  // namespace swivel
