@@ -4,8 +4,6 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "kernels/kernels.hpp"
-
 namespace swivel {
 
 namespace {
@@ -51,20 +49,6 @@ const char* to_string(Isa isa) {
       return "avx512";
   }
   return "?";
-}
-
-const CircleKernels& circle_kernels() {
-#ifdef SWIVEL_X86_KERNELS
-  switch (active_isa()) {
-    case Isa::kAvx2:
-      return avx2_circle_kernels();
-    case Isa::kAvx512:
-      return avx512_circle_kernels();
-    case Isa::kScalar:
-      break;
-  }
-#endif
-  return scalar_circle_kernels();
 }
 
 }  // namespace swivel
