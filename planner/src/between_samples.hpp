@@ -2,7 +2,8 @@
 #pragma once
 #include <algorithm>
 
-#include "swivel/planner/motion.hpp"
+#include "swivel/collision/world.hpp"
+#include "swivel/planner/motion_defaults.hpp"
 
 namespace swivel {
 

@@ -18,7 +18,7 @@
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/core/validate.hpp"
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/motion_defaults.hpp"
 
 namespace swivel {
 

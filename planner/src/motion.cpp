@@ -118,20 +118,6 @@ class Bisection {
   std::vector<double> found_;  // m of travel
 };
 
-}  // namespace
-
-void keep_clearance_between_layers(Limits& limits) {
-  if (!limits.edge_clearance && !limits.self_clearance) limits.edge_clearance = limits.clearance;
-}
-
-Problem with_motion_defaults(Problem problem) {
-  if (!problem.smooth) problem.smooth.emplace();
-  keep_clearance_between_layers(problem.limits);
-  return problem;
-}
-
-namespace {
-
 /// What rows say, moved off the ends of the range and of the waypoints' windows where the spline through it would leave them: as
 /// far as it does, again and again. Where a window is no wider than its own bends that does not end, and they stay outside a
 /// little.

@@ -6,15 +6,10 @@
 
 #include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
+#include "swivel/planner/motion_defaults.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {
-
-/// The problem with what motions assume where it says nothing: the tool rounds corners (PathSmoothing's defaults), and pairs keep
-/// between layers what they keep at them, Limits::clearance in place of half of it; where self_clearance is set, halves stay.
-[[nodiscard]] Problem with_motion_defaults(Problem problem);
-/// The second of these alone.
-void keep_clearance_between_layers(Limits& limits);
 
 /// A trajectory made into a motion that a controller can run, or why that cannot be.
 struct MotionResult : TimingResult {
