@@ -10,7 +10,6 @@
 #include "answer_check.hpp"
 #include "between_samples.hpp"
 #include "check_rates.hpp"
-#include "collision_validity.hpp"
 #include "deepest_contact.hpp"
 #include "first_too_near.hpp"
 #include "path_following.hpp"

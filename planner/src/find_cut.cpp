@@ -11,6 +11,7 @@
 #include "swivel/core/timeline.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/cut.hpp"
+#include "swivel/planner/planner.hpp"
 #include "witnesses.hpp"
 
 namespace swivel {

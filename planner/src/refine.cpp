@@ -17,6 +17,7 @@
 #include "swivel/core/redundancy.hpp"
 #include "swivel/core/smooth_path.hpp"
 #include "swivel/core/validate.hpp"
+#include "swivel/planner/planner.hpp"
 
 namespace swivel {
 

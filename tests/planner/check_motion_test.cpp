@@ -7,6 +7,7 @@
 #include <map>
 
 #include "motion_mutations.hpp"
+#include "swivel/planner/planner.hpp"
 
 namespace swivel {
 namespace {

@@ -18,6 +18,7 @@
 #include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/problem_path.hpp"
+#include "swivel/planner/planner.hpp"
 
 namespace swivel {
 namespace {

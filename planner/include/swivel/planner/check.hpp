@@ -10,7 +10,7 @@
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/time_path.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {
 

@@ -7,9 +7,11 @@
 #include "swivel/core/budget.hpp"
 #include "swivel/core/cut.hpp"
 #include "swivel/core/hooks.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {
+
+struct PlanView;
 
 /// Why a planner's problem has no path, as a certificate that check_cut() verifies: the fewest layers, as near to the path's end
 /// as can be, that nothing leads through. `check`: the one that was planned with. Throws InvalidArgument where the last plan found

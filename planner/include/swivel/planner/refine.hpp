@@ -3,8 +3,9 @@
 #include <memory>
 #include <vector>
 
+#include "swivel/core/hooks.hpp"
 #include "swivel/core/refined.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {
 
