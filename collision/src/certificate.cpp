@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/verdict.hpp"
 
 namespace swivel::detail {
 

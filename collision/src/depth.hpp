@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "placed_shape.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/verdict.hpp"
 
 namespace swivel::detail {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "placed_shape.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/verdict.hpp"
 
 namespace swivel::detail {
 

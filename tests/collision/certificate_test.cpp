@@ -11,6 +11,7 @@
 #include "pair_test.hpp"
 #include "robots.hpp"
 #include "support.hpp"
+#include "swivel/collision/world.hpp"
 
 namespace swivel {
 namespace {
