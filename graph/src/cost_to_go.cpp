@@ -2,9 +2,6 @@
 #include "swivel/graph/cost_to_go.hpp"
 
 #include "best_start.hpp"
-#include "explicit_cost_to_go.hpp"
-#include "grid_cost_to_go.hpp"
-#include "roll_cost_to_go.hpp"
 
 namespace swivel {
 
@@ -46,14 +43,6 @@ int CostToGo::first_slot() {
 
 void CostToGo::remove_edge(int layer, int a, int b) {
   verdicts_.remove_edge(layer, a, b, lattice().edge_cost(lattice().delta(config(layer, a), config(layer + 1, b))));
-}
-
-std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent, const Budget& budget,
-                                          std::unique_ptr<CostToGo> retired) {
-  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
-    return std::make_unique<GridCostToGo>(*grid, extent, budget, dynamic_cast<GridCostToGo*>(retired.get()));
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return std::make_unique<RollCostToGo>(*rolls, budget);
-  return std::make_unique<ExplicitCostToGo>(lattice, budget);
 }
 
 }  // namespace swivel

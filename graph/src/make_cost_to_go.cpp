@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "explicit_cost_to_go.hpp"
+#include "grid_cost_to_go.hpp"
+#include "roll_cost_to_go.hpp"
+#include "swivel/graph/cost_to_go.hpp"
+
+namespace swivel {
+
+std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent, const Budget& budget,
+                                          std::unique_ptr<CostToGo> retired) {
+  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
+    return std::make_unique<GridCostToGo>(*grid, extent, budget, dynamic_cast<GridCostToGo*>(retired.get()));
+  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return std::make_unique<RollCostToGo>(*rolls, budget);
+  return std::make_unique<ExplicitCostToGo>(lattice, budget);
+}
+
+}  // namespace swivel
