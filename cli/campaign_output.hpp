@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "swivel/core/campaign.hpp"
+#include "swivel/io/files.hpp"
 #include "swivel/io/shards.hpp"
 
 namespace swivel::cli {

@@ -6,6 +6,7 @@
 
 #include "swivel/core/time_path.hpp"
 #include "swivel/io/motion.hpp"
+#include "swivel/io/result.hpp"
 
 namespace swivel::cli {
 

@@ -17,7 +17,7 @@
 #include "files.hpp"
 #include "run_settings.hpp"
 #include "swivel/core/input_error.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/campaign.hpp"
 #include "table_rows.hpp"
 
 namespace swivel::io {

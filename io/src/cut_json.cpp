@@ -6,7 +6,7 @@
 
 #include "bad_input.hpp"
 #include "files.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/result.hpp"
 
 namespace swivel::io {
 

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "bad_input.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/files.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "swivel/io/io.hpp"
+#include "swivel/io/files.hpp"
 
 namespace swivel::io {
 

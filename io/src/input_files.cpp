@@ -4,7 +4,7 @@
 
 #include "files.hpp"
 #include "swivel/core/fnv1a.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/files.hpp"
 
 namespace swivel::io {
 

@@ -8,7 +8,7 @@
 #include "files.hpp"
 #include "mesh_file.hpp"
 #include "swivel/core/bounds.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/mesh.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include "csv.hpp"
 #include "files.hpp"
 #include "swivel/core/bounds.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/problem.hpp"
 
 namespace swivel::io {
 

@@ -13,7 +13,9 @@
 #include "swivel/core/nearest_name.hpp"
 #include "swivel/core/rpy.hpp"
 #include "swivel/core/validate.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/mesh.hpp"
+#include "swivel/io/problem.hpp"
+#include "swivel/io/robot.hpp"
 #include "urdf.hpp"
 #include "yaml_value.hpp"
 

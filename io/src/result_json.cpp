@@ -2,8 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "schema.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/campaign.hpp"
 #include "swivel/io/motion.hpp"
+#include "swivel/io/result.hpp"
 
 namespace swivel::io {
 

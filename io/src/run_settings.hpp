@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/io/io.hpp"
+#include "swivel/io/campaign.hpp"
 
 namespace swivel::io {
 

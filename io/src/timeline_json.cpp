@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "swivel/io/io.hpp"
+#include "swivel/io/result.hpp"
 
 namespace swivel::io {
 

@@ -2,7 +2,7 @@
 #include "csv.hpp"
 #include "files.hpp"
 #include "schema.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/trajectory.hpp"
 #include "trajectory_columns.hpp"
 
 namespace swivel::io {

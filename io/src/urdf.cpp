@@ -12,6 +12,7 @@
 #include "swivel/core/bounds.hpp"
 #include "swivel/core/input_error.hpp"
 #include "swivel/core/nearest_name.hpp"
+#include "swivel/io/mesh.hpp"
 #include "swivel/io/urdf_shapes.hpp"
 #include "text_number.hpp"
 #include "xml.hpp"

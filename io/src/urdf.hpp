@@ -6,7 +6,7 @@
 
 #include "mesh_name.hpp"
 #include "swivel/core/robot_model.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/robot.hpp"
 
 namespace swivel::io {
 

@@ -6,10 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/advice.hpp"
-#include "swivel/core/cut.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/refined.hpp"
 #include "swivel/core/stated.hpp"
 #include "swivel/core/time_path.hpp"
 
@@ -30,18 +27,6 @@ using JointNames = std::array<std::string, kDof>;
 [[nodiscard]] std::string motion_text(const TimedPath& motion, const JointNames& joint_names, const std::string& frame_id,
                                       const std::filesystem::path& file);
 void require_motion_format(const std::filesystem::path& file);
-
-/// What became of a plan's path: null where it was not asked for, or where there is no path.
-struct Aftermath {
-  const Refined* refinement = nullptr;
-  const TimingResult* motion = nullptr;
-  TimingOptions timing;                         ///< what the motion was asked to keep
-  const std::vector<Advice>* advice = nullptr;  ///< of a problem that has no path
-  const Cut* cut = nullptr;                     ///< that there is no path
-  std::size_t cut_bytes = 0;                    ///< of its file
-};
-/// to_json(result) with the keys `refinement`, `motion`, `advice` and `certificate` filled in. docs/formats.md "Result".
-[[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
 /// A trajectory as a file has it. What is not stated is 0.
 struct TrajectoryFile {

@@ -9,7 +9,7 @@
 
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/placement.hpp"
-#include "swivel/io/io.hpp"
+#include "swivel/io/campaign.hpp"
 
 namespace swivel::io {
 
