@@ -18,7 +18,7 @@
 #include "arguments.hpp"
 #include "basin_lattice.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/motion.hpp"

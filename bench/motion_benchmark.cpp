@@ -14,7 +14,7 @@
 
 #include "arguments.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"

@@ -15,7 +15,7 @@
 #include "progress.hpp"
 #include "search_options.hpp"
 #include "shard_option.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/shards.hpp"
 #include "swivel/planner/campaign.hpp"

@@ -9,7 +9,7 @@
 
 #include "placement_options.hpp"
 #include "swivel/core/held_joint.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel::cli {

@@ -12,7 +12,7 @@
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/arm_guess.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "terminal.hpp"
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 
 namespace swivel::cli {
 

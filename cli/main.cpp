@@ -15,8 +15,8 @@
 
 #include "commands.hpp"
 #include "large_pages.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/io/io.hpp"
 #include "terminal.hpp"
 #include "wrapped_output.hpp"

@@ -8,7 +8,7 @@
 #include "commands.hpp"
 #include "placement_output.hpp"
 #include "search_options.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/io/shards.hpp"
 

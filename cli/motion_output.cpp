@@ -3,7 +3,7 @@
 
 #include "commands.hpp"
 #include "search_options.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

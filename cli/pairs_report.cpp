@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 #include "terminal.hpp"

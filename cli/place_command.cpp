@@ -18,7 +18,7 @@
 #include "search_options.hpp"
 #include "shard_option.hpp"
 #include "swivel/core/grid_refinement.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/io/shards.hpp"

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "search_options.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 
 namespace swivel::cli {
 

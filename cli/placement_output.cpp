@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "search_options.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/report/placement_map.hpp"
 #include "terminal.hpp"
 

@@ -18,7 +18,7 @@
 #include "search_options.hpp"
 #include "swivel/core/answer_text.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"

@@ -9,8 +9,8 @@
 #include <csignal>
 
 #include "commands.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/report/page.hpp"
 
 namespace swivel::cli {

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::cli {
 

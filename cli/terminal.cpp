@@ -4,8 +4,8 @@
 #include <cstdarg>
 #include <cstdio>
 
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel::cli {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/tool_path.hpp"
 
 namespace swivel::baselines {

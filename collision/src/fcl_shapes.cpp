@@ -8,7 +8,7 @@
 
 #include <utility>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/core/advice.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 #include <cmath>
 #include <cstdio>

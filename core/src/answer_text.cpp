@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/srs.hpp"
 
 namespace swivel {

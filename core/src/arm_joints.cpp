@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 

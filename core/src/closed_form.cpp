@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

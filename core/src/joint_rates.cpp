@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel {

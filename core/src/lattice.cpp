@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "swivel/core/angle.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "split_mix.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/rpy.hpp"
 
 namespace swivel {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 namespace swivel {
 

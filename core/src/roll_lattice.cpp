@@ -10,9 +10,9 @@
 #include "polish_turned.hpp"
 #include "start.hpp"
 #include "swivel/core/angle.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
 #include "swivel/core/memory.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/timeline.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/problem_path.hpp"
 
 namespace swivel {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "swivel/core/angle.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "swivel/core/angle.hpp"
-#include "swivel/core/formatted.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

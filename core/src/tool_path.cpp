@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 namespace swivel {
 

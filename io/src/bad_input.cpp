@@ -3,8 +3,8 @@
 
 #include <string_view>
 
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::io {
 

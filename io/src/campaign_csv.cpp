@@ -16,7 +16,7 @@
 #include "csv.hpp"
 #include "files.hpp"
 #include "run_settings.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/campaign.hpp"
 #include "table_rows.hpp"
 

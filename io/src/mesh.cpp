@@ -7,7 +7,7 @@
 #include "bad_input.hpp"
 #include "files.hpp"
 #include "mesh_file.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 #include "swivel/io/mesh.hpp"
 
 namespace swivel::io {

@@ -4,7 +4,7 @@
 #include "bad_input.hpp"
 #include "csv.hpp"
 #include "files.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 #include "swivel/io/problem.hpp"
 
 namespace swivel::io {

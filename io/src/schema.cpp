@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel::io {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bad_input.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/types.hpp"
 #include "swivel/core/validate.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "bad_input.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 #include "xml.hpp"
 #include "xml_words.hpp"
 

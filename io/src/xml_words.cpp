@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "bad_input.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 
 namespace swivel::io {
 

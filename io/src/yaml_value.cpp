@@ -12,8 +12,8 @@
 
 #include "bad_input.hpp"
 #include "files.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 #include "text_number.hpp"
 
 namespace swivel::io {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel {

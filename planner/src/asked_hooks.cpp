@@ -5,8 +5,8 @@
 #include <chrono>
 #include <limits>
 
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 namespace swivel {
 

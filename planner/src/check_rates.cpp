@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

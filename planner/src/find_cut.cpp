@@ -7,7 +7,7 @@
 #include "collision_validity.hpp"
 #include "hooked_validity.hpp"
 #include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/timeline.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/cut.hpp"

@@ -10,8 +10,8 @@
 #include "measure_rows.hpp"
 #include "nearest_approach.hpp"
 #include "swivel/core/arm_angle.hpp"
-#include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/validate.hpp"
 

@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "nearest_approach.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 namespace swivel {
 

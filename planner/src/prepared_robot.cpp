@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/validate.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "asked_hooks.hpp"
 #include "swivel/core/angle.hpp"
-#include "swivel/core/invalid_argument.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/redundancy.hpp"

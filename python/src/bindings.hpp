@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/core/nearest_name.hpp"
+#include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/problem.hpp"
 
 // A scene is changed in place: never a copy in a list.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bindings.hpp"
 #include "interruptible.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 
 PYBIND11_MODULE(_swivel, m) {
   namespace py = pybind11;

@@ -5,8 +5,8 @@
 #include "archive.hpp"
 
 #include "swivel/core/answer_text.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/complete_rows.hpp"
 

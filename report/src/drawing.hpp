@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel::detail {

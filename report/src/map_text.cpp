@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include "map_cells.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

@@ -14,9 +14,9 @@
 #include "scene_json.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/angle.hpp"
-#include "swivel/core/formatted.hpp"
-#include "swivel/core/input_error.hpp"
 #include "swivel/core/make_lattice.hpp"
+#include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 
 #ifdef SWIVEL_PAGES
 // GCC's and Clang's way to a file as bytes; C++20 has no #embed.

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "drawing.hpp"
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {
 

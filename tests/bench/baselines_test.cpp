@@ -9,7 +9,7 @@
 #include <string>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::baselines {

@@ -4,7 +4,7 @@
 
 #include "random_problem.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 
 namespace swivel {
 namespace {

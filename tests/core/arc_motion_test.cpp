@@ -8,7 +8,7 @@
 #include "inner_posture.hpp"
 #include "robots.hpp"
 #include "swivel/core/arc_lengths.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/self_motion.hpp"
 #include "swivel/core/time_path.hpp"

@@ -9,7 +9,7 @@
 
 #include "inexact_robots.hpp"
 #include "robots.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 namespace {

@@ -10,7 +10,7 @@
 #include "linkages.hpp"
 #include "robots.hpp"
 #include "swivel/core/arm_guess.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 namespace {

@@ -9,7 +9,7 @@
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/cubic_spline.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/smooth_path.hpp"
 #include "swivel/core/srs_lattice.hpp"

@@ -11,7 +11,7 @@
 #include "seed.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/arm_class.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "seed.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
 namespace {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "seed.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "trial.hpp"
 
 namespace swivel::test {

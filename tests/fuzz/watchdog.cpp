@@ -12,8 +12,8 @@
 #include <cstring>
 #include <exception>
 
-#include "swivel/core/bounds.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::test {
 

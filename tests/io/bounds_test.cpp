@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "problem_support.hpp"
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 
 namespace swivel::io::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::io::test {

@@ -7,7 +7,7 @@
 #include "robots.hpp"
 #include "seed.hpp"
 #include "swivel/core/answer_text.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/check.hpp"
@@ -127,8 +127,8 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
   for (SceneObject& object : bounded.scene)
     if (object.name == "plate") object.allow = {Allowed("disc", 0.00302)};
   int deeper_at_rows = 0;
-  const World planned_in(
-      *bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool), bounded);
+  const World planned_in(*bounded.model, build_arm(*bounded.model, bounded.base_link, bounded.tip_link, bounded.hold, bounded.tool),
+                         bounded);
   const World world(planned_in, bounded, {}, kVerdictBand);  // rows may be as deep as allowed
   World::Query query(world);
   for (const TrajectoryRow& row : free.trajectory) deeper_at_rows += query.first_below(row.q, Keep::kNode).has_value();

@@ -16,7 +16,7 @@
 #include "hooked_validity.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/explicit_lattice.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "random_problem.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

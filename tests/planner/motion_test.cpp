@@ -14,7 +14,7 @@
 #include "robots.hpp"
 #include "swivel/core/angle.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/refine.hpp"

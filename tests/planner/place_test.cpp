@@ -9,8 +9,8 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/grid_refinement.hpp"
-#include "swivel/core/input_error.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/rpy.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "random_problem.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "random_problem.hpp"
-#include "swivel/core/invalid_argument.hpp"
+#include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/campaign.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"

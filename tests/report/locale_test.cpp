@@ -13,7 +13,7 @@
 #include "robots.hpp"
 #include "swivel/core/answer_text.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/formatted.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/report/lattice_map.hpp"

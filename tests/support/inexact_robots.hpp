@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "robots.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::test {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/types.hpp"
 
 namespace swivel {

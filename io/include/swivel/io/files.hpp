@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swivel/core/input_error.hpp"
+#include "swivel/core/messages/input_error.hpp"
 
 namespace swivel::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/bounds.hpp"
+#include "swivel/core/messages/bounds.hpp"
 
 #include <algorithm>
 #include <array>
