@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/timeline.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 

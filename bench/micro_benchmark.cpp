@@ -13,7 +13,7 @@
 #include "context.hpp"
 #include "pair_test.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/io/io.hpp"

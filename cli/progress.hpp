@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 
 namespace swivel::cli {
 

@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "commit.hpp"
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 
 namespace swivel::bench {
 

@@ -13,7 +13,7 @@
 #include "bound.hpp"
 #include "closed_mesh.hpp"
 #include "polyhedron.hpp"
-#include "swivel/core/lazy.hpp"
+#include "swivel/core/base/lazy.hpp"
 #include "swivel/core/shape.hpp"
 
 namespace swivel::detail {

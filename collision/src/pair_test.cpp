@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "certificate.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel::detail {
 

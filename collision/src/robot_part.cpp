@@ -9,7 +9,7 @@
 #include "distances_about.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel::detail {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel::detail {
 

@@ -10,8 +10,8 @@
 #include "nearest_points.hpp"
 #include "pair_test.hpp"
 #include "robot_part.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

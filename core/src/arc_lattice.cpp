@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "start.hpp"
-#include "swivel/core/angle.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/angle.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

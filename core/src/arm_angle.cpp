@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "episode_draw.hpp"
+#include "swivel/core/base/rpy.hpp"
 #include "swivel/core/placement.hpp"
-#include "swivel/core/rpy.hpp"
 
 namespace swivel {
 

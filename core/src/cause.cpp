@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

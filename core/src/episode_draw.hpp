@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "split_mix.hpp"
+#include "base/split_mix.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/validate.hpp"

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
-#include "split_mix.hpp"
+#include "base/split_mix.hpp"
+#include "swivel/core/base/rpy.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/rpy.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "polish_turned.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/core/tool_path.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 
 namespace swivel {
 

@@ -10,10 +10,10 @@
 
 #include "polish_turned.hpp"
 #include "swivel/core/alignment.hpp"
-#include "swivel/core/angle.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/arc_lengths.hpp"
 #include "swivel/core/arm_angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {

@@ -9,11 +9,11 @@
 
 #include "polish_turned.hpp"
 #include "start.hpp"
-#include "swivel/core/angle.hpp"
-#include "swivel/core/memory.hpp"
+#include "swivel/core/base/angle.hpp"
+#include "swivel/core/base/memory.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 

@@ -8,7 +8,7 @@
 
 #include "pose_newton.hpp"
 #include "swivel/core/alignment.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/self_motion.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/core/srs_lattice.hpp"
-#include "swivel/core/timeline.hpp"
 
 namespace swivel {
 

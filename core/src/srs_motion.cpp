@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {

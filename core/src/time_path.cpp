@@ -6,7 +6,7 @@
 #include <iterator>
 #include <limits>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 

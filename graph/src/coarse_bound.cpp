@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "kernels/relax.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 #include <boost/iterator/transform_iterator.hpp>
 
 #include "best_start.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "valid_nodes.hpp"
 
 namespace swivel {

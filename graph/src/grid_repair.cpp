@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "grid_tiles.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "grid_tiles.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

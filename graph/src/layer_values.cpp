@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

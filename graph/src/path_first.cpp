@@ -10,7 +10,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kernels/relax.hpp"
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "relax_task.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

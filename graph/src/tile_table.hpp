@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swivel/core/zeroed_array.hpp"
+#include "swivel/core/base/zeroed_array.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 
 namespace swivel {

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "files.hpp"
-#include "swivel/core/fnv1a.hpp"
+#include "swivel/core/base/fnv1a.hpp"
 #include "swivel/io/files.hpp"
 
 namespace swivel::io {

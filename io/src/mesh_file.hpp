@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel::io {
 

@@ -6,8 +6,8 @@
 
 #include "bad_input.hpp"
 #include "csv.hpp"
+#include "swivel/core/base/rpy.hpp"
 #include "swivel/core/placement.hpp"
-#include "swivel/core/rpy.hpp"
 #include "swivel/io/problem.hpp"
 
 namespace swivel::io {

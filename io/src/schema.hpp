@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bad_input.hpp"
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "swivel/core/types.hpp"
 #include "swivel/core/validate.hpp"
 
 namespace swivel::io {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "schema.hpp"
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
 

@@ -6,7 +6,7 @@
 #include "clearance_memory.hpp"
 #include "row_margin.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/graph/validity.hpp"
 #include "swivel/parallel/executor.hpp"

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 

@@ -13,7 +13,7 @@
 #include "constraint_removal.hpp"
 #include "constraints.hpp"
 #include "hooked_validity.hpp"
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 namespace swivel {
 

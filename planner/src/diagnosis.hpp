@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"

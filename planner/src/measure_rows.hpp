@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/collision/world.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/tool_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
 
 namespace swivel {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "asked_hooks.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/base/lazy.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/lazy.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 
 #include "asked_hooks.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/cause.hpp"
 #include "swivel/core/lattice.hpp"
 

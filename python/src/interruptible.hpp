@@ -12,7 +12,7 @@
 #include <type_traits>
 
 #include "bindings.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 
 namespace swivel::python {
 

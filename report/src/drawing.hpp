@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel::detail {
 

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/angle.hpp"
 #include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/srs_lattice.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "drawing.hpp"
 #include "map_cells.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 
 namespace swivel {
 

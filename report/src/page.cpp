@@ -13,7 +13,7 @@
 #include "page_template.hpp"
 #include "scene_json.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"

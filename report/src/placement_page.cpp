@@ -6,7 +6,7 @@
 
 #include "page_template.hpp"
 #include "scene_json.hpp"
-#include "swivel/core/rpy.hpp"
+#include "swivel/core/base/rpy.hpp"
 #include "swivel/report/placement_map.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 
 #include "inner_posture.hpp"
 #include "robots.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/cubic_spline.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/path_motion.hpp"

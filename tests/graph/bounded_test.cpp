@@ -11,7 +11,7 @@
 #include "grid_cost_to_go.hpp"
 #include "kernels/relax.hpp"
 #include "robots.hpp"
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 

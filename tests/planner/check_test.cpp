@@ -16,7 +16,7 @@
 #include "inner_posture.hpp"
 #include "plain_edge_rule.hpp"
 #include "robots.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
 

@@ -12,7 +12,7 @@
 #include "inexact_robots.hpp"
 #include "motion_problem.hpp"
 #include "robots.hpp"
-#include "swivel/core/angle.hpp"
+#include "swivel/core/base/angle.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"

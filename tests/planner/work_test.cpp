@@ -10,7 +10,7 @@
 #include <string>
 
 #include "robots.hpp"
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace {

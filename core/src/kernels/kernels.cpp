@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "kernels.hpp"
 
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 
 namespace swivel {
 

@@ -12,7 +12,7 @@
 
 #include "swivel/collision/verdict.hpp"
 #include "swivel/core/arm.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel {

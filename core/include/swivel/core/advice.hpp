@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/explicit_lattice.hpp"
 #include "swivel/core/self_motion.hpp"
 

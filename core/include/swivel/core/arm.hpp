@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/held_joint.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/robot_model.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

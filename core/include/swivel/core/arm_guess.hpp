@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/robot_model.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

@@ -6,9 +6,9 @@
 #include <variant>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/core/trigonometric.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

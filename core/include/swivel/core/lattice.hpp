@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/angle.hpp"
 #include "swivel/core/arm.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/angle.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/pose_shift.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/tool_path.hpp"

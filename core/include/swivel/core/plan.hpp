@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/cause.hpp"
 #include "swivel/core/held_joint.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

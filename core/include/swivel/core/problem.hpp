@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/robot_model.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

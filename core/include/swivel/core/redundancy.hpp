@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/arm_class.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/layer_solver.hpp"
 #include "swivel/core/plan.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/shape.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/srs_lattice.hpp"
 

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

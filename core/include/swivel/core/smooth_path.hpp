@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/layer_solver.hpp"
 
 namespace swivel {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "swivel/core/arm.hpp"
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

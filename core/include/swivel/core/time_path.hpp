@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/problem.hpp"
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/cubic_spline.hpp"
 #include "swivel/core/problem.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

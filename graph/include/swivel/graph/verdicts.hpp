@@ -6,8 +6,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "swivel/core/base/zeroed_array.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/zeroed_array.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {

@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
+#include "swivel/core/base/types.hpp"
 #include "swivel/core/shape.hpp"
-#include "swivel/core/types.hpp"
 
 namespace swivel::io {
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "swivel/core/advice.hpp"
+#include "swivel/core/base/timeline.hpp"
 #include "swivel/core/cut.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
-#include "swivel/core/timeline.hpp"
 
 namespace swivel::io {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/core/problem.hpp"
 #include "swivel/core/time_path.hpp"

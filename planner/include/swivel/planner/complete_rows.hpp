@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/stated.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"

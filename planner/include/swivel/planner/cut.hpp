@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/cut.hpp"
 #include "swivel/core/hooks.hpp"
 #include "swivel/planner/prepared_robot.hpp"

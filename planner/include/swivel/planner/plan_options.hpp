@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string>
 
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/hooks.hpp"
 #include "swivel/core/plan.hpp"
 #include "swivel/graph/eager.hpp"

@@ -5,7 +5,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem.hpp"
 
 namespace swivel {

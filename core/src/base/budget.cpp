@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/budget.hpp"
+#include "swivel/core/base/budget.hpp"
 
 namespace swivel {
 

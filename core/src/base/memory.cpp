@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/memory.hpp"
+#include "swivel/core/base/memory.hpp"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/timeline.hpp"
+#include "swivel/core/base/timeline.hpp"
 
 #include <chrono>
 #include <deque>

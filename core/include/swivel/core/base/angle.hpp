@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "swivel/core/types.hpp"
+#include "swivel/core/base/types.hpp"
 
 namespace swivel {
 

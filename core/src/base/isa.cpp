@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/isa.hpp"
+#include "swivel/core/base/isa.hpp"
 
 #include <cstdlib>
 #include <string_view>
