@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "placement_options.hpp"
-#include "swivel/core/held_joint.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/held_joint.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::cli {
 

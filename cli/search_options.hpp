@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel::cli {

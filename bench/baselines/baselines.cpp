@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel::baselines {
 

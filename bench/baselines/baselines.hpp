@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel::baselines {

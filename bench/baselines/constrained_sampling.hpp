@@ -6,7 +6,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel::baselines {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel::detail {
 

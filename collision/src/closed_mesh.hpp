@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel::detail {
 

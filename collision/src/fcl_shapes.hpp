@@ -14,7 +14,7 @@
 #include "closed_mesh.hpp"
 #include "polyhedron.hpp"
 #include "swivel/core/base/lazy.hpp"
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel::detail {
 

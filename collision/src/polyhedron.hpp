@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 #include "triangle_tree.hpp"
 
 namespace swivel::detail {

@@ -2,8 +2,8 @@
 #pragma once
 #include "pose_newton.hpp"
 #include "swivel/core/alignment.hpp"
-#include "swivel/core/cubic_spline.hpp"
 #include "swivel/core/path_motion.hpp"
+#include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
 

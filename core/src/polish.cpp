@@ -8,8 +8,8 @@
 
 #include "polish_turned.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/srs.hpp"
-#include "swivel/core/tool_path.hpp"
 
 namespace swivel {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/core/arm.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

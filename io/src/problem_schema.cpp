@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "schema.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 

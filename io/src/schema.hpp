@@ -11,7 +11,7 @@
 #include "bad_input.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "swivel/core/validate.hpp"
+#include "swivel/core/problem/validate.hpp"
 
 namespace swivel::io {
 

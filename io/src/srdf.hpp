@@ -3,7 +3,7 @@
 #include <set>
 #include <string>
 
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 #include "xml.hpp"
 
 namespace swivel::io {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "mesh_name.hpp"
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 #include "swivel/io/robot.hpp"
 
 namespace swivel::io {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/validate.hpp"
+#include "swivel/core/problem/validate.hpp"
 
 namespace swivel {
 

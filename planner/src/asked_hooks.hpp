@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/problem/hooks.hpp"
 
 namespace swivel {
 

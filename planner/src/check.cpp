@@ -19,10 +19,10 @@
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/tool_path.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
-#include "swivel/core/tool_path.hpp"
-#include "swivel/core/validate.hpp"
 
 namespace swivel {
 

@@ -5,8 +5,8 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/scale.hpp"
-#include "swivel/core/validate.hpp"
 #include "swivel/planner/cut.hpp"
 #include "witnesses.hpp"
 

@@ -15,9 +15,9 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/srs_lattice.hpp"
-#include "swivel/core/validate.hpp"
 #include "swivel/planner/motion_defaults.hpp"
 
 namespace swivel {

@@ -4,9 +4,9 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

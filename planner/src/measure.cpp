@@ -12,8 +12,8 @@
 #include "swivel/core/arm_angle.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/problem_path.hpp"
-#include "swivel/core/validate.hpp"
 
 namespace swivel {
 

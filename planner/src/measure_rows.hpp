@@ -3,7 +3,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -16,8 +16,8 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/posture_beside.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/problem_path.hpp"
-#include "swivel/core/validate.hpp"
 #include "swivel/planner/refine.hpp"
 
 namespace swivel {

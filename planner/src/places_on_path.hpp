@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

@@ -22,10 +22,10 @@
 #include "swivel/core/make_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/core/roll_lattice.hpp"
 #include "swivel/core/scale.hpp"
 #include "swivel/core/srs_lattice.hpp"
-#include "swivel/core/validate.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 
 namespace swivel {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "swivel/core/messages/nearest_name.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 // A scene is changed in place: never a copy in a list.
 PYBIND11_MAKE_OPAQUE(std::vector<swivel::SceneObject>)

@@ -15,7 +15,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/validate.hpp"
+#include "swivel/core/problem/validate.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

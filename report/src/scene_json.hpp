@@ -10,7 +10,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/arm.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::detail {
 

@@ -10,7 +10,7 @@
 
 #include "reference.hpp"
 #include "support.hpp"
-#include "swivel/core/vertex_numbers.hpp"
+#include "swivel/core/problem/vertex_numbers.hpp"
 
 namespace swivel {
 namespace {

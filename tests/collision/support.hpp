@@ -5,7 +5,7 @@
 #include <string>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::testing {
 

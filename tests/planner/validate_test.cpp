@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a program may hand over wrongly: every member of a problem broken in every way, and a robot prepared for another problem.
-#include "swivel/core/validate.hpp"
+#include "swivel/core/problem/validate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,8 +10,8 @@
 #include "answer_order.hpp"
 #include "plain_edge_rule.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/hooks.hpp"
 #include "swivel/core/lattice.hpp"
+#include "swivel/core/problem/hooks.hpp"
 
 namespace swivel::test {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "seed.hpp"
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel::test {
 

@@ -16,9 +16,9 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/posture_beside.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/time_path.hpp"
-#include "swivel/core/tool_path.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "seed.hpp"
 #include "swivel/core/arm.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/core/srs.hpp"
 #include "swivel/io/io.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "seed.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel::test {
 

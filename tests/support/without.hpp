@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "swivel/core/cause.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::test {
 

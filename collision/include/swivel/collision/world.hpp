@@ -13,7 +13,7 @@
 #include "swivel/collision/verdict.hpp"
 #include "swivel/core/arm.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

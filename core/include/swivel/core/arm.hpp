@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/held_joint.hpp"
-#include "swivel/core/problem.hpp"
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/held_joint.hpp"
+#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel {
 

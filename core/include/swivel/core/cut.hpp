@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/cause.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

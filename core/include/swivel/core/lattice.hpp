@@ -10,8 +10,8 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/pose_shift.hpp"
-#include "swivel/core/problem.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/problem.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swivel/core/plan.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

@@ -9,7 +9,7 @@
 
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/cause.hpp"
-#include "swivel/core/held_joint.hpp"
+#include "swivel/core/problem/held_joint.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

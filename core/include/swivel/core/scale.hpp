@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/arm.hpp"
-#include "swivel/core/tool_path.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 

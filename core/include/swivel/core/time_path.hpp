@@ -8,7 +8,7 @@
 #include "swivel/core/arm.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/path_motion.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

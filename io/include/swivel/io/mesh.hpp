@@ -5,7 +5,7 @@
 #include <string>
 
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel::io {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel::io {
 

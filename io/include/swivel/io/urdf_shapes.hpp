@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel::io {
 

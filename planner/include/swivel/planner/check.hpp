@@ -8,7 +8,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

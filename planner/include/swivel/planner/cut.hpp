@@ -6,7 +6,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/cut.hpp"
-#include "swivel/core/hooks.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -4,7 +4,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/hooks.hpp"
 #include "swivel/core/plan.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/parallel/executor.hpp"
 

@@ -7,7 +7,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/plan.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/verdicts.hpp"
 #include "swivel/planner/plan_options.hpp"
 #include "swivel/planner/prepared_robot.hpp"

@@ -6,7 +6,7 @@
 #include "swivel/core/arm.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "swivel/core/hooks.hpp"
+#include "swivel/core/problem/hooks.hpp"
 #include "swivel/core/refined.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/cubic_spline.hpp"
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/cubic_spline.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
 

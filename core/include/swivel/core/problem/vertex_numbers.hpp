@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/held_joint.hpp"
+#include "swivel/core/problem/held_joint.hpp"
 
 #include <set>
 

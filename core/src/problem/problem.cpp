@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/problem.hpp"
+#include "swivel/core/problem/problem.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 
-#include "swivel/core/vertex_numbers.hpp"
+#include "swivel/core/problem/vertex_numbers.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/validate.hpp"
+#include "swivel/core/problem/validate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel {
 

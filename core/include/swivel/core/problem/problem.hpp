@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/robot_model.hpp"
+#include "swivel/core/problem/robot_model.hpp"
 
 namespace swivel {
 

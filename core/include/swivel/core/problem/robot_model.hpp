@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/shape.hpp"
+#include "swivel/core/problem/shape.hpp"
 
 namespace swivel {
 
