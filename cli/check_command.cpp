@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "search_options.hpp"
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"

@@ -16,7 +16,7 @@
 #include "motion_output.hpp"
 #include "progress.hpp"
 #include "search_options.hpp"
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/input_error.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "schema.hpp"
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 namespace swivel::io {
 

@@ -10,8 +10,8 @@
 
 #include "asked_hooks.hpp"
 #include "swivel/collision/world.hpp"
+#include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/cause.hpp"
 #include "swivel/core/lattice.hpp"
 
 namespace swivel {

@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/graph/path_first.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/collision/world.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

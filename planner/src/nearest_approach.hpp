@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 
 namespace swivel {
 

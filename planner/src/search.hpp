@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/plan_options.hpp"
 

@@ -17,7 +17,7 @@
 
 #include "results.hpp"
 #include "runs.hpp"
-#include "swivel/core/advice.hpp"
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/core/base/fnv1a.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/placement.hpp"

@@ -4,7 +4,7 @@
 
 #include "archive.hpp"
 
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"

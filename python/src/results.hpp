@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "swivel/core/advice.hpp"
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"

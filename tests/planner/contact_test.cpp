@@ -6,7 +6,7 @@
 
 #include "robots.hpp"
 #include "seed.hpp"
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "robots.hpp"
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "seed.hpp"
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel::test {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "swivel/core/cause.hpp"
+#include "swivel/core/answer/cause.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel::test {

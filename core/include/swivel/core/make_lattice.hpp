@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/plan.hpp"
 
 namespace swivel {
 

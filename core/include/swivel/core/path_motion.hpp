@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/arm_class.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

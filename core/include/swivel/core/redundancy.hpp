@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/arm_class.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/layer_solver.hpp"
-#include "swivel/core/plan.hpp"
 
 namespace swivel {
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/plan.hpp"
-#include "swivel/core/stated.hpp"
+#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/stated.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel::io {

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/advice.hpp"
+#include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/cut.hpp"
+#include "swivel/core/answer/plan.hpp"
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/cut.hpp"
-#include "swivel/core/plan.hpp"
-#include "swivel/core/refined.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel::io {

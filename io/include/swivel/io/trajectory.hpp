@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 namespace swivel::io {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/advice.hpp"
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

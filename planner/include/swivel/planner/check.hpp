@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"

@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "swivel/core/answer/stated.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/stated.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
+#include "swivel/core/answer/cut.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/cut.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

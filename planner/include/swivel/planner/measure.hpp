@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/refined.hpp"
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/time_path.hpp"
 #include "swivel/planner/motion_defaults.hpp"
 #include "swivel/planner/planner.hpp"

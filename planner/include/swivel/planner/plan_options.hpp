@@ -5,8 +5,8 @@
 #include <stop_token>
 #include <string>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/plan.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/parallel/executor.hpp"

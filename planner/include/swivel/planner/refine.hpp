@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
+#include "swivel/core/answer/refined.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/core/refined.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 namespace swivel {
 

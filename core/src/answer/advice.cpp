@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/advice.hpp"
+#include "swivel/core/answer/advice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
 #include <cmath>

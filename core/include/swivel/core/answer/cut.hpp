@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swivel/core/cause.hpp"
+#include "swivel/core/answer/cause.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

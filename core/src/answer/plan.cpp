@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 namespace swivel {
 

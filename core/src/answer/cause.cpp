@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/cause.hpp"
+#include "swivel/core/answer/cause.hpp"
 
 #include <cmath>
 #include <cstdio>

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/advice.hpp"
-#include "swivel/core/cut.hpp"
-#include "swivel/core/plan.hpp"
+#include "swivel/core/answer/advice.hpp"
+#include "swivel/core/answer/cut.hpp"
+#include "swivel/core/answer/plan.hpp"
 
 namespace swivel {
 

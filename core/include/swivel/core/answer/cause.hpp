@@ -43,7 +43,7 @@ struct Cause {
   /// Of kRollSlope: the travel for which `limit` is allowed, m. Of kPair where a depth is allowed: that depth, m, of which `limit`
   /// leaves a part to the motions between layers.
   std::optional<double> over;
-  std::string check;           ///< of kCheck: its name
+  std::string check;  ///< of kCheck: its name
 
   bool operator==(const Cause&) const = default;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/cut.hpp"
+#include "swivel/core/answer/cut.hpp"
 
 namespace swivel {
 

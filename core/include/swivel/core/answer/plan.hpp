@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/cause.hpp"
 #include "swivel/core/problem/held_joint.hpp"
 
 namespace swivel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/answer_text.hpp"
+#include "swivel/core/answer/answer_text.hpp"
 
 #include <algorithm>
 #include <cstdio>
