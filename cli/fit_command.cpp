@@ -8,7 +8,7 @@
 #include "commands.hpp"
 #include "known_name.hpp"
 #include "packages_option.hpp"
-#include "swivel/core/capsule_fit.hpp"
+#include "swivel/core/fit/capsule_fit.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/urdf_shapes.hpp"
 #include "terminal.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/capsule_fit.hpp"
+#include "swivel/core/fit/capsule_fit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
