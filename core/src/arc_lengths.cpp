@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pose_newton.hpp"
+#include "kinematics/newton/pose_newton.hpp"
 
 namespace swivel {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "pose_newton.hpp"
-#include "swivel/core/alignment.hpp"
+#include "kinematics/newton/pose_newton.hpp"
+#include "swivel/core/kinematics/equations/alignment.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 

@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <utility>
 
-#include "polish_turned.hpp"
-#include "swivel/core/alignment.hpp"
+#include "kinematics/srs/polish_turned.hpp"
 #include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/arc_lengths.hpp"
-#include "swivel/core/arm_angle.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/kinematics/equations/alignment.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "polish_turned.hpp"
+#include "kinematics/srs/polish_turned.hpp"
 #include "start.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"

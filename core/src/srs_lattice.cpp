@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "kernels/kernels.hpp"
-#include "polish_turned.hpp"
+#include "kinematics/kernels/kernels.hpp"
+#include "kinematics/srs/polish_turned.hpp"
 #include "start.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

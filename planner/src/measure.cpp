@@ -9,7 +9,7 @@
 #include "deepest_contact.hpp"
 #include "measure_rows.hpp"
 #include "nearest_approach.hpp"
-#include "swivel/core/arm_angle.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel::detail {
@@ -29,7 +29,7 @@ template <class T>
 [[nodiscard]] Json vector_json(const Vector3d& v);
 /// The upper three rows, row by row.
 [[nodiscard]] Json pose_json(const Pose& pose);
-/// The chain as the page's forward kinematics needs it (core/arm.hpp).
+/// The chain as the page's forward kinematics needs it (core/kinematics/chain/arm.hpp).
 [[nodiscard]] Json chain_json(const Chain& chain);
 
 /// Bodies of the robot, what it carries, and the scene in its order. Meshes are written once, however many bodies share one.

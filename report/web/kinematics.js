@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forward kinematics as a product of exponentials; the chain is that of core/arm.hpp.
+// Forward kinematics as a product of exponentials; the chain is that of core/kinematics/chain/arm.hpp.
 import { Matrix4, Vector3 } from 'three';
 
 export const vector = (v) => new Vector3(v[0], v[1], v[2]);

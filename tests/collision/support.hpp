@@ -4,7 +4,7 @@
 #include <random>
 #include <string>
 
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel::testing {

@@ -8,9 +8,9 @@
 #include "inner_posture.hpp"
 #include "robots.hpp"
 #include "swivel/core/arc_lengths.hpp"
+#include "swivel/core/kinematics/self_motion/self_motion.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/path_motion.hpp"
-#include "swivel/core/self_motion.hpp"
 #include "swivel/core/time_path.hpp"
 
 namespace swivel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/arm_class.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/closed_form.hpp"
+#include "swivel/core/kinematics/closed_form/closed_form.hpp"
 
 #include <gtest/gtest.h>
 

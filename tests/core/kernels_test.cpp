@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "arms.hpp"
-#include "kernels/kernels.hpp"
-#include "kernels/newton.hpp"
-#include "pose_newton.hpp"
+#include "kinematics/kernels/kernels.hpp"
+#include "kinematics/kernels/newton.hpp"
+#include "kinematics/newton/pose_newton.hpp"
 #include "robots.hpp"
 
 namespace swivel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Arcs of arm angles within the joint limits against sampling, and the cells that are moved onto them.
-#include "swivel/core/limit_arcs.hpp"
+#include "swivel/core/kinematics/srs/limit_arcs.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 
 #include "linkages.hpp"
 #include "robots.hpp"
-#include "swivel/core/arm_guess.hpp"
+#include "swivel/core/kinematics/srs/arm_guess.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {

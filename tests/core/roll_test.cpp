@@ -10,7 +10,7 @@
 #include "roll_windows.hpp"
 #include "seed.hpp"
 #include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/arm_class.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bounds on how far rows of arms that are not exactly S-R-S place links from where their nodes place them, against the rows.
-#include "swivel/core/row_shift.hpp"
+#include "swivel/core/kinematics/srs/row_shift.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/self_motion.hpp"
+#include "swivel/core/kinematics/self_motion/self_motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "arms.hpp"
 #include "seed.hpp"
-#include "swivel/core/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/posture_beside.hpp"
 
 namespace swivel {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "motion_problem.hpp"
-#include "swivel/core/srs.hpp"
+#include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"

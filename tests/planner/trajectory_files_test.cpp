@@ -7,7 +7,7 @@
 
 #include "../io/io_support.hpp"
 #include "motion_mutations.hpp"
-#include "swivel/core/arm_angle.hpp"
+#include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/complete_rows.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 
 namespace swivel::test {
 

@@ -15,7 +15,7 @@
 #include "motion_problem.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/posture_beside.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem_path.hpp"
 #include "swivel/core/time_path.hpp"

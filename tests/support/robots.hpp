@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "seed.hpp"
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/core/srs.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled once per vector unit, inside namespace SWIVEL_ISA; see core/src/kernels/circle.inl for why nothing shared appears here.
-// Every operation stands in the order of Lattice::delta, step_allowed and edge_cost, so the bits are theirs.
+// Compiled once per vector unit, inside namespace SWIVEL_ISA; see core/src/kinematics/kernels/circle.inl for why nothing shared
+// appears here. Every operation stands in the order of Lattice::delta, step_allowed and edge_cost, so the bits are theirs.
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "swivel/collision/verdict.hpp"
-#include "swivel/core/arm.hpp"
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/explicit_lattice.hpp"
-#include "swivel/core/self_motion.hpp"
+#include "swivel/core/kinematics/self_motion/self_motion.hpp"
 
 namespace swivel {
 

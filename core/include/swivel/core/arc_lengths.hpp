@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/layer_solver.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/arm.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/pose_shift.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/kinematics/equations/pose_shift.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 

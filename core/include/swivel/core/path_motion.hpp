@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/arm_class.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

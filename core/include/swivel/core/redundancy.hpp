@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/arm_class.hpp"
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice.hpp"
 #include "swivel/core/layer_solver.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/arm.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/kinematics/srs/limit_arcs.hpp"
+#include "swivel/core/kinematics/srs/row_shift.hpp"
+#include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/lattice.hpp"
-#include "swivel/core/limit_arcs.hpp"
-#include "swivel/core/row_shift.hpp"
-#include "swivel/core/srs.hpp"
 
 namespace swivel {
 

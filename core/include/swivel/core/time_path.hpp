@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/arm.hpp"
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/problem/problem.hpp"
 

@@ -3,9 +3,9 @@
 #include <array>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/arm.hpp"
-#include "swivel/core/arm_class.hpp"
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

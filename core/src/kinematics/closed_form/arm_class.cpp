@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
+
+#include "swivel/core/messages/input_error.hpp"
+
+namespace swivel {
+
+ArmClass classify(const Chain& chain, const std::string& source) {
+  ArmClass result;
+  const auto other = [&](const std::string& why) {
+    result.not_srs = why;
+    result.lock = lock_method(chain);
+    if (result.lock.best >= 0) result.kind = ArmKind::kArcs;
+  };
+  if (chain.roll) {
+    other("six joints and the roll of the tool");
+    return result;
+  }
+  try {
+    result.srs = fit_srs(chain, source);
+    result.kind = ArmKind::kSrs;
+  } catch (const NotSrs& error) {
+    if (chain.free_roll)
+      throw InputError(
+          source, "path.roll: of arms of seven joints allowed for those with spherical shoulder and wrist; here " + error.why());
+    other(error.why());
+  }
+  return result;
+}
+
+std::string ArmClass::method() const {
+  switch (kind) {
+    case ArmKind::kSrs:
+      return srs->exact ? "closed form: spherical shoulder and wrist; arm angle"
+                        : "closed form of the nearest arm with spherical shoulder and wrist, polished; arm angle";
+    case ArmKind::kArcs:
+      return lock.words() + "; arcs of self-motion";
+    case ArmKind::kSampled:
+      break;
+  }
+  return lock.words();
+}
+
+}  // namespace swivel
