@@ -19,7 +19,7 @@
 #include "context.hpp"
 #include "settings.hpp"
 #include "swivel/core/campaign.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 
 namespace {

@@ -14,7 +14,7 @@
 #include "pair_test.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/isa.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"

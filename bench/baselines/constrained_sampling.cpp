@@ -16,7 +16,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel::baselines {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 
 namespace swivel {
 

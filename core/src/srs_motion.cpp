@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 

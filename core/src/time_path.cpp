@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 
 namespace swivel {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/shared_work.hpp"
 
 namespace swivel {

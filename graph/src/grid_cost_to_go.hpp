@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "coarse_bound.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 #include "tile_table.hpp"
 

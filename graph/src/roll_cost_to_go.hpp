@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "layer_values.hpp"
-#include "swivel/core/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
 
 namespace swivel {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 
 namespace swivel {

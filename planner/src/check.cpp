@@ -16,13 +16,13 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/problem_path.hpp"
-#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/scale.hpp"
 #include "swivel/planner/cut.hpp"
 #include "witnesses.hpp"
 

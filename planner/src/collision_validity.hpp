@@ -7,7 +7,7 @@
 #include "row_margin.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/validity.hpp"
 #include "swivel/parallel/executor.hpp"
 

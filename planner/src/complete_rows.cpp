@@ -10,14 +10,14 @@
 #include "check_rates.hpp"
 #include "path_following.hpp"
 #include "places_on_path.hpp"
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/problem_path.hpp"
-#include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/motion_defaults.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 #include "swivel/graph/path_first.hpp"
 

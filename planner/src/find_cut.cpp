@@ -6,8 +6,8 @@
 
 #include "collision_validity.hpp"
 #include "hooked_validity.hpp"
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/cut.hpp"

@@ -10,10 +10,10 @@
 #include "measure_rows.hpp"
 #include "nearest_approach.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/problem_path.hpp"
 
 namespace swivel {
 

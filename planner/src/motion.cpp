@@ -13,11 +13,11 @@
 #include "first_too_near.hpp"
 #include "measure_rows.hpp"
 #include "swivel/core/kinematics/newton/posture_beside.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/problem_path.hpp"
 #include "swivel/planner/refine.hpp"
 
 namespace swivel {

@@ -10,11 +10,11 @@
 
 #include "asked_hooks.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/path_motion.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/problem_path.hpp"
 #include "swivel/core/redundancy.hpp"
 #include "swivel/core/smooth_path.hpp"
 #include "swivel/planner/planner.hpp"

@@ -4,7 +4,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/lazy.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/plan_options.hpp"
 

@@ -9,7 +9,7 @@
 #include "swivel/collision/world.hpp"
 #include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
 

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/roll_lattice.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 

@@ -14,11 +14,11 @@
 #include "scene_json.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/roll_lattice.hpp"
-#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "robots.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 namespace {

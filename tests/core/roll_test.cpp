@@ -9,8 +9,8 @@
 #include "arms.hpp"
 #include "roll_windows.hpp"
 #include "seed.hpp"
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {

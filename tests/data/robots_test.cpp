@@ -9,8 +9,8 @@
 #include <variant>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/arc_lattice.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/graph/cost_to_go.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/io/io.hpp"

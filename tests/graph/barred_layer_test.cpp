@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "robots.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

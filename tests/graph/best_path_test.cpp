@@ -6,7 +6,7 @@
 
 #include "answer_order.hpp"
 #include "robots.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -8,7 +8,7 @@
 #include "answer_order.hpp"
 #include "grid_cost_to_go.hpp"
 #include "robots.hpp"
-#include "swivel/core/explicit_lattice.hpp"
+#include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -7,8 +7,8 @@
 
 #include "brute_force.hpp"
 #include "random_problem.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 #include "window.hpp"

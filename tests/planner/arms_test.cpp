@@ -10,10 +10,10 @@
 #include "motion_problem.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
-#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/problem_path.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 

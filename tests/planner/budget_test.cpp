@@ -12,7 +12,7 @@
 #include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/campaign.hpp"

@@ -17,7 +17,7 @@
 #include "plain_edge_rule.hpp"
 #include "robots.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

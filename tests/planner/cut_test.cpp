@@ -13,11 +13,11 @@
 #include "inexact_robots.hpp"
 #include "plain_edge_rule.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/problem_path.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

@@ -8,7 +8,7 @@
 
 #include "collision_validity.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

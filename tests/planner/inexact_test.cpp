@@ -9,7 +9,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 #include "window.hpp"

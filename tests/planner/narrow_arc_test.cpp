@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "random_problem.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"

@@ -6,8 +6,8 @@
 
 #include "answer_order.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/make_lattice.hpp"
-#include "swivel/core/problem_path.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/planner.hpp"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "motion_problem.hpp"
-#include "swivel/core/make_lattice.hpp"
-#include "swivel/core/problem_path.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/path_first.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

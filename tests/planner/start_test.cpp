@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "random_problem.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/problem_path.hpp"
-#include "swivel/core/srs_lattice.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
 

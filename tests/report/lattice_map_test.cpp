@@ -14,9 +14,9 @@
 
 #include "robots.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/arc_lattice.hpp"
-#include "swivel/core/roll_lattice.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel {

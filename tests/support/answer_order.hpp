@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel::test {
 

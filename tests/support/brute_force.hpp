@@ -10,7 +10,7 @@
 #include "answer_order.hpp"
 #include "plain_edge_rule.hpp"
 #include "swivel/collision/world.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 
 namespace swivel::test {

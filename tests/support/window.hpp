@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel::test {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/shared_work.hpp"
 #include "swivel/graph/verdicts.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/base/zeroed_array.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/validity.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 
 #include "swivel/collision/world.hpp"
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/verdicts.hpp"
 #include "swivel/planner/plan_options.hpp"

@@ -10,7 +10,7 @@
 #include "swivel/core/kinematics/srs/limit_arcs.hpp"
 #include "swivel/core/kinematics/srs/row_shift.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
 

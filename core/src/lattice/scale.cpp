@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/scale.hpp"
+#include "swivel/core/lattice/scale.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
-#include "swivel/core/problem_path.hpp"
 
 namespace swivel {
 

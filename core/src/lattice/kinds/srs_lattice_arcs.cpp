@@ -5,7 +5,7 @@
 
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 

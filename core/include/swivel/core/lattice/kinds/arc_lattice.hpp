@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/explicit_lattice.hpp"
 #include "swivel/core/kinematics/self_motion/self_motion.hpp"
+#include "swivel/core/lattice/explicit_lattice.hpp"
 
 namespace swivel {
 

@@ -6,7 +6,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "start.hpp"
+#include "lattice/start.hpp"
 
 #include <cmath>
 #include <string>
 
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/make_lattice.hpp"
+#include "swivel/core/lattice/kinds/make_lattice.hpp"
 
 #include <algorithm>
 
-#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/roll_lattice.hpp"
-#include "swivel/core/srs_lattice.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/explicit_lattice.hpp"
+#include "swivel/core/lattice/explicit_lattice.hpp"
 
 #include <numeric>
 #include <stdexcept>

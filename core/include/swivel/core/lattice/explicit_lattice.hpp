@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/arc_lattice.hpp"
+#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "start.hpp"
+#include "lattice/start.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 

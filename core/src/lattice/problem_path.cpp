@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/problem_path.hpp"
+#include "swivel/core/lattice/problem_path.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 #include <algorithm>
 #include <cmath>

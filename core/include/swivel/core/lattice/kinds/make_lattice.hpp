@@ -7,7 +7,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
-#include "swivel/core/lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
 

@@ -2,7 +2,7 @@
 #include <limits>
 
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/srs_lattice.hpp"
+#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel {
 

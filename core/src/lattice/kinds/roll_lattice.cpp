@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/roll_lattice.hpp"
+#include "swivel/core/lattice/kinds/roll_lattice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "kinematics/srs/polish_turned.hpp"
-#include "start.hpp"
+#include "lattice/start.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
