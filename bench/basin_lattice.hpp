@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swivel/collision/world.hpp"
-#include "swivel/core/redundancy.hpp"
+#include "swivel/core/motion/redundancy.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel::bench {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/core/time_path.hpp"
+#include "swivel/core/motion/time_path.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/io/result.hpp"
 

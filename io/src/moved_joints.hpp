@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "swivel/core/time_path.hpp"
+#include "swivel/core/motion/time_path.hpp"
 
 namespace swivel::io {
 

@@ -13,10 +13,10 @@
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
+#include "swivel/core/motion/redundancy.hpp"
+#include "swivel/core/motion/smooth_path.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/core/redundancy.hpp"
-#include "swivel/core/smooth_path.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

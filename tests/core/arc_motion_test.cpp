@@ -7,11 +7,11 @@
 
 #include "inner_posture.hpp"
 #include "robots.hpp"
-#include "swivel/core/arc_lengths.hpp"
 #include "swivel/core/kinematics/self_motion/self_motion.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/path_motion.hpp"
-#include "swivel/core/time_path.hpp"
+#include "swivel/core/motion/arc_lengths.hpp"
+#include "swivel/core/motion/path_motion.hpp"
+#include "swivel/core/motion/time_path.hpp"
 
 namespace swivel {
 namespace {

@@ -10,11 +10,11 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
+#include "swivel/core/motion/smooth_path.hpp"
+#include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 #include "swivel/core/problem/tool_path.hpp"
-#include "swivel/core/smooth_path.hpp"
-#include "swivel/core/time_path.hpp"
 
 namespace swivel {
 namespace {

@@ -17,8 +17,8 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/newton/posture_beside.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
+#include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
-#include "swivel/core/time_path.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
+#include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/core/time_path.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/answer/refined.hpp"
-#include "swivel/core/time_path.hpp"
+#include "swivel/core/motion/time_path.hpp"
 #include "swivel/planner/motion_defaults.hpp"
 #include "swivel/planner/planner.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "srs_motion.hpp"
+#include "motion/srs_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

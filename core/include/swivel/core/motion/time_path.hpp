@@ -7,7 +7,7 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "arc_motion.hpp"
+#include "motion/arc_motion.hpp"
 
 #include <algorithm>
 

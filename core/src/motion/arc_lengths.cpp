@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/arc_lengths.hpp"
+#include "swivel/core/motion/arc_lengths.hpp"
 
 #include <algorithm>
 #include <cmath>

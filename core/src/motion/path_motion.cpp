@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "arc_motion.hpp"
-#include "srs_motion.hpp"
+#include "motion/arc_motion.hpp"
+#include "motion/srs_motion.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 

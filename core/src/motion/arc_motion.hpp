@@ -2,7 +2,7 @@
 #pragma once
 #include "kinematics/newton/pose_newton.hpp"
 #include "swivel/core/kinematics/equations/alignment.hpp"
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {

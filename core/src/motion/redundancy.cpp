@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/redundancy.hpp"
+#include "swivel/core/motion/redundancy.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "kinematics/srs/polish_turned.hpp"
-#include "swivel/core/arc_lengths.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/equations/alignment.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/motion/arc_lengths.hpp"
 
 namespace swivel {
 

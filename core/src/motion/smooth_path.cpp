@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/smooth_path.hpp"
+#include "swivel/core/motion/smooth_path.hpp"
 
 #include <algorithm>
 #include <cmath>

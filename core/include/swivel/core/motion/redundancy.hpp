@@ -8,7 +8,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/core/layer_solver.hpp"
+#include "swivel/core/motion/layer_solver.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/layer_solver.hpp"
+#include "swivel/core/motion/layer_solver.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/layer_solver.hpp"
+#include "swivel/core/motion/layer_solver.hpp"
 
 namespace swivel {
 

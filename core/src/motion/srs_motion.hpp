@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "swivel/core/kinematics/srs/srs.hpp"
-#include "swivel/core/path_motion.hpp"
+#include "swivel/core/motion/path_motion.hpp"
 #include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
