@@ -17,9 +17,9 @@
 
 #include "arguments.hpp"
 #include "basin_lattice.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"

@@ -18,8 +18,8 @@
 #include "arguments.hpp"
 #include "context.hpp"
 #include "settings.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 
 namespace {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "arguments.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"

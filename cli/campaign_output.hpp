@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/files.hpp"
 #include "swivel/io/shards.hpp"
 

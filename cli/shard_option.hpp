@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "search_options.hpp"
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel::cli {

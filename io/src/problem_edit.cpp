@@ -7,7 +7,7 @@
 #include "bad_input.hpp"
 #include "csv.hpp"
 #include "swivel/core/base/rpy.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/io/problem.hpp"
 
 namespace swivel::io {

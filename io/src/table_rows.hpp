@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bad_input.hpp"
-#include "swivel/core/campaign.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "text_number.hpp"
 
 namespace swivel::io {

@@ -19,8 +19,8 @@
 #include "runs.hpp"
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/core/base/fnv1a.hpp"
-#include "swivel/core/campaign.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 

@@ -8,7 +8,6 @@
 #include "bindings.hpp"
 #include "interruptible.hpp"
 #include "runs.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_guess.hpp"
@@ -16,6 +15,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "archive.hpp"
 #include "interruptible.hpp"
-#include "swivel/core/grid_refinement.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/planner/campaign.hpp"

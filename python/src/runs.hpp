@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "swivel/core/campaign.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/core/study/placement.hpp"
 
 namespace swivel::python {
 

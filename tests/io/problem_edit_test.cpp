@@ -2,7 +2,7 @@
 // A placement as a problem file: only the pose is changed, and it reads back as it was planned.
 #include "problem_support.hpp"
 #include "swivel/core/base/rpy.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/io/problem.hpp"
 

@@ -9,9 +9,9 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/base/rpy.hpp"
-#include "swivel/core/grid_refinement.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/study/grid_refinement.hpp"
 
 namespace swivel {
 namespace {

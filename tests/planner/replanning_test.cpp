@@ -6,8 +6,8 @@
 #include <map>
 
 #include "random_problem.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

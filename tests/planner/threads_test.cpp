@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "random_problem.hpp"
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

@@ -12,8 +12,8 @@
 
 #include "robots.hpp"
 #include "swivel/core/answer/answer_text.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/report/lattice_map.hpp"

@@ -8,8 +8,8 @@
 #include <string_view>
 
 #include "robots.hpp"
-#include "swivel/core/campaign.hpp"
 #include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/overview.hpp"

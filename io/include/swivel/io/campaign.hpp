@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 
 namespace swivel::io {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 
 namespace swivel::io {
 

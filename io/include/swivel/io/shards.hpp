@@ -7,8 +7,8 @@
 #include <variant>
 #include <vector>
 
-#include "swivel/core/campaign.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/campaign.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/io/campaign.hpp"
 
 namespace swivel::io {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

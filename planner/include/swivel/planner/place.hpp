@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

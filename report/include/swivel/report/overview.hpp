@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 #include "swivel/planner/place.hpp"
 #include "swivel/report/ended_by.hpp"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/campaign.hpp"
+#include "swivel/core/study/campaign.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "episode_draw.hpp"
+#include "study/episode_draw.hpp"
 #include "swivel/core/base/rpy.hpp"
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 
 #include <algorithm>
 #include <cmath>

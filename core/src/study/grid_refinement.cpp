@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/grid_refinement.hpp"
+#include "swivel/core/study/grid_refinement.hpp"
 
 #include <algorithm>
 #include <set>

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "swivel/core/placement.hpp"
+#include "swivel/core/study/placement.hpp"
 
 namespace swivel {
 
