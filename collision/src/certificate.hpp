@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "placed_shape.hpp"
+#include "shapes/placed_shape.hpp"
 
 namespace swivel::detail {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <limits>
 
-#include "placed_shape.hpp"
+#include "shapes/placed_shape.hpp"
 #include "swivel/collision/verdict.hpp"
 
 namespace swivel::detail {

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "placed_shape.hpp"
+#include "shapes/placed_shape.hpp"
 
 namespace swivel::detail {
 

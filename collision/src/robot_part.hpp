@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "fcl_shapes.hpp"
+#include "shapes/fcl_shapes.hpp"
 #include "swivel/collision/world.hpp"
 
 namespace swivel::detail {

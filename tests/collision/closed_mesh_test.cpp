@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points in closed meshes: parity on the grid against solid angles.
-#include "closed_mesh.hpp"
+#include "shapes/closed_mesh.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bound.hpp"
 #include "random_problem.hpp"
+#include "shapes/bound.hpp"
 #include "support.hpp"
 #include "swivel/collision/world.hpp"
 

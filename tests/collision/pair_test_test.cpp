@@ -8,10 +8,10 @@
 #include <cmath>
 #include <map>
 
-#include "bound.hpp"
 #include "certificate.hpp"
 #include "reference.hpp"
 #include "seed.hpp"
+#include "shapes/bound.hpp"
 #include "support.hpp"
 
 namespace swivel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Distances of trees of triangles against all pairs of triangles, one by one.
-#include "triangle_tree.hpp"
+#include "shapes/triangle_tree.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "closed_mesh.hpp"
+#include "shapes/closed_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "placed_shape.hpp"
+#include "shapes/placed_shape.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "segment.hpp"
+#include "shapes/segment.hpp"
 
 namespace swivel::detail {
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <memory>
 
+#include "shapes/triangle_tree.hpp"
 #include "swivel/core/problem/shape.hpp"
-#include "triangle_tree.hpp"
 
 namespace swivel::detail {
 

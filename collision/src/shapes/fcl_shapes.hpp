@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "bound.hpp"
-#include "closed_mesh.hpp"
-#include "polyhedron.hpp"
+#include "shapes/bound.hpp"
+#include "shapes/closed_mesh.hpp"
+#include "shapes/polyhedron.hpp"
 #include "swivel/core/base/lazy.hpp"
 #include "swivel/core/problem/shape.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "polyhedron.hpp"
+#include "shapes/polyhedron.hpp"
 
 #include <algorithm>
 #include <array>

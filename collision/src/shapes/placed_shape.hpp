@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "fcl_shapes.hpp"
+#include "shapes/fcl_shapes.hpp"
 
 namespace swivel::detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "triangle_tree.hpp"
+#include "shapes/triangle_tree.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bound.hpp"
+#include "shapes/bound.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "segment.hpp"
+#include "shapes/segment.hpp"
 
 #include <algorithm>
 #include <cmath>
