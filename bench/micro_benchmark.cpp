@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "certificate.hpp"
 #include "context.hpp"
 #include "pair_test.hpp"
+#include "proofs/certificate.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"

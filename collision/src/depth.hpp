@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "shapes/placed_shape.hpp"
-#include "swivel/collision/verdict.hpp"
+#include "swivel/collision/proofs/verdict.hpp"
 
 namespace swivel::detail {
 

@@ -11,7 +11,7 @@
 #include <exception>
 #include <limits>
 
-#include "certificate.hpp"
+#include "proofs/certificate.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel::detail {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 #include "shapes/placed_shape.hpp"
-#include "swivel/collision/verdict.hpp"
+#include "swivel/collision/proofs/verdict.hpp"
 
 namespace swivel::detail {
 

@@ -5,10 +5,10 @@
 #include <limits>
 #include <random>
 
-#include "certificate.hpp"
-#include "distances_about.hpp"
 #include "pair_rules.hpp"
 #include "pair_test.hpp"
+#include "proofs/certificate.hpp"
+#include "proofs/distances_about.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel::detail {

@@ -5,10 +5,10 @@
 #include <limits>
 #include <tuple>
 
-#include "certificate.hpp"
 #include "depth.hpp"
 #include "nearest_points.hpp"
 #include "pair_test.hpp"
+#include "proofs/certificate.hpp"
 #include "robot_part.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/formatted.hpp"

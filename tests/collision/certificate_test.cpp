@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Certificates against FCL: a verdict that a certificate gives must be FCL's. docs/model.md "Clearance".
-#include "certificate.hpp"
+#include "proofs/certificate.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "distances_about.hpp"
+#include "proofs/distances_about.hpp"
 
 #include <gtest/gtest.h>
 

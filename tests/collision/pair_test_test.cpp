@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "certificate.hpp"
+#include "proofs/certificate.hpp"
 #include "reference.hpp"
 #include "seed.hpp"
 #include "shapes/bound.hpp"

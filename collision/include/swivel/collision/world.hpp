@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/collision/verdict.hpp"
+#include "swivel/collision/proofs/verdict.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/problem.hpp"

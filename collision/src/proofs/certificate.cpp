@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "certificate.hpp"
+#include "proofs/certificate.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "swivel/collision/verdict.hpp"
+#include "swivel/collision/proofs/verdict.hpp"
 
 namespace swivel::detail {
 
