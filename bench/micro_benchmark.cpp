@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "context.hpp"
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 #include "proofs/certificate.hpp"
 #include "swivel/collision/world.hpp"
 #include "swivel/core/base/isa.hpp"

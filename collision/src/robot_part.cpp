@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
+#include "exact/pair_test.hpp"
 #include "pair_rules.hpp"
-#include "pair_test.hpp"
 #include "proofs/certificate.hpp"
 #include "proofs/distances_about.hpp"
 #include "swivel/core/base/timeline.hpp"

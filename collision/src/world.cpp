@@ -5,9 +5,9 @@
 #include <limits>
 #include <tuple>
 
-#include "depth.hpp"
-#include "nearest_points.hpp"
-#include "pair_test.hpp"
+#include "exact/depth.hpp"
+#include "exact/nearest_points.hpp"
+#include "exact/pair_test.hpp"
 #include "proofs/certificate.hpp"
 #include "robot_part.hpp"
 #include "swivel/core/base/timeline.hpp"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 #include "robots.hpp"
 #include "support.hpp"
 #include "swivel/collision/world.hpp"

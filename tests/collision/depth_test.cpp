@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How deep bodies are in each other: between what plain samples find and what a translation that takes them apart needs.
-#include "depth.hpp"
+#include "exact/depth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 #include "seed.hpp"
 #include "support.hpp"
 

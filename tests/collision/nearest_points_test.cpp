@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nearest points of every pair of kinds, against clearances that share nothing with FCL.
-#include "nearest_points.hpp"
+#include "exact/nearest_points.hpp"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 #include "reference.hpp"
 #include "support.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The verdict on one pair, every pair of shape kinds, against references that share nothing with FCL.
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "depth.hpp"
+#include "exact/depth.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "nearest_points.hpp"
+#include "exact/nearest_points.hpp"
 
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/sphere.h>
@@ -13,7 +13,7 @@
 #include <queue>
 #include <tuple>
 
-#include "pair_test.hpp"
+#include "exact/pair_test.hpp"
 
 namespace swivel::detail {
 
