@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/motion/redundancy.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

@@ -12,7 +12,7 @@
 #include "context.hpp"
 #include "exact/pair_test.hpp"
 #include "proofs/certificate.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/path_first.hpp"

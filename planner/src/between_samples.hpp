@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/planner/motion_defaults.hpp"
 
 namespace swivel {

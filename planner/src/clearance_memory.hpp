@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 
 #include "clearance_memory.hpp"
 #include "row_margin.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/validity.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "asked_hooks.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"

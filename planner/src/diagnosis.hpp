@@ -2,7 +2,7 @@
 #pragma once
 #include <memory>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/tool_path.hpp"

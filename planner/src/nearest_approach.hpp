@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 

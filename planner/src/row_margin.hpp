@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/lazy.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"

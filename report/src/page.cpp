@@ -12,7 +12,7 @@
 #include "map_cells.hpp"
 #include "page_template.hpp"
 #include "scene_json.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"

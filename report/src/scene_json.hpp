@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/problem/problem.hpp"
 

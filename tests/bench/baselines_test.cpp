@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 

@@ -11,7 +11,7 @@
 #include "exact/pair_test.hpp"
 #include "robots.hpp"
 #include "support.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "plain_edge_rule.hpp"
 #include "support.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel {
 namespace {

@@ -7,7 +7,7 @@
 #include "random_problem.hpp"
 #include "shapes/bound.hpp"
 #include "support.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel {
 namespace {

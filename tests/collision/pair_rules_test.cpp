@@ -7,7 +7,7 @@
 #include <set>
 
 #include "support.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel {
 namespace {

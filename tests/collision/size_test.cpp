@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "random_problem.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/bounds.hpp"
 
 namespace swivel {

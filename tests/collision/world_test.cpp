@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Worlds as planners use them: verdicts over all pairs, episodes, threads.
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 #include <gtest/gtest.h>
 

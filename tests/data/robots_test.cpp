@@ -8,7 +8,7 @@
 #include <string>
 #include <variant>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/graph/cost_to_go.hpp"

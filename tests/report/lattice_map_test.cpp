@@ -13,7 +13,7 @@
 #include <sstream>
 
 #include "robots.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"

@@ -9,7 +9,7 @@
 
 #include "answer_order.hpp"
 #include "plain_edge_rule.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
 

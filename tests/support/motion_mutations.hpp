@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "motion_problem.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/newton/posture_beside.hpp"
 #include "swivel/core/lattice/problem_path.hpp"

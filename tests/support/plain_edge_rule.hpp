@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel::test {
 

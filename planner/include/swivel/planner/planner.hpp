@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 #include <array>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -9,9 +9,9 @@
 #include "exact/nearest_points.hpp"
 #include "exact/pair_test.hpp"
 #include "proofs/certificate.hpp"
-#include "robot_part.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "world/robot_part.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pair_rules.hpp"
+#include "world/pair_rules.hpp"
 
 #include <set>
 #include <utility>

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel {
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "robot_part.hpp"
+#include "world/robot_part.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <random>
 
 #include "exact/pair_test.hpp"
-#include "pair_rules.hpp"
 #include "proofs/certificate.hpp"
 #include "proofs/distances_about.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "world/pair_rules.hpp"
 
 namespace swivel::detail {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "shapes/fcl_shapes.hpp"
-#include "swivel/collision/world.hpp"
+#include "swivel/collision/world/world.hpp"
 
 namespace swivel::detail {
 
