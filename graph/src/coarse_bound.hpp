@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/shared_work.hpp"
+#include "swivel/graph/verdicts/shared_work.hpp"
 
 namespace swivel {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/validity.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {
 

@@ -8,7 +8,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/validity.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
 #include "swivel/parallel/executor.hpp"
 
 namespace swivel {

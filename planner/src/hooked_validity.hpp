@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "asked_hooks.hpp"
-#include "swivel/graph/validity.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {
 

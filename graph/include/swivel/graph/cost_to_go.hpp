@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/shared_work.hpp"
-#include "swivel/graph/verdicts.hpp"
+#include "swivel/graph/verdicts/shared_work.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/graph/cost_to_go.hpp"
-#include "swivel/graph/validity.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {
 

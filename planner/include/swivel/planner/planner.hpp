@@ -8,7 +8,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/graph/verdicts.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/planner/plan_options.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 

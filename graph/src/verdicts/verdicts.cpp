@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/graph/verdicts.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {
 

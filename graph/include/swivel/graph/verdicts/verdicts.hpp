@@ -8,7 +8,7 @@
 
 #include "swivel/core/base/zeroed_array.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/validity.hpp"
+#include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {
 
