@@ -6,7 +6,7 @@
 #include <boost/graph/dijkstra_shortest_paths.hpp>
 #include <boost/iterator/transform_iterator.hpp>
 
-#include "best_start.hpp"
+#include "cost_to_go/best_start.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "valid_nodes.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "best_start.hpp"
+#include "cost_to_go/best_start.hpp"
 #include "swivel/graph/eager.hpp"
 #include "valid_nodes.hpp"
 

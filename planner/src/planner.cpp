@@ -26,7 +26,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

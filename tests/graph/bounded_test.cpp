@@ -8,8 +8,8 @@
 #include <functional>
 #include <thread>
 
-#include "grid_cost_to_go.hpp"
-#include "kernels/relax.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 #include "robots.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/graph/implicit_lattice.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "grid_cost_to_go.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/graph/implicit_lattice.hpp"
 #include "window.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "answer_order.hpp"
-#include "grid_cost_to_go.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"

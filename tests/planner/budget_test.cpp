@@ -8,8 +8,8 @@
 #include <limits>
 #include <utility>
 
-#include "coarse_bound.hpp"
 #include "collision_validity.hpp"
+#include "cost_to_go/grid/coarse_bound.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"

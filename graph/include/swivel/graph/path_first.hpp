@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {

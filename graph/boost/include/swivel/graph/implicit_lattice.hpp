@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

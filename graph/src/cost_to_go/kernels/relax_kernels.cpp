@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "kernels/relax.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 #include "swivel/core/base/isa.hpp"
 
 namespace swivel {

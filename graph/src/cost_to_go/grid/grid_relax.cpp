@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "grid_tiles.hpp"
-#include "relax_task.hpp"
+#include "cost_to_go/grid/grid_tiles.hpp"
+#include "cost_to_go/kernels/relax_task.hpp"
 
 namespace swivel {
 

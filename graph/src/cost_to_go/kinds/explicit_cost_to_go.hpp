@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "layer_values.hpp"
+#include "cost_to_go/kinds/layer_values.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grid_tiles.hpp"
+#include "cost_to_go/grid/grid_tiles.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {

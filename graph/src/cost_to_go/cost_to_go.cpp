@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
-#include "best_start.hpp"
+#include "cost_to_go/best_start.hpp"
 
 namespace swivel {
 

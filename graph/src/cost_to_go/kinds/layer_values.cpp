@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "layer_values.hpp"
+#include "cost_to_go/kinds/layer_values.hpp"
 
 #include <algorithm>
 

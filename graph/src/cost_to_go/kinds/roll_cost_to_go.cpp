@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "roll_cost_to_go.hpp"
+#include "cost_to_go/kinds/roll_cost_to_go.hpp"
 
 #include <algorithm>
 
-#include "relax_task.hpp"
+#include "cost_to_go/kernels/relax_task.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "explicit_cost_to_go.hpp"
-#include "grid_cost_to_go.hpp"
-#include "roll_cost_to_go.hpp"
-#include "swivel/graph/cost_to_go.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
+#include "cost_to_go/kinds/explicit_cost_to_go.hpp"
+#include "cost_to_go/kinds/roll_cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

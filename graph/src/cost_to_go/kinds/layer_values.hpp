@@ -3,7 +3,7 @@
 #include <tuple>
 #include <vector>
 
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

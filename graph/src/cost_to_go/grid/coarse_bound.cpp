@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "coarse_bound.hpp"
+#include "cost_to_go/grid/coarse_bound.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
-#include "kernels/relax.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {

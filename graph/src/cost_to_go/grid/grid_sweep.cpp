@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "grid_cost_to_go.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
 
 #include <algorithm>
 #include <cstring>
 
-#include "grid_tiles.hpp"
+#include "cost_to_go/grid/grid_tiles.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "kernels/relax.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {

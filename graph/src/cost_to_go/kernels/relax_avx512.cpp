@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "relax.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 #define SWIVEL_ISA avx512
-#include "relax.inl"
+#include "cost_to_go/kernels/relax.inl"
 
 namespace swivel {
 const RelaxKernels& avx512_relax_kernels() {

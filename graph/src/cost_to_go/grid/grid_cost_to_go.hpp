@@ -5,10 +5,10 @@
 #include <memory>
 #include <vector>
 
-#include "coarse_bound.hpp"
+#include "cost_to_go/grid/coarse_bound.hpp"
+#include "cost_to_go/grid/tile_table.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/cost_to_go.hpp"
-#include "tile_table.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "grid_tiles.hpp"
+#include "cost_to_go/grid/grid_tiles.hpp"
 
 namespace swivel {
 

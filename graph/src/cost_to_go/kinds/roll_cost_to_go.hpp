@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "layer_values.hpp"
+#include "cost_to_go/kinds/layer_values.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/base/zeroed_array.hpp"
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 

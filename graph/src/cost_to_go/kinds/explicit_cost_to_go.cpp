@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "explicit_cost_to_go.hpp"
+#include "cost_to_go/kinds/explicit_cost_to_go.hpp"
 
 #include <algorithm>
 
-#include "relax_task.hpp"
+#include "cost_to_go/kernels/relax_task.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel {

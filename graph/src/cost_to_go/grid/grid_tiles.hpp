@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <tuple>
 
-#include "grid_cost_to_go.hpp"
-#include "kernels/relax.hpp"
+#include "cost_to_go/grid/grid_cost_to_go.hpp"
+#include "cost_to_go/kernels/relax.hpp"
 
 namespace swivel {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/graph/cost_to_go.hpp"
+#include "swivel/graph/cost_to_go/cost_to_go.hpp"
 
 namespace swivel {
 
