@@ -11,7 +11,7 @@
 #include <unordered_map>
 
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/graph/implicit_lattice.hpp"
+#include "swivel/graph/lattice_graph/implicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -12,7 +12,7 @@
 #include "cost_to_go/kernels/relax.hpp"
 #include "robots.hpp"
 #include "swivel/core/base/isa.hpp"
-#include "swivel/graph/implicit_lattice.hpp"
+#include "swivel/graph/lattice_graph/implicit_lattice.hpp"
 #include "swivel/graph/path_first.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
-#include "swivel/graph/implicit_lattice.hpp"
+#include "swivel/graph/lattice_graph/implicit_lattice.hpp"
 #include "window.hpp"
 
 namespace swivel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <boost/graph/breadth_first_search.hpp>
-#include <swivel/graph/implicit_lattice.hpp>
+#include <swivel/graph/lattice_graph/implicit_lattice.hpp>
 
 void visit_all(swivel::CostToGo& cost_to_go, boost::queue<swivel::ImplicitLattice::Vertex>& queue,
                std::map<swivel::ImplicitLattice::Vertex, boost::default_color_type>& colors) {

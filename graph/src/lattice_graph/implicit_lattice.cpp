@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/graph/implicit_lattice.hpp"
+#include "swivel/graph/lattice_graph/implicit_lattice.hpp"
 
 #include <algorithm>
 
