@@ -15,7 +15,7 @@
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/planner.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/collision/world/world.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 

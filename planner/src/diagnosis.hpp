@@ -7,7 +7,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 

@@ -9,7 +9,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/planner.hpp"
 #include "witnesses.hpp"

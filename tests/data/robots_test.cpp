@@ -12,7 +12,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 
 namespace swivel {

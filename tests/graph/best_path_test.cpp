@@ -7,7 +7,7 @@
 #include "answer_order.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 namespace {

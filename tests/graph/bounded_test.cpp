@@ -13,7 +13,7 @@
 #include "robots.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/graph/lattice_graph/implicit_lattice.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 namespace {

@@ -9,7 +9,7 @@
 #include "cost_to_go/grid/grid_cost_to_go.hpp"
 #include "robots.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 namespace {

@@ -14,7 +14,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/campaign.hpp"
 #include "swivel/planner/planner.hpp"
 

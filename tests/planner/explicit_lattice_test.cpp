@@ -12,7 +12,7 @@
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "without.hpp"
 
 namespace swivel::test {

@@ -8,7 +8,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/planner.hpp"
 
 namespace swivel {

@@ -16,7 +16,7 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/cut.hpp"

@@ -10,7 +10,7 @@
 #include "motion_problem.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/prepared_robot.hpp"
 
 namespace swivel {

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 

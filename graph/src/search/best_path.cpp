@@ -12,7 +12,7 @@
 
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/graph/lattice_graph/implicit_lattice.hpp"
-#include "swivel/graph/path_first.hpp"
+#include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {
 
