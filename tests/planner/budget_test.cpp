@@ -13,7 +13,7 @@
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/eager.hpp"
+#include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/campaign.hpp"
 #include "swivel/planner/planner.hpp"

@@ -11,7 +11,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/eager.hpp"
+#include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "without.hpp"
 

@@ -19,7 +19,7 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/graph/eager.hpp"
+#include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"

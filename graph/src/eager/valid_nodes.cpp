@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "valid_nodes.hpp"
+#include "eager/valid_nodes.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/graph/eager.hpp"
+#include "swivel/graph/eager/eager.hpp"
 
 #include <algorithm>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
@@ -7,8 +7,8 @@
 #include <boost/iterator/transform_iterator.hpp>
 
 #include "cost_to_go/best_start.hpp"
+#include "eager/valid_nodes.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "valid_nodes.hpp"
 
 namespace swivel {
 

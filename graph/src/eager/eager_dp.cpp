@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "cost_to_go/best_start.hpp"
-#include "swivel/graph/eager.hpp"
-#include "valid_nodes.hpp"
+#include "eager/valid_nodes.hpp"
+#include "swivel/graph/eager/eager.hpp"
 
 namespace swivel {
 
