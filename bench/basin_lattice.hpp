@@ -9,7 +9,7 @@
 
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/motion/redundancy.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "swivel/collision/world/world.hpp"
-#include "swivel/planner/motion_defaults.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {
 

@@ -18,7 +18,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/motion_defaults.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {
 

@@ -17,7 +17,7 @@
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::python {
 

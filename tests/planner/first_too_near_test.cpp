@@ -9,7 +9,7 @@
 #include "linkages.hpp"
 #include "random_problem.hpp"
 #include "seed.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {

@@ -10,7 +10,7 @@
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

@@ -7,7 +7,7 @@
 #include "swivel/core/answer/cut.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

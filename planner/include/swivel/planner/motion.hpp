@@ -6,8 +6,8 @@
 
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/motion/time_path.hpp"
-#include "swivel/planner/motion_defaults.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {
 

@@ -10,7 +10,7 @@
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/planner/plan_options.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

@@ -5,7 +5,7 @@
 
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/planner/prepared_robot.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

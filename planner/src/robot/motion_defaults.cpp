@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/motion_defaults.hpp"
+#include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {
 
