@@ -9,11 +9,11 @@
 #include <map>
 #include <string>
 
-#include "collision_validity.hpp"
 #include "constraint_removal.hpp"
 #include "constraints.hpp"
-#include "hooked_validity.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 namespace swivel {
 

@@ -9,9 +9,7 @@
 #include <utility>
 
 #include "answer_check.hpp"
-#include "collision_validity.hpp"
 #include "diagnosis.hpp"
-#include "hooked_validity.hpp"
 #include "measure_rows.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"
@@ -27,6 +25,8 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
+#include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 namespace swivel {
 

@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "asked_hooks.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -18,6 +17,7 @@
 #include "swivel/core/motion/smooth_path.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/planner.hpp"
+#include "validity/asked_hooks.hpp"
 
 namespace swivel {
 

@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "asked_hooks.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/cause.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
+#include "validity/asked_hooks.hpp"
 
 namespace swivel {
 

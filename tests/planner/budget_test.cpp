@@ -8,7 +8,6 @@
 #include <limits>
 #include <utility>
 
-#include "collision_validity.hpp"
 #include "cost_to_go/grid/coarse_bound.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
@@ -17,6 +16,7 @@
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/campaign.hpp"
 #include "swivel/planner/planner.hpp"
+#include "validity/collision_validity.hpp"
 
 namespace swivel {
 namespace {

@@ -12,13 +12,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "collision_validity.hpp"
 #include "inner_posture.hpp"
 #include "plain_edge_rule.hpp"
 #include "robots.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
+#include "validity/collision_validity.hpp"
 
 namespace swivel {
 namespace {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <map>
 
-#include "collision_validity.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/planner.hpp"
+#include "validity/collision_validity.hpp"
 
 namespace swivel {
 namespace {

@@ -6,13 +6,13 @@
 #include <algorithm>
 
 #include "brute_force.hpp"
-#include "collision_validity.hpp"
 #include "diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
+#include "validity/collision_validity.hpp"
 #include "without.hpp"
 
 namespace swivel::test {

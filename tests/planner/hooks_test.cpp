@@ -12,8 +12,6 @@
 #include <thread>
 
 #include "brute_force.hpp"
-#include "collision_validity.hpp"
-#include "hooked_validity.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -23,6 +21,8 @@
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "validity/collision_validity.hpp"
+#include "validity/hooked_validity.hpp"
 #include "window.hpp"
 
 namespace swivel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "collision_validity.hpp"
+#include "validity/collision_validity.hpp"
 
 #include <algorithm>
 #include <cmath>

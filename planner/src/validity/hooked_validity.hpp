@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "asked_hooks.hpp"
 #include "swivel/graph/verdicts/validity.hpp"
+#include "validity/asked_hooks.hpp"
 
 namespace swivel {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "clearance_memory.hpp"
+#include "validity/clearance_memory.hpp"
 
 #include <algorithm>
 #include <utility>

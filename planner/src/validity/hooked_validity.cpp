@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hooked_validity.hpp"
+#include "validity/hooked_validity.hpp"
 
 #include <algorithm>
 

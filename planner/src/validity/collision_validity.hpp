@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "clearance_memory.hpp"
-#include "row_margin.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/verdicts/validity.hpp"
 #include "swivel/parallel/executor.hpp"
+#include "validity/clearance_memory.hpp"
+#include "validity/row_margin.hpp"
 
 namespace swivel {
 

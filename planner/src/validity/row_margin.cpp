@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "row_margin.hpp"
+#include "validity/row_margin.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "asked_hooks.hpp"
+#include "validity/asked_hooks.hpp"
 
 #include <algorithm>
 #include <chrono>
