@@ -10,8 +10,8 @@
 
 #include "answer_check.hpp"
 #include "between_samples.hpp"
-#include "first_too_near.hpp"
-#include "measure_rows.hpp"
+#include "measure/first_too_near.hpp"
+#include "measure/measure_rows.hpp"
 #include "swivel/core/kinematics/newton/posture_beside.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "nearest_approach.hpp"
+#include "measure/nearest_approach.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"

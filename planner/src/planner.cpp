@@ -10,7 +10,7 @@
 
 #include "answer_check.hpp"
 #include "diagnosis.hpp"
-#include "measure_rows.hpp"
+#include "measure/measure_rows.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"
 #include "swivel/core/base/angle.hpp"

@@ -13,7 +13,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/check.hpp"
-#include "swivel/planner/measure.hpp"
+#include "swivel/planner/measure/measure.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
 

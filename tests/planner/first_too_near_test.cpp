@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The proof that rows and the moves between them keep clear, against questions about each of them, by FCL alone.
-#include "first_too_near.hpp"
+#include "measure/first_too_near.hpp"
 
 #include <gtest/gtest.h>
 

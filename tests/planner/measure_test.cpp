@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/measure.hpp"
+#include "swivel/planner/measure/measure.hpp"
 
 #include <gtest/gtest.h>
 

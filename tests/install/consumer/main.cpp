@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <string>
 #include <swivel/planner/check.hpp>
-#include <swivel/planner/measure.hpp>
+#include <swivel/planner/measure/measure.hpp>
 #include <swivel/planner/planner.hpp>
 #include <thread>
 

@@ -160,7 +160,7 @@ struct TopToolSpeed {
   int row = 0;        ///< on the step from it
 };
 
-/// What a trajectory comes near to, and how well it follows its path: measure() in planner/measure.hpp.
+/// What a trajectory comes near to, and how well it follows its path: measure() in planner/measure/measure.hpp.
 struct Measures {
   std::optional<NearestLimit> nearest_limit;   ///< null where no joint has limits
   std::optional<TopToolSpeed> top_tool_speed;  ///< null where the tool rests, or a joint's speed is not known

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "first_too_near.hpp"
+#include "measure/first_too_near.hpp"
 
 #include <algorithm>
 #include <array>

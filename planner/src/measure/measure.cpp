@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/measure.hpp"
+#include "swivel/planner/measure/measure.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
 
-#include "deepest_contact.hpp"
-#include "measure_rows.hpp"
-#include "nearest_approach.hpp"
+#include "measure/deepest_contact.hpp"
+#include "measure/measure_rows.hpp"
+#include "measure/nearest_approach.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"

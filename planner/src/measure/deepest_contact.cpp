@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "deepest_contact.hpp"
+#include "measure/deepest_contact.hpp"
 
 #include <algorithm>
 #include <cmath>

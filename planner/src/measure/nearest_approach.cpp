@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "nearest_approach.hpp"
+#include "measure/nearest_approach.hpp"
 
 #include <algorithm>
 #include <tuple>
