@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "answer_check.hpp"
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "search.hpp"
 #include "stopwatch.hpp"

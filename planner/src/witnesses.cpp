@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints.hpp"
+#include "diagnosis/constraints.hpp"
 
 namespace swivel {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cost_to_go/grid/coarse_bound.hpp"
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager/eager.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/planner/planner.hpp"
 #include "without.hpp"

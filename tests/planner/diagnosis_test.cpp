@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "brute_force.hpp"
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/explicit_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"

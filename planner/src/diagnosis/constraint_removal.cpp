@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraint_removal.hpp"
+#include "diagnosis/constraint_removal.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "constraints.hpp"
+#include "diagnosis/constraints.hpp"
 #include "swivel/graph/search/path_first.hpp"
 
 namespace swivel {

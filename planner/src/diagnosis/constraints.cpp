@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "constraints.hpp"
+#include "diagnosis/constraints.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "diagnosis.hpp"
+#include "diagnosis/diagnosis.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <map>
 #include <string>
 
-#include "constraint_removal.hpp"
-#include "constraints.hpp"
+#include "diagnosis/constraint_removal.hpp"
+#include "diagnosis/constraints.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
