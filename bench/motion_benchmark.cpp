@@ -16,9 +16,9 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace {
 

@@ -14,10 +14,10 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
-#include "swivel/planner/check.hpp"
-#include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

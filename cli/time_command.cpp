@@ -7,10 +7,10 @@
 #include "motion_output.hpp"
 #include "search_options.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/check.hpp"
-#include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
+#include "swivel/planner/verify/check.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

@@ -8,8 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "answer_check.hpp"
-#include "between_samples.hpp"
 #include "measure/first_too_near.hpp"
 #include "measure/measure_rows.hpp"
 #include "swivel/core/kinematics/newton/posture_beside.hpp"
@@ -19,6 +17,8 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/refine.hpp"
+#include "verify/answer_check.hpp"
+#include "verify/between_samples.hpp"
 
 namespace swivel {
 

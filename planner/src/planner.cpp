@@ -8,7 +8,6 @@
 #include <thread>
 #include <utility>
 
-#include "answer_check.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
 #include "search.hpp"
@@ -27,6 +26,7 @@
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
+#include "verify/answer_check.hpp"
 
 namespace swivel {
 

@@ -12,10 +12,10 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/measure/measure.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel::python {
 

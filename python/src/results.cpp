@@ -8,7 +8,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/complete_rows.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
 
 namespace swivel::python {
 

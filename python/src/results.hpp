@@ -9,8 +9,8 @@
 #include "bindings.hpp"
 #include "swivel/core/answer/advice.hpp"
 #include "swivel/io/motion.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel::python {
 

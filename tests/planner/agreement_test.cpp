@@ -9,8 +9,8 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 #include "window.hpp"
 
 namespace swivel {

@@ -10,9 +10,9 @@
 #include "motion_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/refine.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

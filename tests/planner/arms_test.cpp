@@ -14,8 +14,8 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

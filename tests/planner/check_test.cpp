@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/check.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "random_problem.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

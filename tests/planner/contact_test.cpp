@@ -10,10 +10,10 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

@@ -16,8 +16,8 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/refine.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

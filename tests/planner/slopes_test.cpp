@@ -10,8 +10,8 @@
 #include "motion_problem.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "motion_problem.hpp"
 #include "robots.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/motion.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

@@ -9,10 +9,10 @@
 #include "motion_mutations.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/io/motion.hpp"
-#include "swivel/planner/check.hpp"
-#include "swivel/planner/complete_rows.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
 
 namespace swivel {
 namespace {

@@ -10,8 +10,8 @@
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/campaign.hpp"
-#include "swivel/planner/check.hpp"
 #include "swivel/planner/planner.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <stop_token>
 #include <string>
-#include <swivel/planner/check.hpp>
 #include <swivel/planner/measure/measure.hpp>
 #include <swivel/planner/planner.hpp>
+#include <swivel/planner/verify/check.hpp>
 #include <thread>
 
 using swivel::Vector3d;

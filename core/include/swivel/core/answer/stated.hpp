@@ -4,7 +4,7 @@
 namespace swivel {
 
 /// What a trajectory's file states of its rows, besides their joints. The rest can be worked out from the joints and the problem:
-/// complete_rows() in planner/complete_rows.hpp.
+/// complete_rows() in planner/verify/complete_rows.hpp.
 struct Stated {
   bool s = true, phi = true, branch = true;  ///< TrajectoryRow's
   bool roll = true;                          ///< TrajectoryRow::roll

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "check_rates.hpp"
+#include "verify/check_rates.hpp"
 
 #include <algorithm>
 #include <cmath>

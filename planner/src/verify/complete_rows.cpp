@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/complete_rows.hpp"
+#include "swivel/planner/verify/complete_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "check_rates.hpp"
-#include "path_following.hpp"
-#include "places_on_path.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
@@ -19,6 +16,9 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
+#include "verify/check_rates.hpp"
+#include "verify/path_following.hpp"
+#include "verify/places_on_path.hpp"
 
 namespace swivel {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "places_on_path.hpp"
+#include "verify/places_on_path.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "path_following.hpp"
+#include "verify/path_following.hpp"
 
 namespace swivel {
 

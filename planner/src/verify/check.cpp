@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/check.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "answer_check.hpp"
-#include "between_samples.hpp"
-#include "check_rates.hpp"
 #include "measure/deepest_contact.hpp"
 #include "measure/first_too_near.hpp"
-#include "path_following.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
@@ -23,6 +19,10 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/core/problem/validate.hpp"
+#include "verify/answer_check.hpp"
+#include "verify/between_samples.hpp"
+#include "verify/check_rates.hpp"
+#include "verify/path_following.hpp"
 
 namespace swivel {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "swivel/planner/check.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 

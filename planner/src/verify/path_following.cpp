@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "path_following.hpp"
+#include "verify/path_following.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "swivel/planner/check.hpp"
+#include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
 
