@@ -24,7 +24,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 

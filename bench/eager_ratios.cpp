@@ -19,7 +19,7 @@
 #include "arguments.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 

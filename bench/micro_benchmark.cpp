@@ -17,7 +17,7 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 

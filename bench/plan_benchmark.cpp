@@ -14,7 +14,7 @@
 #include "context.hpp"
 #include "settings.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 

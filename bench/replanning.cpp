@@ -11,7 +11,7 @@
 #include "arguments.hpp"
 #include "settings.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/cut.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 #include "terminal.hpp"

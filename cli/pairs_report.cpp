@@ -8,7 +8,7 @@
 
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

@@ -24,7 +24,7 @@
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/motion.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
 #include "terminal.hpp"

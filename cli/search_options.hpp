@@ -6,7 +6,7 @@
 #include <string>
 
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel::cli {
 

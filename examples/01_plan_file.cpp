@@ -2,7 +2,7 @@
 // The example of README.md: plans a problem file, prints the joints.
 #include <iostream>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
   const swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");

@@ -2,7 +2,7 @@
 // A planner is built once. An object moves a little at a time, and each plan re-uses what the move did not change.
 #include <iostream>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
   swivel::Planner planner(swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_c.yaml"));

@@ -4,7 +4,7 @@
 #include <iostream>
 #include <stop_token>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 #include <thread>
 
 int main(int argc, char** argv) {

@@ -2,7 +2,7 @@
 // Where there is no path, the result says how far one gets and what stops it.
 #include <iostream>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
   swivel::Problem problem = swivel::io::load_problem(argc > 1 ? argv[1] : "data/problems/experiment_a.yaml");

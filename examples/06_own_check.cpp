@@ -5,7 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 class Hose : public swivel::StateCheck {
  public:

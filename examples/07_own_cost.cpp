@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 class NearTheMiddle : public swivel::StateCost {
  public:

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <swivel/io/io.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 
 int main(int argc, char** argv) {
   const std::filesystem::path folder = argc > 1 ? argv[1] : "data/robots";

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel::baselines {
 

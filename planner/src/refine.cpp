@@ -16,7 +16,7 @@
 #include "swivel/core/motion/redundancy.hpp"
 #include "swivel/core/motion/smooth_path.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "validity/asked_hooks.hpp"
 
 namespace swivel {

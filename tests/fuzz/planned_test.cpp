@@ -5,7 +5,7 @@
 
 #include "robots.hpp"
 #include "seed.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "trial.hpp"
 
 namespace swivel::test {

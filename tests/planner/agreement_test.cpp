@@ -9,7 +9,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "window.hpp"
 

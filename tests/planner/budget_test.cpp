@@ -15,7 +15,7 @@
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/campaign.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "validity/collision_validity.hpp"
 
 namespace swivel {

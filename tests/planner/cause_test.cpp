@@ -9,7 +9,7 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "without.hpp"
 
 namespace swivel {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "motion_mutations.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 namespace {

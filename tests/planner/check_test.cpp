@@ -17,7 +17,7 @@
 #include "robots.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "validity/collision_validity.hpp"
 
 namespace swivel {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "random_problem.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -12,7 +12,7 @@
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/cut.hpp"
 #include "swivel/planner/motion.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

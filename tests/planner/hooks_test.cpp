@@ -19,7 +19,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"

@@ -10,7 +10,7 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "window.hpp"
 

@@ -9,7 +9,7 @@
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 namespace {

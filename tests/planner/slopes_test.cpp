@@ -10,7 +10,7 @@
 #include "motion_problem.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -9,7 +9,7 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -11,7 +11,7 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/study/campaign.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 namespace {

@@ -10,7 +10,7 @@
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/planner/motion.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 

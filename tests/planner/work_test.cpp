@@ -11,7 +11,7 @@
 
 #include "robots.hpp"
 #include "swivel/core/base/isa.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace {
 std::atomic<std::int64_t> allocations{0};

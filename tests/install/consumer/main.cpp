@@ -8,7 +8,7 @@
 #include <stop_token>
 #include <string>
 #include <swivel/planner/measure/measure.hpp>
-#include <swivel/planner/planner.hpp>
+#include <swivel/planner/plan/planner.hpp>
 #include <swivel/planner/verify/check.hpp>
 #include <thread>
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 

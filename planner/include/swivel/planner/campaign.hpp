@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "swivel/core/study/campaign.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 

@@ -6,7 +6,7 @@
 
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/motion/time_path.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 
 namespace swivel {

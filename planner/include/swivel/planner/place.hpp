@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/study/placement.hpp"
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {
 

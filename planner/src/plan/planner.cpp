@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/planner.hpp"
+#include "swivel/planner/plan/planner.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -10,8 +10,8 @@
 
 #include "diagnosis/diagnosis.hpp"
 #include "measure/measure_rows.hpp"
-#include "search.hpp"
-#include "stopwatch.hpp"
+#include "plan/search.hpp"
+#include "plan/stopwatch.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"

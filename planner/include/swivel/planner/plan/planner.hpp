@@ -9,7 +9,7 @@
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
-#include "swivel/planner/plan_options.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {

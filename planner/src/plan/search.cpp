@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "search.hpp"
+#include "plan/search.hpp"
 
-#include "stopwatch.hpp"
+#include "plan/stopwatch.hpp"
 
 namespace swivel {
 

@@ -9,7 +9,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/plan_options.hpp"
+#include "swivel/planner/plan/plan_options.hpp"
 
 namespace swivel {
 
