@@ -14,7 +14,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motion.hpp"
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"

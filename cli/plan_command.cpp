@@ -22,7 +22,7 @@
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/report/lattice_map.hpp"

@@ -10,7 +10,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"

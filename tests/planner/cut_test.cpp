@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Certificates that a problem has no path: verified by check_cut() and by plain loops; forged ones are refused.
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -18,7 +18,7 @@
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"

@@ -4,15 +4,15 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/cut.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
-#include "witnesses.hpp"
 
 namespace swivel {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/cut.hpp"
-#include "witnesses.hpp"
+#include "swivel/planner/certificate/cut.hpp"
 
 namespace swivel {
 

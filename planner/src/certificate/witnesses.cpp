@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "witnesses.hpp"
+#include "certificate/witnesses.hpp"
 
 #include <algorithm>
 #include <cmath>
