@@ -21,8 +21,8 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/motion.hpp"
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/refine/refine.hpp"
 
 namespace {
 

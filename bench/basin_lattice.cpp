@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/refine.hpp"
 
 namespace swivel::bench {
 
@@ -52,7 +52,7 @@ BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem, c
 }
 
 BasinLattice::Point BasinLattice::solved_point(int layer, int point) const {
-  constexpr double kLimit = 1e-9, kBetween = 1e-3;  // rad; as planner/src/refine.cpp
+  constexpr double kLimit = 1e-9, kBetween = 1e-3;  // rad; as planner/src/refine/refine.cpp
   Point p;
   const auto q = solver_->joints(layer, coordinate(layer, point));
   if (!q) return p;

@@ -21,7 +21,7 @@
 #include "swivel/core/base/fnv1a.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace cereal {

@@ -13,8 +13,8 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/measure/measure.hpp"
-#include "swivel/planner/motion.hpp"
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel::python {

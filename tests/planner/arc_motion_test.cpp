@@ -10,8 +10,8 @@
 #include "motion_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
-#include "swivel/planner/motion.hpp"
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

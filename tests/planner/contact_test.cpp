@@ -11,8 +11,8 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/advise.hpp"
 #include "swivel/planner/certificate/cut.hpp"
-#include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

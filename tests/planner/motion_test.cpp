@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Refined paths and motions in time on random problems, held against the check that knows nothing of either.
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine/motion.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

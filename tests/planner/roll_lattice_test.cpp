@@ -19,8 +19,8 @@
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/cut.hpp"
-#include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -6,7 +6,7 @@
 
 #include "motion_problem.hpp"
 #include "robots.hpp"
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

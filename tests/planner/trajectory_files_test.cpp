@@ -9,8 +9,8 @@
 #include "motion_mutations.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/io/motion.hpp"
-#include "swivel/planner/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 

@@ -19,7 +19,7 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/motion.hpp"
+#include "swivel/planner/refine/motion.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +16,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/refine.hpp"
 #include "verify/answer_check.hpp"
 #include "verify/between_samples.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/refine.hpp"
+#include "swivel/planner/refine/refine.hpp"
 
 #include <algorithm>
 #include <cmath>
