@@ -18,7 +18,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/shards.hpp"
-#include "swivel/planner/campaign.hpp"
+#include "swivel/planner/study/campaign.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

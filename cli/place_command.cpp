@@ -22,7 +22,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/io/shards.hpp"
-#include "swivel/planner/place.hpp"
+#include "swivel/planner/study/place.hpp"
 
 namespace swivel::cli {
 

@@ -11,10 +11,10 @@
 #include "results.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/planner/advise.hpp"
 #include "swivel/planner/measure/measure.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel::python {

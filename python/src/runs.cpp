@@ -15,8 +15,8 @@
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/placement.hpp"
-#include "swivel/planner/campaign.hpp"
-#include "swivel/planner/place.hpp"
+#include "swivel/planner/study/campaign.hpp"
+#include "swivel/planner/study/place.hpp"
 
 namespace swivel::python {
 

@@ -14,8 +14,8 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/campaign.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/study/campaign.hpp"
 #include "validity/collision_validity.hpp"
 
 namespace swivel {

@@ -9,10 +9,10 @@
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/advise.hpp"
 #include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -7,8 +7,8 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/planner/advise.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -9,8 +9,8 @@
 
 #include "motion_problem.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
-#include "swivel/planner/advise.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

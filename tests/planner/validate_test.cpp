@@ -9,8 +9,8 @@
 
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
-#include "swivel/planner/campaign.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/study/campaign.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

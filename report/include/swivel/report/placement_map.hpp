@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/study/placement.hpp"
-#include "swivel/planner/place.hpp"
+#include "swivel/planner/study/place.hpp"
 #include "swivel/report/ended_by.hpp"
 
 namespace swivel {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/place.hpp"
+#include "swivel/planner/study/place.hpp"
 
 #include <algorithm>
 #include <atomic>

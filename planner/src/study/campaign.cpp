@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/campaign.hpp"
+#include "swivel/planner/study/campaign.hpp"
 
 #include <atomic>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/planner/advise.hpp"
+#include "swivel/planner/study/advise.hpp"
 
 #include <algorithm>
 #include <chrono>
