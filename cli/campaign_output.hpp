@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "swivel/core/study/campaign.hpp"
-#include "swivel/io/files.hpp"
+#include "swivel/io/files/files.hpp"
 #include "swivel/io/shards.hpp"
 
 namespace swivel::cli {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "placement_options.hpp"
-#include "swivel/io/files.hpp"
+#include "swivel/io/files/files.hpp"
 #include "swivel/io/shards.hpp"
 #include "swivel/report/placement_map.hpp"
 

@@ -12,9 +12,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "bad_input.hpp"
-#include "csv.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
 #include "run_settings.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/campaign.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 
 namespace swivel::io {
 

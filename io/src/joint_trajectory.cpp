@@ -2,7 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "files.hpp"
+#include "files/files.hpp"
 #include "moved_joints.hpp"
 #include "stamp.hpp"
 #include "swivel/io/motion.hpp"

@@ -10,10 +10,10 @@
 #include <set>
 #include <sstream>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
+#include "files/text_number.hpp"
 #include "joint_rows.hpp"
-#include "text_number.hpp"
 #include "trajectory_formats.hpp"
 
 namespace swivel::io {

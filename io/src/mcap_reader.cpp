@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 #include "joint_rows.hpp"
 #include "mcap_records.hpp"
 #include "trajectory_formats.hpp"

@@ -4,8 +4,8 @@
 #include <cctype>
 #include <string>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
 #include "mesh_file.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/io/mesh.hpp"

@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
+#include "files/text_number.hpp"
+#include "files/xml.hpp"
 #include "mesh_file.hpp"
-#include "text_number.hpp"
-#include "xml.hpp"
 
 namespace swivel::io {
 

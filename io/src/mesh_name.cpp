@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 
 namespace swivel::io {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <string_view>
 
+#include "files/text_number.hpp"
 #include "mesh_file.hpp"
-#include "text_number.hpp"
 
 namespace swivel::io {
 

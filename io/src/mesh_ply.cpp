@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "files/text_number.hpp"
 #include "mesh_file.hpp"
-#include "text_number.hpp"
 
 namespace swivel::io {
 

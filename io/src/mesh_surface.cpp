@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 #include "mesh_file.hpp"
 
 namespace swivel::io {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "bad_input.hpp"
-#include "csv.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/io/problem.hpp"
 

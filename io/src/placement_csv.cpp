@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "csv.hpp"
+#include "files/csv.hpp"
 #include "swivel/io/placement.hpp"
 #include "table_rows.hpp"
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "bad_input.hpp"
-#include "csv.hpp"
+#include "files/bad_input.hpp"
+#include "files/csv.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/study/placement.hpp"
 #include "swivel/io/problem.hpp"

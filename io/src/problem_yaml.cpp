@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
 #include "srdf.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"

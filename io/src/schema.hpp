@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 #include "swivel/core/base/types.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/problem/validate.hpp"

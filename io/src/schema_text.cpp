@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "csv.hpp"
+#include "files/csv.hpp"
 #include "schema.hpp"
 
 namespace swivel::io {

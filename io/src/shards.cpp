@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
 #include "run_settings.hpp"
 #include "table_rows.hpp"
 

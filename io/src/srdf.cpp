@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
+#include "files/xml.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "xml.hpp"
 #include "xml_words.hpp"
 
 namespace swivel::io {

@@ -3,8 +3,8 @@
 #include <set>
 #include <string>
 
+#include "files/xml.hpp"
 #include "swivel/core/problem/robot_model.hpp"
-#include "xml.hpp"
 
 namespace swivel::io {
 

@@ -8,10 +8,10 @@
 #include <string_view>
 #include <vector>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
+#include "files/text_number.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "text_number.hpp"
 
 namespace swivel::io {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "csv.hpp"
-#include "files.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
 #include "schema.hpp"
 #include "swivel/io/motion.hpp"
 #include "trajectory_columns.hpp"

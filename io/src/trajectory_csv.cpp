@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "csv.hpp"
-#include "files.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
 #include "schema.hpp"
 #include "swivel/io/trajectory.hpp"
 #include "trajectory_columns.hpp"

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bad_input.hpp"
-#include "csv.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/csv.hpp"
+#include "files/files.hpp"
 #include "joint_rows.hpp"
 #include "schema.hpp"
 #include "swivel/io/motion.hpp"

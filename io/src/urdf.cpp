@@ -6,16 +6,16 @@
 #include <map>
 #include <string_view>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
+#include "files/text_number.hpp"
+#include "files/xml.hpp"
 #include "srdf.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/io/mesh.hpp"
 #include "swivel/io/urdf_shapes.hpp"
-#include "text_number.hpp"
-#include "xml.hpp"
 #include "xml_words.hpp"
 
 namespace swivel::io {

@@ -5,9 +5,9 @@
 #include <string_view>
 #include <variant>
 
-#include "csv.hpp"
+#include "files/csv.hpp"
+#include "files/xml.hpp"
 #include "swivel/io/urdf_shapes.hpp"
-#include "xml.hpp"
 
 namespace swivel::io {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 

@@ -10,11 +10,11 @@
 
 #include <yaml-cpp/eventhandler.h>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
+#include "files/text_number.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
-#include "text_number.hpp"
 
 namespace swivel::io {
 

@@ -2,7 +2,7 @@
 // Files in and out. Every loader throws InputError: one line with file, key or row, what is wrong and what is allowed.
 #pragma once
 #include "swivel/io/campaign.hpp"
-#include "swivel/io/files.hpp"
+#include "swivel/io/files/files.hpp"
 #include "swivel/io/mesh.hpp"
 #include "swivel/io/problem.hpp"
 #include "swivel/io/result.hpp"

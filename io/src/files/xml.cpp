@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "xml.hpp"
+#include "files/xml.hpp"
 
 #include <algorithm>
 #include <string>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "swivel/io/files.hpp"
+#include "swivel/io/files/files.hpp"
 
 namespace swivel::io {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "csv.hpp"
+#include "files/csv.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "bad_input.hpp"
-#include "files.hpp"
-#include "text_number.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
+#include "files/text_number.hpp"
 
 namespace swivel::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "files.hpp"
+#include "files/files.hpp"
 
 #include <array>
 #include <cerrno>
@@ -7,8 +7,8 @@
 #include <cstring>
 #include <system_error>
 
-#include "bad_input.hpp"
-#include "swivel/io/files.hpp"
+#include "files/bad_input.hpp"
+#include "swivel/io/files/files.hpp"
 
 namespace swivel::io {
 

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <utility>
 
-#include "bad_input.hpp"
-#include "files.hpp"
+#include "files/bad_input.hpp"
+#include "files/files.hpp"
 
 namespace swivel::io {
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "files.hpp"
+#include "files/files.hpp"
 #include "swivel/core/base/fnv1a.hpp"
-#include "swivel/io/files.hpp"
+#include "swivel/io/files/files.hpp"
 
 namespace swivel::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bad_input.hpp"
+#include "files/bad_input.hpp"
 
 #include <string_view>
 
