@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/io/schema_text.hpp"
+#include "swivel/io/schema/schema_text.hpp"
 
 #include <cstdio>
 #include <functional>

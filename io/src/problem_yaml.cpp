@@ -5,6 +5,7 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
+#include "schema/yaml_value.hpp"
 #include "srdf.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
@@ -17,7 +18,6 @@
 #include "swivel/io/problem.hpp"
 #include "swivel/io/robot.hpp"
 #include "urdf.hpp"
-#include "yaml_value.hpp"
 
 namespace swivel::io {
 

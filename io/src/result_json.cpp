@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nlohmann/json.hpp>
 
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/io/campaign.hpp"
 #include "swivel/io/motion.hpp"
 #include "swivel/io/result.hpp"

@@ -3,7 +3,7 @@
 
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/io/motion.hpp"
 #include "trajectory_columns.hpp"
 

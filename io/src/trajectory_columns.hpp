@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/core/answer/plan.hpp"
 
 namespace swivel::io {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/io/trajectory.hpp"
 #include "trajectory_columns.hpp"
 

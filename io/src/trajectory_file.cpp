@@ -6,7 +6,7 @@
 #include "files/csv.hpp"
 #include "files/files.hpp"
 #include "joint_rows.hpp"
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/io/motion.hpp"
 #include "trajectory_columns.hpp"
 #include "trajectory_formats.hpp"

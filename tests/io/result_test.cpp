@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "io_support.hpp"
-#include "swivel/io/schema_text.hpp"
+#include "swivel/io/schema/schema_text.hpp"
 
 namespace swivel::io::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "problem_support.hpp"
-#include "swivel/io/schema_text.hpp"
+#include "swivel/io/schema/schema_text.hpp"
 
 namespace swivel::io::test {
 namespace {

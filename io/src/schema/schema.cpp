@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "schema.hpp"
+#include "schema/schema.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "yaml_value.hpp"
+#include "schema/yaml_value.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/io/schema_text.hpp"
+#include "swivel/io/schema/schema_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "files/csv.hpp"
-#include "schema.hpp"
+#include "schema/schema.hpp"
 
 namespace swivel::io {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "schema.hpp"
+#include "schema/schema.hpp"
 #include "swivel/core/base/types.hpp"
 
 namespace swivel::io {
