@@ -14,7 +14,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/io/mesh.hpp"
+#include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problem.hpp"
 #include "swivel/io/robot.hpp"
 #include "urdf.hpp"

@@ -14,7 +14,7 @@
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
-#include "swivel/io/mesh.hpp"
+#include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/urdf_shapes.hpp"
 #include "xml_words.hpp"
 

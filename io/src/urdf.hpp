@@ -4,7 +4,7 @@
 #include <set>
 #include <string>
 
-#include "mesh_name.hpp"
+#include "meshes/mesh_name.hpp"
 #include "swivel/core/problem/robot_model.hpp"
 #include "swivel/io/robot.hpp"
 

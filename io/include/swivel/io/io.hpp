@@ -3,7 +3,7 @@
 #pragma once
 #include "swivel/io/campaign.hpp"
 #include "swivel/io/files/files.hpp"
-#include "swivel/io/mesh.hpp"
+#include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problem.hpp"
 #include "swivel/io/result.hpp"
 #include "swivel/io/robot.hpp"

@@ -9,7 +9,7 @@
 #include "files/bad_input.hpp"
 #include "files/text_number.hpp"
 #include "files/xml.hpp"
-#include "mesh_file.hpp"
+#include "meshes/mesh_file.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "files/text_number.hpp"
-#include "mesh_file.hpp"
+#include "meshes/mesh_file.hpp"
 
 namespace swivel::io {
 

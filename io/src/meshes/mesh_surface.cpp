@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "files/bad_input.hpp"
-#include "mesh_file.hpp"
+#include "meshes/mesh_file.hpp"
 
 namespace swivel::io {
 

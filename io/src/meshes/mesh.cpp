@@ -6,9 +6,9 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
-#include "mesh_file.hpp"
+#include "meshes/mesh_file.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "swivel/io/mesh.hpp"
+#include "swivel/io/meshes/mesh.hpp"
 
 namespace swivel::io {
 

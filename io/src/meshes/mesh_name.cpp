@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "mesh_name.hpp"
+#include "meshes/mesh_name.hpp"
 
 #include <tinyxml2.h>
 
