@@ -10,7 +10,7 @@
 #include "packages_option.hpp"
 #include "swivel/core/fit/capsule_fit.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/urdf_shapes.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 #include "terminal.hpp"
 
 namespace swivel::cli {

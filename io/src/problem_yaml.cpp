@@ -5,8 +5,9 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
+#include "robots/srdf.hpp"
+#include "robots/urdf.hpp"
 #include "schema/yaml_value.hpp"
-#include "srdf.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -16,8 +17,7 @@
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problem.hpp"
-#include "swivel/io/robot.hpp"
-#include "urdf.hpp"
+#include "swivel/io/robots/robot.hpp"
 
 namespace swivel::io {
 

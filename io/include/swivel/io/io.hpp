@@ -6,5 +6,5 @@
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problem.hpp"
 #include "swivel/io/result.hpp"
-#include "swivel/io/robot.hpp"
+#include "swivel/io/robots/robot.hpp"
 #include "swivel/io/trajectory.hpp"

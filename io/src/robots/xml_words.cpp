@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "xml_words.hpp"
+#include "robots/xml_words.hpp"
 
 #include <algorithm>
 #include <string_view>

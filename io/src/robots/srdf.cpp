@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "srdf.hpp"
+#include "robots/srdf.hpp"
 
 #include <set>
 #include <string>
@@ -7,8 +7,8 @@
 
 #include "files/bad_input.hpp"
 #include "files/xml.hpp"
+#include "robots/xml_words.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "xml_words.hpp"
 
 namespace swivel::io {
 

@@ -6,7 +6,7 @@
 
 #include "meshes/mesh_name.hpp"
 #include "swivel/core/problem/robot_model.hpp"
-#include "swivel/io/robot.hpp"
+#include "swivel/io/robots/robot.hpp"
 
 namespace swivel::io {
 

@@ -7,7 +7,7 @@
 
 #include "files/csv.hpp"
 #include "files/xml.hpp"
-#include "swivel/io/urdf_shapes.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 
 namespace swivel::io {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "urdf.hpp"
+#include "robots/urdf.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,13 @@
 #include "files/files.hpp"
 #include "files/text_number.hpp"
 #include "files/xml.hpp"
-#include "srdf.hpp"
+#include "robots/srdf.hpp"
+#include "robots/xml_words.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/io/meshes/mesh.hpp"
-#include "swivel/io/urdf_shapes.hpp"
-#include "xml_words.hpp"
+#include "swivel/io/robots/urdf_shapes.hpp"
 
 namespace swivel::io {
 
