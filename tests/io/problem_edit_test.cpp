@@ -4,7 +4,7 @@
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/study/placement.hpp"
 #include "swivel/io/placement.hpp"
-#include "swivel/io/problem.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io::test {
 namespace {

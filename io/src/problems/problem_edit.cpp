@@ -8,7 +8,7 @@
 #include "files/csv.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "swivel/io/problem.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
 

@@ -5,7 +5,7 @@
 #include "files/csv.hpp"
 #include "files/files.hpp"
 #include "swivel/core/messages/bounds.hpp"
-#include "swivel/io/problem.hpp"
+#include "swivel/io/problems/problem.hpp"
 
 namespace swivel::io {
 

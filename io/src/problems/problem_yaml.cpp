@@ -16,7 +16,7 @@
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/io/meshes/mesh.hpp"
-#include "swivel/io/problem.hpp"
+#include "swivel/io/problems/problem.hpp"
 #include "swivel/io/robots/robot.hpp"
 
 namespace swivel::io {
