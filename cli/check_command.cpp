@@ -13,7 +13,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/certificate/cut.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/verify/check.hpp"

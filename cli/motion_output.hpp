@@ -5,7 +5,7 @@
 #include <string>
 
 #include "swivel/core/motion/time_path.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/io/result.hpp"
 
 namespace swivel::cli {

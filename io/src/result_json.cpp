@@ -3,7 +3,7 @@
 
 #include "schema/schema.hpp"
 #include "swivel/io/campaign.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/io/result.hpp"
 
 namespace swivel::io {

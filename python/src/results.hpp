@@ -8,7 +8,7 @@
 
 #include "bindings.hpp"
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"
 

@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "robots.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/io/placement.hpp"
 #include "swivel/io/shards.hpp"
 

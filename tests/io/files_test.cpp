@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "io_support.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io::test {
 namespace {

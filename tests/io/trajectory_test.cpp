@@ -6,7 +6,7 @@
 
 #include "io_support.hpp"
 #include "seed.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io::test {
 namespace {

@@ -8,7 +8,7 @@
 #include "../io/io_support.hpp"
 #include "motion_mutations.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/verify/check.hpp"

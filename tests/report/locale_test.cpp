@@ -15,7 +15,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
 

@@ -4,7 +4,7 @@
 #include "swivel/io/campaign.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/io/meshes/mesh.hpp"
+#include "swivel/io/motions/trajectory.hpp"
 #include "swivel/io/problems/problem.hpp"
 #include "swivel/io/result.hpp"
 #include "swivel/io/robots/robot.hpp"
-#include "swivel/io/trajectory.hpp"

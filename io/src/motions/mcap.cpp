@@ -5,10 +5,10 @@
 #include <string_view>
 #include <type_traits>
 
-#include "mcap_records.hpp"
-#include "moved_joints.hpp"
-#include "stamp.hpp"
-#include "swivel/io/motion.hpp"
+#include "motions/mcap_records.hpp"
+#include "motions/moved_joints.hpp"
+#include "motions/stamp.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

@@ -13,8 +13,8 @@
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
 #include "files/text_number.hpp"
-#include "joint_rows.hpp"
-#include "trajectory_formats.hpp"
+#include "motions/joint_rows.hpp"
+#include "motions/trajectory_formats.hpp"
 
 namespace swivel::io {
 

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "files/files.hpp"
-#include "moved_joints.hpp"
-#include "stamp.hpp"
-#include "swivel/io/motion.hpp"
+#include "motions/moved_joints.hpp"
+#include "motions/stamp.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

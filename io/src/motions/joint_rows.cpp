@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "joint_rows.hpp"
+#include "motions/joint_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

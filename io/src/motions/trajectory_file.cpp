@@ -5,11 +5,11 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "joint_rows.hpp"
+#include "motions/joint_rows.hpp"
+#include "motions/trajectory_columns.hpp"
+#include "motions/trajectory_formats.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/motion.hpp"
-#include "trajectory_columns.hpp"
-#include "trajectory_formats.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

@@ -3,9 +3,9 @@
 
 #include "files/csv.hpp"
 #include "files/files.hpp"
+#include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/motion.hpp"
-#include "trajectory_columns.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

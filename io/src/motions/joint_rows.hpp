@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

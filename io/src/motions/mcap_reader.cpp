@@ -6,9 +6,9 @@
 #include <set>
 
 #include "files/bad_input.hpp"
-#include "joint_rows.hpp"
-#include "mcap_records.hpp"
-#include "trajectory_formats.hpp"
+#include "motions/joint_rows.hpp"
+#include "motions/mcap_records.hpp"
+#include "motions/trajectory_formats.hpp"
 
 namespace swivel::io {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files/bad_input.hpp"
-#include "swivel/io/motion.hpp"
+#include "swivel/io/motions/motion.hpp"
 
 namespace swivel::io {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files/csv.hpp"
 #include "files/files.hpp"
+#include "motions/trajectory_columns.hpp"
 #include "schema/schema.hpp"
-#include "swivel/io/trajectory.hpp"
-#include "trajectory_columns.hpp"
+#include "swivel/io/motions/trajectory.hpp"
 
 namespace swivel::io {
 
