@@ -6,7 +6,7 @@
 
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/result.hpp"
+#include "swivel/io/results/result.hpp"
 
 namespace swivel::cli {
 

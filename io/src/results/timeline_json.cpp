@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "swivel/io/result.hpp"
+#include "swivel/io/results/result.hpp"
 
 namespace swivel::io {
 

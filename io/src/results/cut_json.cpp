@@ -6,7 +6,7 @@
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
-#include "swivel/io/result.hpp"
+#include "swivel/io/results/result.hpp"
 
 namespace swivel::io {
 

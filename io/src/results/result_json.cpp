@@ -4,7 +4,7 @@
 #include "schema/schema.hpp"
 #include "swivel/io/campaign.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/result.hpp"
+#include "swivel/io/results/result.hpp"
 
 namespace swivel::io {
 
