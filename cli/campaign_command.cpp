@@ -17,7 +17,7 @@
 #include "shard_option.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/study/campaign.hpp"
 #include "terminal.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/files/files.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/shards.hpp"
 
 namespace swivel::cli {
 

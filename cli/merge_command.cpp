@@ -9,8 +9,8 @@
 #include "placement_output.hpp"
 #include "search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/io/placement.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/placement.hpp"
+#include "swivel/io/tables/shards.hpp"
 
 namespace swivel::cli {
 

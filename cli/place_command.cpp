@@ -20,8 +20,8 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/placement.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/placement.hpp"
+#include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/study/place.hpp"
 
 namespace swivel::cli {

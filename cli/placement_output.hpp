@@ -8,7 +8,7 @@
 
 #include "placement_options.hpp"
 #include "swivel/io/files/files.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/shards.hpp"
 #include "swivel/report/placement_map.hpp"
 
 namespace swivel::cli {

@@ -14,7 +14,7 @@
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/io/placement.hpp"
+#include "swivel/io/tables/placement.hpp"
 #include "swivel/planner/study/campaign.hpp"
 #include "swivel/planner/study/place.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "robots.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/io/placement.hpp"
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/placement.hpp"
+#include "swivel/io/tables/shards.hpp"
 
 namespace swivel::test {
 

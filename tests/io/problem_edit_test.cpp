@@ -3,8 +3,8 @@
 #include "problem_support.hpp"
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "swivel/io/placement.hpp"
 #include "swivel/io/problems/problem.hpp"
+#include "swivel/io/tables/placement.hpp"
 
 namespace swivel::io::test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/shards.hpp"
 
 #include <algorithm>
 #include <bit>
 
 #include "io_support.hpp"
 #include "seed.hpp"
-#include "swivel/io/placement.hpp"
+#include "swivel/io/tables/placement.hpp"
 
 namespace swivel::io::test {
 namespace {

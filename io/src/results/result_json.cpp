@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 
 #include "schema/schema.hpp"
-#include "swivel/io/campaign.hpp"
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/results/result.hpp"
+#include "swivel/io/tables/campaign.hpp"
 
 namespace swivel::io {
 

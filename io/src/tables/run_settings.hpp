@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "swivel/io/campaign.hpp"
+#include "swivel/io/tables/campaign.hpp"
 
 namespace swivel::io {
 

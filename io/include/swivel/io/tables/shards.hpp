@@ -9,7 +9,7 @@
 
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/core/study/placement.hpp"
-#include "swivel/io/campaign.hpp"
+#include "swivel/io/tables/campaign.hpp"
 
 namespace swivel::io {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "files/csv.hpp"
-#include "swivel/io/placement.hpp"
-#include "table_rows.hpp"
+#include "swivel/io/tables/placement.hpp"
+#include "tables/table_rows.hpp"
 
 namespace swivel::io {
 

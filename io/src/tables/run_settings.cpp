@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "run_settings.hpp"
+#include "tables/run_settings.hpp"
 
 #include <algorithm>
 

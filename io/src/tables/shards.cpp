@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/io/shards.hpp"
+#include "swivel/io/tables/shards.hpp"
 
 #include <algorithm>
 
 #include "files/bad_input.hpp"
 #include "files/files.hpp"
-#include "run_settings.hpp"
-#include "table_rows.hpp"
+#include "tables/run_settings.hpp"
+#include "tables/table_rows.hpp"
 
 namespace swivel::io {
 

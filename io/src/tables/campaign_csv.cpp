@@ -15,10 +15,10 @@
 #include "files/bad_input.hpp"
 #include "files/csv.hpp"
 #include "files/files.hpp"
-#include "run_settings.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "swivel/io/campaign.hpp"
-#include "table_rows.hpp"
+#include "swivel/io/tables/campaign.hpp"
+#include "tables/run_settings.hpp"
+#include "tables/table_rows.hpp"
 
 namespace swivel::io {
 
