@@ -12,14 +12,14 @@
 
 #include "campaign_output.hpp"
 #include "commands.hpp"
-#include "progress.hpp"
 #include "search_options.hpp"
 #include "shard_option.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/study/campaign.hpp"
-#include "terminal.hpp"
+#include "terminal/progress.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "swivel/report/overview.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

@@ -11,7 +11,7 @@
 #include "swivel/core/fit/capsule_fit.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

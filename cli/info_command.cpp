@@ -14,7 +14,7 @@
 #include "swivel/core/kinematics/srs/arm_guess.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "large_pages.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/io/io.hpp"
-#include "terminal.hpp"
-#include "wrapped_output.hpp"
+#include "terminal/large_pages.hpp"
+#include "terminal/terminal.hpp"
+#include "terminal/wrapped_output.hpp"
 
 namespace swivel::cli {
 

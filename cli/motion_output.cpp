@@ -4,7 +4,7 @@
 #include "commands.hpp"
 #include "search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

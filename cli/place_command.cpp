@@ -14,7 +14,6 @@
 
 #include "commands.hpp"
 #include "placement_output.hpp"
-#include "progress.hpp"
 #include "search_options.hpp"
 #include "shard_option.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -23,6 +22,7 @@
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/planner/study/place.hpp"
+#include "terminal/progress.hpp"
 
 namespace swivel::cli {
 

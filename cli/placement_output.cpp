@@ -11,7 +11,7 @@
 #include "search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/report/placement_map.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

@@ -14,7 +14,6 @@
 
 #include "commands.hpp"
 #include "motion_output.hpp"
-#include "progress.hpp"
 #include "search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -27,7 +26,8 @@
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
-#include "terminal.hpp"
+#include "terminal/progress.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

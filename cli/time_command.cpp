@@ -11,7 +11,7 @@
 #include "swivel/planner/refine/refine.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 

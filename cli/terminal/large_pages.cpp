@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "large_pages.hpp"
+#include "terminal/large_pages.hpp"
 
 #include <cstdint>
 #include <cstdlib>

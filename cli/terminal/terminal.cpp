@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 #include <cstdarg>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "wrapped_output.hpp"
+#include "terminal/wrapped_output.hpp"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "terminal.hpp"
+#include "terminal/terminal.hpp"
 
 namespace swivel::cli {
 
