@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "campaign_output.hpp"
-#include "commands.hpp"
-#include "search_options.hpp"
-#include "shard_option.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
+#include "options/shard_option.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/shards.hpp"

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "commands.hpp"
+#include "options/commands.hpp"
 #include "swivel/report/overview.hpp"
 #include "terminal/terminal.hpp"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
-#include "search_options.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"

@@ -5,9 +5,9 @@
 #include <optional>
 #include <variant>
 
-#include "commands.hpp"
-#include "known_name.hpp"
-#include "packages_option.hpp"
+#include "options/commands.hpp"
+#include "options/known_name.hpp"
+#include "options/packages_option.hpp"
 #include "swivel/core/fit/capsule_fit.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"

@@ -5,9 +5,9 @@
 #include <memory>
 #include <optional>
 
-#include "commands.hpp"
-#include "known_name.hpp"
-#include "packages_option.hpp"
+#include "options/commands.hpp"
+#include "options/known_name.hpp"
+#include "options/packages_option.hpp"
 #include "pairs_report.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/commands.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
 #include "swivel/io/io.hpp"

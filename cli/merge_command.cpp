@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "campaign_output.hpp"
-#include "commands.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "placement_output.hpp"
-#include "search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"

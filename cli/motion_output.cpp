@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion_output.hpp"
 
-#include "commands.hpp"
-#include "search_options.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "terminal/terminal.hpp"
 

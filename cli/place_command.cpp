@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "commands.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
+#include "options/shard_option.hpp"
 #include "placement_output.hpp"
-#include "search_options.hpp"
-#include "shard_option.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"

@@ -7,8 +7,8 @@
 #include <sstream>
 #include <utility>
 
-#include "commands.hpp"
-#include "search_options.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/report/placement_map.hpp"
 #include "terminal/terminal.hpp"

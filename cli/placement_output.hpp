@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "placement_options.hpp"
+#include "options/placement_options.hpp"
 #include "swivel/io/files/files.hpp"
 #include "swivel/io/tables/shards.hpp"
 #include "swivel/report/placement_map.hpp"

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "commands.hpp"
 #include "motion_output.hpp"
-#include "search_options.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "commands.hpp"
+#include "options/commands.hpp"
 
 namespace swivel::cli {
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "commands.hpp"
 #include "motion_output.hpp"
-#include "search_options.hpp"
+#include "options/commands.hpp"
+#include "options/search_options.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "placement_options.hpp"
+#include "options/placement_options.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/held_joint.hpp"
 #include "swivel/core/problem/problem.hpp"

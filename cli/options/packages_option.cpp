@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "packages_option.hpp"
+#include "options/packages_option.hpp"
 
 #include "swivel/core/messages/input_error.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "search_options.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "shard_option.hpp"
+#include "options/shard_option.hpp"
 
 #include <charconv>
 #include <cstdint>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "placement_options.hpp"
+#include "options/placement_options.hpp"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "search_options.hpp"
+#include "options/search_options.hpp"
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
