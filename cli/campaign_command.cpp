@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "campaign_output.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
+#include "output/campaign_output.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/shards.hpp"

@@ -8,7 +8,7 @@
 #include "options/commands.hpp"
 #include "options/known_name.hpp"
 #include "options/packages_option.hpp"
-#include "pairs_report.hpp"
+#include "output/pairs_report.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_guess.hpp"

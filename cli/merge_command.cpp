@@ -4,10 +4,10 @@
 #include <variant>
 #include <vector>
 
-#include "campaign_output.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
-#include "placement_output.hpp"
+#include "output/campaign_output.hpp"
+#include "output/placement_output.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"

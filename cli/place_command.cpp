@@ -15,7 +15,7 @@
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
-#include "placement_output.hpp"
+#include "output/placement_output.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"

@@ -12,9 +12,9 @@
 #include <string>
 #include <utility>
 
-#include "motion_output.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/motion_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"

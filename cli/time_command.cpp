@@ -3,9 +3,9 @@
 #include <optional>
 #include <stdexcept>
 
-#include "motion_output.hpp"
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
+#include "output/motion_output.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "campaign_output.hpp"
+#include "output/campaign_output.hpp"
 
 #include <algorithm>
 #include <cstdio>

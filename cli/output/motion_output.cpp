@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion_output.hpp"
+#include "output/motion_output.hpp"
 
 #include "options/commands.hpp"
 #include "options/search_options.hpp"

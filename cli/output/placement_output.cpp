@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "placement_output.hpp"
+#include "output/placement_output.hpp"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "pairs_report.hpp"
+#include "output/pairs_report.hpp"
 
 #include <algorithm>
 #include <cmath>
