@@ -5,7 +5,7 @@
 
 #include <sstream>
 
-#include "../io/io_support.hpp"
+#include "../../io/io_support.hpp"
 #include "motion_mutations.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/io/motions/motion.hpp"
