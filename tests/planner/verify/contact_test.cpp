@@ -189,19 +189,27 @@ TEST(Contact, NearlyAsDeepAsAllowedIsPlannedOrRefusedAtOnce) {
 
 /// What is too deep between layers alone is told with its depth, and deeper contact is among what is advised.
 TEST(Contact, ThatIsTooDeepIsToldWithItsDepthAndAdvised) {
-  Problem problem = polishing(0.002, 0.0024);
-  problem.resolution.ds = 0.06;  // the disc swings deeper on the way from one layer to the next
-  problem.limits.joint_step = 1.5;
-  problem.limits.tool_path_error.reset();
+  // A stylus of 8 mm is led past a pin of 12 mm, which it meets half-way between two layers.
+  Problem problem = polishing(-0.05);
+  Pose tip = Pose::Identity();
+  tip.translation().z() = 0.145;
+  problem.attached.push_back({"stylus", Sphere{0.004}, tip, problem.tip_link});
+  Pose pin = Pose::Identity();
+  pin.translation() = Vector3d(-0.08, -0.105, 0.042);
+  const SceneObject plate = problem.scene[1];
+  problem.scene.push_back({"pin", Sphere{0.006}, plate.pose * pin, {Allowed("stylus", 0.002)}});
   Planner between(problem);
   const PlanResult result = between.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
   const Cause& cause = result.diagnosis.cause;
   EXPECT_TRUE(cause.between_layers);
+  EXPECT_EQ(cause.bodies, (std::array<std::string, 2>{"stylus", "pin"}));
   ASSERT_TRUE(cause.value && cause.limit && cause.over);
-  EXPECT_LT(*cause.value, -0.0023);
-  EXPECT_EQ(*cause.over, 0.0024);
-  EXPECT_NE(answer_text(result).find("mm deep, allowed"), std::string::npos) << answer_text(result);
+  EXPECT_NEAR(*cause.value, -0.01, 2e-3);  // less where the stylus leaves its path
+  EXPECT_DOUBLE_EQ(*cause.limit, -(0.002 - 0.002 / 32));
+  EXPECT_EQ(*cause.over, 0.002);
+  EXPECT_NE(answer_text(result).find(" mm deep, allowed 1.94 mm: 2 mm less what motions need"), std::string::npos)
+      << answer_text(result);
 
   Planner planner(polishing(0.004, 0.003));
   PlanOptions options;
