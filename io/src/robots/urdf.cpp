@@ -102,18 +102,18 @@ class Element {
   [[nodiscard]] bool has(const char* attribute) const { return xml_.Attribute(attribute) != nullptr; }
   [[nodiscard]] Element with(const tinyxml2::XMLElement& child) const { return {child, file_, owner_}; }
 
-  [[nodiscard]] std::string text(const char* attribute) const {
+  [[nodiscard]] std::string text(const char* attribute, const std::string& allowed = "a name") const {
     const char* const value = xml_.Attribute(attribute);
-    if (value == nullptr || *value == 0) fail(label(attribute) + " is missing", "a name");
+    if (value == nullptr || *value == 0) fail(label(attribute) + (value == nullptr ? " is missing" : " is empty"), allowed);
     return value;
   }
   /// Finite, save where `infinite` is said to be allowed.
   [[nodiscard]] double number(const char* attribute, bool infinite = false) const {
-    const std::string all = text(attribute);
+    const std::string allowed = "a number", all = text(attribute, allowed);
     Words words(all);
     const auto value = to_number<double>(words.next());
     if (!value || !words.next().empty() || std::isnan(*value) || (!infinite && std::isinf(*value)))
-      fail(label(attribute) + " is '" + all + "'", expanded(attribute, "a number"));
+      fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
     return *value;
   }
   [[nodiscard]] double number_or(const char* attribute, double otherwise) const {
@@ -121,7 +121,7 @@ class Element {
   }
   template <int kCount>
   [[nodiscard]] Eigen::Matrix<double, kCount, 1> numbers(const char* attribute) const {
-    const std::string all = text(attribute);
+    const std::string allowed = std::to_string(kCount) + " numbers with spaces between", all = text(attribute, allowed);
     Words words(all);
     Eigen::Matrix<double, kCount, 1> result;
     bool right = true;
@@ -130,8 +130,7 @@ class Element {
       right = right && value && std::isfinite(*value);
       if (right) number = *value;
     }
-    if (!right || !words.next().empty())
-      fail(label(attribute) + " is '" + all + "'", expanded(attribute, std::to_string(kCount) + " numbers with spaces between"));
+    if (!right || !words.next().empty()) fail(label(attribute) + " is '" + all + "'", expanded(attribute, allowed));
     return result;
   }
   [[nodiscard]] double length(const char* attribute) const { return positive(attribute, number(attribute)); }
