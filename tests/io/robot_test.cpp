@@ -439,6 +439,7 @@ TEST(Robot, SrdfNamesThatTheRobotDoesNotHave) {
     return "SRDF text:" + std::to_string(line) + ": names " + what + ", which the robot does not have";
   };
   const std::vector<std::string> expected{
+      "SRDF text:2: is of robot 'r', and the URDF of 'arm': are they of one robot?",
       "SRDF text:6: unknown element <planning_pipeline> in <robot>, nearest known is 'passive_joint': it is not read",
       names(3, "joint 'jiont_2'"),
       names(4, "link 'tip'"),
@@ -448,6 +449,19 @@ TEST(Robot, SrdfNamesThatTheRobotDoesNotHave) {
   EXPECT_EQ(model->warnings, expected);
   EXPECT_TRUE(model->joints[2].passive);
   EXPECT_FALSE(model->joints[1].passive);
+}
+
+/// MoveIt refuses such a pair of files; users who rename a robot in one of them are warned, once.
+TEST(Robot, SrdfOfAnotherRobot) {
+  const auto warnings = [](const std::string& name) {
+    return parse_robot(arm_urdf(),
+                       "<!-- a note -->\n<robot" + name + "><disable_collisions link1='link_1' link2='link_2'/></robot>")
+        ->warnings;
+  };
+  const std::vector<std::string> expected{"SRDF text:2: is of robot 'leg', and the URDF of 'arm': are they of one robot?"};
+  EXPECT_EQ(warnings(" name='leg'"), expected);
+  EXPECT_TRUE(warnings(" name='arm'").empty());
+  EXPECT_TRUE(warnings("").empty());
 }
 
 TEST(Robot, SrdfDefaults) {

@@ -45,6 +45,16 @@ const XmlElement& srdf_format() {
   return format;
 }
 
+/// Warns of a file that is another robot's, by its name: MoveIt refuses it, but users give robots names of their own.
+void check_robot_name(const tinyxml2::XMLElement& root, const RobotModel& robot, const std::string& file, XmlWarnings& warnings) {
+  constexpr std::size_t kMost = 200;
+  const char* const name = root.Attribute("name");
+  if (name == nullptr || robot.name == name) return;
+  const auto shown = [](std::string_view text) { return "'" + printable(text.substr(0, kMost)) + "'"; };
+  warnings.add(at_line(file, root.GetLineNum()),
+               "is of robot " + shown(name) + ", and the URDF of " + shown(robot.name) + ": are they of one robot?");
+}
+
 /// Warns of links and joints that neither the robot nor `others` (left out of it, or virtual) have.
 class Names {
  public:
@@ -100,6 +110,7 @@ void load_srdf(const XmlSource& srdf, RobotModel& robot, const std::set<std::str
   tinyxml2::XMLDocument document;
   const tinyxml2::XMLElement& root = load_robot_xml(srdf, "SRDF", document);
   XmlWarnings warnings;
+  check_robot_name(root, robot, file, warnings);
   check_words(root, srdf_format(), file, warnings);
   const auto for_each = [&](const char* name, const auto& visit) {
     for (auto* e = root.FirstChildElement(name); e != nullptr; e = e->NextSiblingElement(name)) visit(*e);
