@@ -82,8 +82,11 @@ class Message {
       levels_.back().key.clear();
   }
 
+  /// How a scalar is written: a number or true and false, in quotes, or as a plain word of YAML, which may be either.
+  enum class Scalar { kNumber, kText, kPlain };
+
   /// A key, a name or a number, whichever is due.
-  void scalar(const std::string& text, int line) {
+  void scalar(const std::string& text, int line, Scalar kind) {
     line_ = line;
     if (done_) fail("holds more than one message", "one");
     if (aside_ > 0) return;
@@ -92,10 +95,11 @@ class Message {
     switch (here.level) {
       case Level::kNames:
         if (names_.size() == kDof) fail("has more than 7 names", allowed());
+        if (kind == Scalar::kNumber) fail("is " + text, "the name of a joint, in quotes");
         names_.push_back(text);
         return;
       case Level::kNumbers:
-        return number(text);
+        return number(text, kind);
       case Level::kPoints:
         fail("is '" + text + "'", "a map");
       default:
@@ -107,8 +111,8 @@ class Message {
     const bool seconds = here.key == "sec";
     const std::int64_t least = seconds ? std::numeric_limits<std::int32_t>::min() : 0,
                        most = seconds ? std::numeric_limits<std::int32_t>::max() : 999'999'999;
-    if (!value || *value < least || *value > most)
-      fail("is '" + text + "'", "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
+    if (kind == Scalar::kText || !value || *value < least || *value > most)
+      fail(written(text, kind), "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
     (seconds ? sec_ : nanosec_) = *value;
     here.key.clear();
   }
@@ -189,7 +193,12 @@ class Message {
     here.key = key;
     which_ = key == "positions" ? 0 : key == "velocities" ? 1 : key == "accelerations" ? 2 : -1;
   }
-  void number(const std::string& text) {
+  /// What stands where another thing is due.
+  static std::string written(const std::string& text, Scalar kind) {
+    return kind == Scalar::kText ? "is the text \"" + text + "\"" : "is '" + text + "'";
+  }
+  void number(const std::string& text, Scalar kind) {
+    if (kind == Scalar::kText) fail(written(text, kind), "a finite number");
     const auto value = to_number<double>(text);
     if (!value || !std::isfinite(*value)) fail("'" + text + "' is not a number", "a finite number");
     if (which_ < 0) return;
@@ -219,14 +228,16 @@ class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
  public:
   JsonEvents(Message& message, const std::string& file) : message_(&message), file_(file) {}
   bool null() override { return message_->null(0), true; }
-  bool boolean(bool value) override { return message_->scalar(value ? "true" : "false", 0), true; }
-  bool number_integer(number_integer_t value) override { return message_->scalar(std::to_string(value), 0), true; }
-  bool number_unsigned(number_unsigned_t value) override { return message_->scalar(std::to_string(value), 0), true; }
-  bool number_float(number_float_t, const string_t& text) override { return message_->scalar(text, 0), true; }
-  bool string(string_t& text) override { return message_->scalar(text, 0), true; }
+  bool boolean(bool value) override { return message_->scalar(value ? "true" : "false", 0, Scalar::kNumber), true; }
+  bool number_integer(number_integer_t value) override { return message_->scalar(std::to_string(value), 0, Scalar::kNumber), true; }
+  bool number_unsigned(number_unsigned_t value) override {
+    return message_->scalar(std::to_string(value), 0, Scalar::kNumber), true;
+  }
+  bool number_float(number_float_t, const string_t& text) override { return message_->scalar(text, 0, Scalar::kNumber), true; }
+  bool string(string_t& text) override { return message_->scalar(text, 0, Scalar::kText), true; }
   bool binary(binary_t&) override { return false; }
   bool start_object(std::size_t) override { return message_->begin(true, 0), true; }
-  bool key(string_t& text) override { return message_->scalar(text, 0), true; }
+  bool key(string_t& text) override { return message_->scalar(text, 0, Scalar::kText), true; }
   bool end_object() override { return message_->end(), true; }
   bool start_array(std::size_t) override { return message_->begin(false, 0), true; }
   bool end_array() override { return message_->end(), true; }
@@ -235,6 +246,7 @@ class JsonEvents final : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
+  using Scalar = Message::Scalar;
   Message* message_;
   std::string file_;
 };
@@ -246,8 +258,9 @@ class YamlEvents final : public YAML::EventHandler {
   void OnDocumentEnd() override {}
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { message_->null(mark.line + 1); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { message_->alias(mark.line + 1); }
-  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& text) override {
-    message_->scalar(text, mark.line + 1);
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& text) override {
+    const bool plain = tag == "?";  // quotes, and tags of YAML, say that it is text
+    message_->scalar(text, mark.line + 1, plain ? Message::Scalar::kPlain : Message::Scalar::kText);
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
     message_->begin(false, mark.line + 1);
