@@ -323,7 +323,7 @@ TEST(Held, AreNamedWithWhereTheyStand) {
     FAIL() << "accepted";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("robot.hold: joint 'rail' at 4.000000: joint 'post', which mimics it, is then at 1.000000 "
+                  .find("robot.hold: joint 'rail' at 4: joint 'post', which mimics it, is then at 1 "
                         "and is outside its limits"),
               std::string::npos)
         << error.what();

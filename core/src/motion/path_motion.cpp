@@ -24,7 +24,7 @@ PathMotion::PathMotion(const Chain& chain, const ToolPath& path, const std::vect
     else if (k > 0)
       for (++layer; layer < path.size() && path.layer(layer).s < rows[k].s - kSame;) ++layer;
     if (layer >= path.size() || std::abs(path.layer(layer).s - rows[k].s) > kSame)
-      throw InputError("row " + std::to_string(k) + " (s = " + formatted("%f", rows[k].s) +
+      throw InputError("row " + std::to_string(k) + " (s = " + formatted("%.9g", rows[k].s) +
                        "): is at no layer of the path: allowed are rows at layers, of the resolution that they were planned with");
     const double travel = path.layer(layer).travel;
     constexpr double kRounding = 1e-9;  // m

@@ -147,7 +147,7 @@ ToolPath::ToolPath(const std::vector<Waypoint>& waypoints, const Resolution& res
     const double angle = rotation.norm();
     const double wanted = std::max({1.0, std::ceil(length / resolution.ds - 1e-9), std::ceil(angle / resolution.dalpha - 1e-9)});
     if (static_cast<double>(layers_.size()) + wanted > kMostLayers)
-      throw InputError(source, "resolution.ds: " + formatted("%f", resolution.ds) +
+      throw InputError(source, "resolution.ds: " + formatted("%.9g", resolution.ds) +
                                    " cuts the path into more than 2e6 layers: allowed are larger steps");
     const int steps = static_cast<int>(wanted);
     const double begun = layers_.back().travel, travel = travel_of(length, angle);

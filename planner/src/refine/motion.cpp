@@ -209,7 +209,7 @@ MotionResult time_rows(const PreparedRobot& robot, const Problem& problem, const
   }
   const auto positive = [&](double value, const char* name) {
     if (!(value > 0) || !std::isfinite(value))
-      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + formatted("%f", value) +
+      throw InvalidArgument(std::string("TimingOptions: ") + name + " is " + formatted("%.9g", value) +
                             ": allowed is a finite number > 0");
   };
   positive(asked.speed, "speed");
@@ -425,7 +425,7 @@ std::vector<TrajectoryRow> rows_on_path(const PreparedRobot& robot, const Proble
     const double travel = path.layer(i).travel;
     const auto q = motion->joints(travel);
     if (!q)
-      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + formatted("%f", path.layer(i).s) +
+      throw InputError(problem.source, "path.smooth: the arm has no solution at s = " + formatted("%.9g", path.layer(i).s) +
                                            ": allowed are smaller tolerances");
     laid.push_back(motion->row(travel, *q));
     laid.back().s = path.layer(i).s;

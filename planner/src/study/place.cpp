@@ -205,7 +205,7 @@ std::vector<PlacementRow> PlacementPlanner::plan(const std::vector<PlacementCell
       std::string place;
       for (std::size_t c = 0; c < kCoordinates.size(); ++c)
         if (cells[k].offset[c] != 0)
-          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + formatted("%f", cells[k].offset[c]);
+          place += std::string(place.empty() ? "" : ", ") + kCoordinates[c] + " " + formatted("%.9g", cells[k].offset[c]);
       throw InputError(std::string(error.what()) + " (moved by " + (place.empty() ? "nothing" : place) + ")");
     } catch (...) {
       impl_->stopped = true;
