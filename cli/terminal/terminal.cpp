@@ -6,6 +6,7 @@
 
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/formatted.hpp"
+#include "terminal/wrapped_output.hpp"
 
 namespace swivel::cli {
 
@@ -37,8 +38,10 @@ void say(const char* format, ...) {
 void complain(const char* format, ...) {
   std::va_list arguments;
   va_start(arguments, format);
-  std::fputs(shown(formatted_list(format, arguments)).c_str(), stderr);
+  std::string text = shown(formatted_list(format, arguments));
   va_end(arguments);
+  if (isatty(STDERR_FILENO) != 0) text = wrapped_lines(text, static_cast<std::size_t>(terminal_columns(STDERR_FILENO)));
+  std::fputs(text.c_str(), stderr);
 }
 
 }  // namespace swivel::cli

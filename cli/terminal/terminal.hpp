@@ -15,13 +15,13 @@ namespace swivel::cli {
 [[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
 /// The text, to standard output.
 void say_text(std::string_view text);
-/// To standard error, as std::fprintf prints where the locale is "C".
+/// To standard error, as std::fprintf prints where the locale is "C"; where that is a terminal, in lines no wider than it.
 [[gnu::format(printf, 1, 2)]] void complain(const char* format, ...);
 
-/// Of standard output; 100 where it is none.
-inline int terminal_columns() {
+/// Of standard output, or of another stream; 100 where it is none.
+inline int terminal_columns(int descriptor = STDOUT_FILENO) {
   winsize size{};
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
   return 100;
 }
 

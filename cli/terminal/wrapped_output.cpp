@@ -40,15 +40,7 @@ bool write_out(std::string_view text) {
 
 /// Whole lines, as a line-buffered stream has them.
 ssize_t write_wrapped(void*, const char* bytes, std::size_t count) {
-  const std::string_view lines(bytes, count);
-  const auto columns = static_cast<std::size_t>(terminal_columns());
-  std::string text;
-  for (std::size_t begin = 0; begin < count;) {
-    const std::size_t end = std::min(lines.find('\n', begin), count);
-    text += wrapped(lines.substr(begin, end - begin), columns) + (end < count ? "\n" : "");
-    begin = end + 1;
-  }
-  return write_out(text) ? static_cast<ssize_t>(count) : 0;
+  return write_out(wrapped_lines({bytes, count}, static_cast<std::size_t>(terminal_columns()))) ? static_cast<ssize_t>(count) : 0;
 }
 
 }  // namespace
@@ -74,6 +66,16 @@ std::string wrapped(std::string_view line, std::size_t columns) {
     used += width;
     begin = end;
     ++words;
+  }
+  return text;
+}
+
+std::string wrapped_lines(std::string_view lines, std::size_t columns) {
+  std::string text;
+  for (std::size_t begin = 0; begin < lines.size();) {
+    const std::size_t end = std::min(lines.find('\n', begin), lines.size());
+    text += wrapped(lines.substr(begin, end - begin), columns) + (end < lines.size() ? "\n" : "");
+    begin = end + 1;
   }
   return text;
 }

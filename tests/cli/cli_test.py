@@ -433,8 +433,8 @@ limits: {{clearance: 0.005}}
         (self.folder / "p.yaml").write_text(json.dumps({**base, "path": near, "scene": [{"name": "floor", "box": [200, 200, 0.1], "xyz": [0, 0, -0.2]}]}))
         self.assertNotIn("millimetres", run("plan", self.folder / "p.yaml", "--planner", "lazy").stderr)
 
-    def test_a_terminal_breaks_no_number(self):
-        """On 80 columns lines are broken between words, by the program."""
+    def on_terminal(self, stream, command):
+        """Exit code and lines of a stream that is a terminal of 80 columns."""
         import fcntl
         import pty
         import struct
@@ -457,13 +457,33 @@ limits: {{clearance: 0.005}}
                 break
             shown += part
         os.close(outer)
-        lines = shown.decode().replace("\r\n", "\n").splitlines()
-        self.assertEqual(done.returncode, 0)
+        return done.returncode, shown.decode().replace("\r\n", "\n").splitlines()
+
+    def test_a_terminal_breaks_no_number(self):
+        """On 80 columns lines are broken between words, by the program."""
+        command = [SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--ds", "0.02", "--dphi", "0.2", "--refine", "--speed", "0.1"]
+        plain = subprocess.run(command, capture_output=True, text=True, timeout=300).stdout
+        self.assertGreater(max(map(len, plain.splitlines())), 80)
+        code, lines = self.on_terminal("stdout", command)
+        self.assertEqual(code, 0)
         self.assertLessEqual(max(map(len, lines)), 80, lines)
 
         def words(text):  # times differ from run to run
             return [re.sub(r"[0-9.]+", "#", word) for word in text.split()]
         self.assertEqual(words(" ".join(lines)), words(plain))
+
+    def test_a_terminal_breaks_no_warning(self):
+        """Nor on standard error; a pipe has the line whole."""
+        for arguments in ([SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--full-map", "--speed", "0.1", "--certificate", "none.json"], [SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--ds", "1e-5", "--dphi", "1e-5"]):
+            plain = subprocess.run(arguments, capture_output=True, text=True, timeout=300).stderr
+            self.assertEqual(plain.count("\n"), 1, plain)
+            self.assertGreater(len(plain), 100)
+            code, lines = self.on_terminal("stderr", arguments)
+            self.assertEqual(code, 2)
+            self.assertGreater(len(lines), 1)
+            self.assertLessEqual(max(len(line) for line in lines if " " in line.strip()), 80, lines)
+            self.assertTrue(all(line.startswith("    ") for line in lines[1:]), lines)
+            self.assertEqual(" ".join(lines).split(), plain.split())
 
     def test_bad_trajectories(self):
         out = self.folder / "t.csv"
