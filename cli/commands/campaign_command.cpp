@@ -98,6 +98,7 @@ int run(const CampaignArguments& arguments) {
   options.seed = arguments.seed;
   if (!arguments.shard.empty()) options.shard = shard_from_string(arguments.shard);
   if (!arguments.report.empty()) require_pages();
+  require_table_name("--out", arguments.out, "the table of episodes", "--json for a summary");
   std::vector<io::InputFiles::File> inputs;
   Problem problem = [&] {
     const io::InputFiles noted(arguments.out.empty() ? io::InputFiles::Contents::kIgnore : io::InputFiles::Contents::kHash);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -29,15 +32,11 @@ struct InfoArguments {
 std::map<std::string, double> parse_hold(const std::vector<std::string>& items) {
   std::map<std::string, double> hold;
   for (const std::string& item : items) {
-    const std::size_t equals = item.find('=');
-    std::size_t used = 0;
-    double value = 0;
-    try {
-      if (equals != std::string::npos) value = std::stod(item.substr(equals + 1), &used);
-    } catch (const std::exception&) {
-      used = 0;
-    }
-    if (equals == std::string::npos || used == 0 || used != item.size() - equals - 1)
+    const std::size_t equals = std::min(item.find('='), item.size());
+    const char* const end = item.data() + item.size();
+    double value = std::numeric_limits<double>::quiet_NaN();
+    const auto read = std::from_chars(std::min(item.data() + equals + 1, end), end, value);
+    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
       throw InputError("--hold: '" + item + "': allowed is JOINT=POSITION with a number of radians or metres");
     hold[item.substr(0, equals)] = value;
   }

@@ -56,6 +56,15 @@ std::optional<std::string> unexpected_word(const CLI::App& app) {
          " (allowed are those of `" + help + "`)";
 }
 
+/// No value may be empty: a variable of a shell that is not set leaves such a word, and the option would be passed over.
+void refuse_empty_values(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    for (CLI::Option* option : command->get_options())
+      option->check([name = command->get_name()](const std::string& value) {
+        return value.empty() ? "is empty: allowed is what `swivel " + name + " --help` says" : std::string();
+      });
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Swivel plans joint trajectories along tool paths, for arms with a degree of freedom to spare.", "swivel");
   app.set_version_flag("--version", SWIVEL_VERSION);
@@ -70,6 +79,7 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_fit(app, exit_code);
   add_schema(app, exit_code);
+  refuse_empty_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -88,6 +98,14 @@ void flush_standard_output() {
   if (errno == EPIPE || io::reader_has_left()) throw io::ReaderLeft();
   const std::string reason = errno != 0 ? std::strerror(errno) : "cannot be written";
   throw InputError("standard output: " + reason + ": allowed is one that takes what is printed");
+}
+
+void require_table_name(const std::string& option, const std::string& file, const std::string& what, const std::string& instead) {
+  const std::filesystem::path end = std::filesystem::path(file).extension();
+  for (const char* other : {".json", ".yaml", ".yml", ".mcap", ".html", ".svg"})
+    if (end == other)
+      throw InputError(option + ": " + file + ": " + what + " would be in it as CSV: allowed is a name that ends in .csv, or " +
+                       instead);
 }
 
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason) {

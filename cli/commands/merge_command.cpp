@@ -24,6 +24,7 @@ struct MergeArguments {
 
 int run(const MergeArguments& arguments) {
   if (!arguments.report.empty()) require_pages();
+  require_table_name("OUT", arguments.out, "the table of rows", "--json, --svg and --report for other formats");
   std::vector<io::InputFiles::File> inputs;
   io::ShardResults whole = [&] {
     const io::InputFiles noted;

@@ -77,6 +77,7 @@ int run(const PlaceArguments& arguments) {
   if (!arguments.write.empty() && !arguments.shard.empty())
     throw InputError("--write: the best of all may be in another shard: allowed without --shard");
   if (!arguments.report.empty()) require_pages();
+  require_table_name("--out", arguments.out, "the table of placements", "--svg and --report for drawings");
   std::string text;
   if (!arguments.write.empty()) text = problem_text(arguments);
   std::vector<io::InputFiles::File> inputs;

@@ -96,10 +96,12 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   if (timing) {
     require_motion_format(arguments.out);
     problem = with_motion_defaults(std::move(problem));
-  } else if (arguments.refine) {
-    keep_clearance_between_layers(problem.limits);
+  } else {
+    require_table_name("--out", arguments.out, "a path without times", "--speed, with which motions are written in other formats");
+    if (arguments.refine) keep_clearance_between_layers(problem.limits);
   }
   if (arguments.timeout) options.timeout_s = positive(*arguments.timeout, "--timeout");
+  const auto advise_s = arguments.advise ? std::optional(positive(*arguments.advise, "--advise")) : std::nullopt;
   const double load = milliseconds_since(start);
 
   catch_interrupts();
@@ -129,12 +131,12 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   PlanResult& result = plan.result;
   result.time_ms["load"] = load;
   std::optional<std::vector<Advice>> advice;
-  if (arguments.advise && result.status == PlanStatus::kInfeasible) {
+  if (advise_s && result.status == PlanStatus::kInfeasible) {
     PlanOptions trials = options;
-    trials.timeout_s = positive(*arguments.advise, "--advise");
+    trials.timeout_s = advise_s;
     if (options.timeout_s) {
       const double gone = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-      trials.timeout_s = std::clamp(*options.timeout_s - gone, 1e-6, *trials.timeout_s);
+      trials.timeout_s = std::clamp(*options.timeout_s - gone, 1e-6, *advise_s);
     }
     advice = advise(planner, result, trials);
   }

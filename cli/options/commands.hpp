@@ -47,6 +47,10 @@ void warn_of_held(const std::vector<HeldJoint>& held);
 /// Says on standard error that earlier files are gone, and why.
 void report_removed(const std::vector<std::filesystem::path>& files, const std::string& reason);
 
+/// Throws InputError where the name of a file that holds CSV ends as another format of Swivel's does. `what` is in it, `instead` is
+/// what else is allowed.
+void require_table_name(const std::string& option, const std::string& file, const std::string& what, const std::string& instead);
+
 /// Calls `work`; what the library finds wrong there is said in the name of the option.
 template <class Work>
 auto in_the_name_of(const std::string& option, const Work& work) {

@@ -94,7 +94,7 @@ void require_pages() {
 
 double positive(double value, const char* option) {
   if (!(value > 0) || !std::isfinite(value))
-    throw InputError(std::string(option) + ": not a positive number: allowed are values above 0");
+    throw InputError(std::string(option) + ": " + shortest(value) + ": allowed are finite numbers above 0");
   return value;
 }
 

@@ -397,6 +397,57 @@ limits: {{clearance: 0.005}}
         self.assertEqual(run("plan", "no_such_file.yaml").returncode, 2)
         self.assertEqual(run("--help").returncode, 0)
 
+    def refused(self, words, *arguments):
+        """One line with these words, and nothing written or planned."""
+        before = sorted(self.folder.iterdir())
+        done = run(*arguments)
+        self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1), (arguments, done))
+        self.assertIn(words, done.stderr)
+        self.assertIn("allowed", done.stderr)
+        self.assertEqual(sorted(self.folder.iterdir()), before)
+
+    def test_no_value_is_empty(self):
+        """As a variable of a shell leaves it that is not set."""
+        problem, out, options = PROBLEMS / "experiment_a.yaml", self.folder / "t.csv", 0
+        for command, words, names in (("plan", [problem], "--out --json --trace --map-svg --report --certificate --timeout --edges --x --object"), ("time", [problem, problem, "--speed", "0.1"], "--out --rate"),
+                                      ("campaign", [problem], "--out --json --report --trajectories --rows --shard --seed"), ("place", [problem, "--object", "x", "--x", "0:1:1"], "--out --svg --report --write --shard --best"),
+                                      ("merge", [out, problem], "--report --json --svg"), ("check", [problem, problem], "--certificate --ds"), ("info", [DATA / "robots/iiwa14.urdf"], "--srdf --base --tip --hold --packages --without"),
+                                      ("fit", [DATA / "robots/iiwa14.urdf"], "--out --link --packages")):
+            for option in names.split():
+                with self.subTest(command=command, option=option):
+                    self.refused(f"{option}: is empty", command, *words, option, "")
+                    options += 1
+        self.assertEqual(options, 38)
+        self.refused("out: is empty", "merge", "", problem)
+        self.refused("problem: is empty", "plan", "")
+
+    def test_numbers_are_refused_before_anything_is_planned(self):
+        problem = PROBLEMS / "experiment_a.yaml"
+        for option, more in (("--timeout", []), ("--advise", []), ("--speed", []), ("--turn-speed", ["--speed", "0.1"]), ("--rate", ["--speed", "0.1"]), ("--chord", ["--speed", "0.1"]), ("--ds", []), ("--dphi", [])):
+            for value in ("-1", "0", "nan", "inf", "-inf"):
+                with self.subTest(option=option, value=value):
+                    self.refused(f"{option}: {value}: allowed are", "plan", problem, *more, f"{option}={value}", "--out", self.folder / "t.csv")
+        for value in ("-1", "nan", "inf"):
+            self.refused(f"--timeout: {value}: allowed are", "place", problem, "--object", "post", "--x", "0", f"--timeout={value}")
+            self.refused(f"--speed: {value}: allowed are", "time", problem, problem, f"--speed={value}")
+            self.refused("--x: '", "plan", problem, "--path", f"--x={'1e9' if value == '-1' else value}")
+        for option in ("--seed", "--episode"):
+            self.refused(option, "plan", problem, "--seed", "1", "--episode", "1", f"{option}=-1")
+        self.refused("--episodes", "campaign", problem, "--episodes=-1")
+        self.refused("--top", "place", problem, "--object", "post", "--x", "0", "--top=-1")
+
+    def test_the_name_of_a_table_does_not_promise_another_format(self):
+        problem = PROBLEMS / "experiment_a.yaml"
+        for end in ("json", "yaml", "yml", "mcap", "html", "svg"):
+            name = self.folder / f"t.{end}"
+            self.refused(f"--out: {name}: a path without times would be in it as CSV", "plan", problem, "--out", name)
+            self.refused(f"--out: {name}: a path without times would be in it as CSV", "plan", problem, "--refine", "--out", name)
+            self.refused(f"--out: {name}: the table of episodes would be in it as CSV", "campaign", problem, "--out", name)
+            self.refused(f"--out: {name}: the table of placements would be in it as CSV", "place", problem, "--path", "--x", "0", "--out", name)
+        for name in ("t.csv", "t.txt", "t"):
+            self.assertEqual(run("plan", problem, "--ds", "0.02", "--dphi", "0.2", "--quiet", "--out", self.folder / name).returncode, 0)
+            self.assertIn("s,phi,branch", (self.folder / name).read_text())
+
     def test_millimetres_are_suspected_at_once(self):
         """A path of 600 m, a part of 300 m, a tool of 130 m: said, and not searched."""
         rows = [f"500,{-150 + 30 * k},300,0,0,1,0" for k in range(20)]
@@ -440,12 +491,10 @@ limits: {{clearance: 0.005}}
         import struct
         import termios
 
-        command = [SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--ds", "0.02", "--dphi", "0.2", "--refine", "--speed", "0.1"]
-        plain = subprocess.run(command, capture_output=True, text=True, timeout=300).stdout
-        self.assertGreater(max(map(len, plain.splitlines())), 80)
         outer, inner = pty.openpty()
         fcntl.ioctl(inner, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        done = subprocess.run(command, stdout=inner, stderr=subprocess.DEVNULL, timeout=300)
+        streams = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stream: inner}
+        done = subprocess.run(command, timeout=300, **streams)
         os.close(inner)
         shown = b""
         while True:
