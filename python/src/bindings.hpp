@@ -49,28 +49,38 @@ py::array column(const std::shared_ptr<const std::vector<Row>>& rows, const Numb
   return array;
 }
 
-/// A Python enum whose members may be given by name wherever the module takes one: Status.SOLVED, "solved".
+/// A Python enum whose members may be given by name wherever the module takes one, and are equal to it: Status.SOLVED, "solved".
 template <class E>
 struct EnumNames {
   static inline std::vector<std::pair<std::string, E>> names;
   static inline std::string type;
+  static std::string name_of(E value) {
+    for (const auto& [name, known] : names)
+      if (known == value) return name;
+    return {};
+  }
 };
 template <class E>
 void bind_enum(py::module_& m, const char* type, const char* doc, std::vector<std::pair<std::string, E>> names) {
-  py::enum_<E> bound(m, type, doc);
+  const std::string told =
+      std::string(doc) + " A member is equal to its name as str() gives it: \"" + names.front().first + "\", and hashes like it.";
+  py::enum_<E> bound(m, type, told.c_str());
   for (const auto& [name, value] : names) {
     std::string upper = name;
     for (char& letter : upper) letter = static_cast<char>(letter >= 'a' && letter <= 'z' ? letter - 'a' + 'A' : letter);
     bound.value(upper.c_str(), value);
   }
   // Set in place of pybind11's own, which calls itself "name": an overload of that one would take the place of the property `name`.
-  bound.attr("__str__") = py::cpp_function(
-      [](E value) {
-        for (const auto& [name, known] : EnumNames<E>::names)
-          if (known == value) return name;
-        return std::string();
-      },
-      py::name("__str__"), py::is_method(bound));
+  bound.attr("__str__") = py::cpp_function(&EnumNames<E>::name_of, py::name("__str__"), py::is_method(bound));
+  const auto same = [](E value, const py::object& other) {
+    if (py::isinstance<E>(other)) return value == other.cast<E>();
+    return py::isinstance<py::str>(other) && other.cast<std::string>() == EnumNames<E>::name_of(value);
+  };
+  bound.attr("__eq__") = py::cpp_function(same, py::name("__eq__"), py::is_method(bound), py::arg("other"));
+  bound.attr("__ne__") = py::cpp_function([same](E value, const py::object& other) { return !same(value, other); },
+                                          py::name("__ne__"), py::is_method(bound), py::arg("other"));
+  bound.attr("__hash__") = py::cpp_function([](E value) { return py::hash(py::str(EnumNames<E>::name_of(value))); },
+                                            py::name("__hash__"), py::is_method(bound));
   EnumNames<E>::names = std::move(names);
   EnumNames<E>::type = type;
 }

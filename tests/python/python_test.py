@@ -1057,6 +1057,7 @@ class Stubs(unittest.TestCase):
     @staticmethod
     def members(thing):
         own = {name for name in vars(thing) if not name.startswith("_") or name in ("__len__", "__iter__", "__getitem__", "__contains__", "__bool__")}
+        own |= {"__eq__", "__hash__"} if hasattr(thing, "__members__") else set()
         return own | ({"__init__"} if "__init__" in vars(thing) and not hasattr(thing, "__members__") else set())
 
     def test_names_are_those_of_the_module(self):
@@ -1097,6 +1098,22 @@ class Stubs(unittest.TestCase):
                 self.assertEqual((getattr(enum, name), enum(member.value), pickle.loads(pickle.dumps(member))), (member, member, member))
             self.assertEqual({m.value for m in enum.__members__.values()}, set(range(len(enum.__members__))))
         self.assertTrue(swivel.Status.SOLVED.name == "SOLVED")
+
+    def test_members_of_enums_are_equal_to_their_names(self):
+        enums = [thing for name in swivel.__all__ if hasattr(thing := getattr(swivel, name), "__members__")]
+        for enum in enums:
+            members = list(enum.__members__.values())
+            self.assertEqual(len({*members, *map(str, members)}), len(members))  # one key, whichever of the two it is
+            for member in members:
+                name = str(member)
+                self.assertTrue(member == name and name == member and not member != name and not name != member)
+                self.assertEqual((hash(member), {name: 1}[member], {member: 2}[name], member in (name,)), (hash(name), 1, 2, True))
+                for other in (name.upper(), name + "d", "", None, member.value, b"x", object()):
+                    self.assertTrue(member != other and not member == other, (member, other))
+                for other in members:
+                    self.assertEqual((member == other, member != other, member == str(other)), (member is other, member is not other, member is other))
+        self.assertFalse(swivel.Status.SOLVED == swivel.EdgeMode.CONTINUOUS)
+        self.assertTrue(swivel.Status.INFEASIBLE == "infeasible")
 
     @staticmethod
     def refusal(thing):
