@@ -136,6 +136,7 @@ int run(const CampaignArguments& arguments) {
       fs::path(arguments.problem).filename().string(),
       "swivel plan " + quoted(arguments.problem) + arguments.search.words() + " --seed " + std::to_string(options.seed)};
   record.settings.values.emplace_back("seed", std::to_string(options.seed));
+  record.held = robot.arm().held;
   record.settings.coordinates = varied_coordinates(problem.vary);
   const std::uint64_t size = options.shard.size(options.episodes);
   std::vector<EpisodeRow> rows = given;

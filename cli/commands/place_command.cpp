@@ -114,7 +114,8 @@ int run(const PlaceArguments& arguments) {
   catch_interrupts();
   const auto begun = std::chrono::steady_clock::now();
   const auto prepared = std::make_shared<const PreparedRobot>(problem);
-  warn_of_held(prepared->arm().held);
+  record.held = prepared->arm().held;
+  warn_of_held(record.held);
   PlacementPlanner planner(prepared, problem, thing, options);
   ProgressLine progress(isatty(STDERR_FILENO) != 0);
   std::vector<PlacementRow> rows;

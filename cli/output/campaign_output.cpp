@@ -13,11 +13,12 @@ namespace swivel::cli {
 
 namespace {
 
-void print_summary(const CampaignSummary& summary) {
+void print_summary(const CampaignSummary& summary, const std::vector<HeldJoint>& held) {
   say("%llu of %llu episodes answered: %llu solved, %llu infeasible", static_cast<unsigned long long>(summary.answered()),
       static_cast<unsigned long long>(summary.episodes), static_cast<unsigned long long>(summary.solved),
       static_cast<unsigned long long>(summary.infeasible));
   if (summary.errors > 0) say(", %llu with an internal error", static_cast<unsigned long long>(summary.errors));
+  if (!held.empty()) say(", held: %s", words(held).c_str());
   say("\n");
   if (summary.answered() == 0) return;
   say("plan %.1f ms in the median (5 %% below %.1f, 5 %% above %.1f); nodes checked %.0f, FCL calls %.0f in the median\n",
@@ -31,9 +32,9 @@ void show_campaign(io::OutputFiles& outputs, const std::vector<EpisodeRow>& rows
   if (outputs.wants("--report"))
     outputs.write("--report", to_overview(rows, {record.problem, record.total, std::stoull(record.setting("seed")), record.shard,
                                                  record.setting("planner"), record.plan_command, record.settings.coordinates}));
-  outputs.write("--json", io::to_json(summary));
+  outputs.write("--json", io::to_json(summary, record.held));
   outputs.stage();
-  if (!outputs.takes_standard_output()) print_summary(summary);
+  if (!outputs.takes_standard_output()) print_summary(summary, record.held);
   flush_standard_output();
   outputs.commit();
 }

@@ -149,8 +149,8 @@ void show_placements(io::OutputFiles& outputs, const std::vector<PlacementRow>& 
   if (map && outputs.wants("--svg")) outputs.write("--svg", to_svg(*map));
   outputs.stage();
   if (!outputs.takes_standard_output()) {
-    say("%zu of %llu placements planned, %s%s\n", rows.size(), static_cast<unsigned long long>(record.shard.size(record.total)),
-        count_text(rows).c_str(), remark.c_str());
+    say("%zu of %llu placements planned, %s%s%s\n", rows.size(), static_cast<unsigned long long>(record.shard.size(record.total)),
+        count_text(rows).c_str(), record.held.empty() ? "" : (", held: " + words(record.held)).c_str(), remark.c_str());
     if (map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
     if (!best.empty() && top > 0) say("best by %s:\n", to_string(criteria[0]));
     for (std::size_t k = 0; k < std::min(best.size(), top); ++k)

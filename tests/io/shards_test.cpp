@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <tuple>
 
 #include "io_support.hpp"
 #include "seed.hpp"
@@ -77,6 +78,9 @@ void splits_and_joins(const char* command, Random& random, int& rows_joined, int
                      0,
                      some_text(random),
                      some_text(random)};
+  for (int k = random.below(3); k > 0; --k)
+    record.held.push_back(
+        {some_text(random), random.uniform(-3, 3), random.coin(0.5), random.coin(0.5), random.coin(0.5) ? "" : some_text(random)});
   record.total = static_cast<std::uint64_t>(random.below(30));
   record.shard.count = static_cast<std::uint64_t>(1 + random.below(8));
   std::vector<Row> rows(record.total);
@@ -104,6 +108,11 @@ void splits_and_joins(const char* command, Random& random, int& rows_joined, int
   EXPECT_EQ(whole.record.shard.count, 1u);
   EXPECT_EQ(whole.record.problem, record.problem);
   EXPECT_EQ(whole.record.plan_command, record.plan_command);
+  ASSERT_EQ(whole.record.held.size(), record.held.size());
+  for (std::size_t k = 0; k < record.held.size(); ++k) {
+    const HeldJoint &a = whole.record.held[k], &b = record.held[k];
+    EXPECT_EQ(std::tie(a.name, a.position, a.slides, a.given, a.leader), std::tie(b.name, b.position, b.slides, b.given, b.leader));
+  }
   EXPECT_EQ(whole.record.settings.coordinates, record.settings.coordinates);
   EXPECT_EQ(table_of(std::get<std::vector<Row>>(whole.rows), record), table_of(rows, record));
   rows_joined += static_cast<int>(rows.size());

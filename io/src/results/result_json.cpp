@@ -5,6 +5,7 @@
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/io/results/result.hpp"
 #include "swivel/io/tables/campaign.hpp"
+#include "tables/run_settings.hpp"
 
 namespace swivel::io {
 
@@ -166,17 +167,6 @@ Json margin_json(const LeastMargin& least) {
           {"row", least.row}};
 }
 
-Json held_json(const std::vector<HeldJoint>& held) {
-  Json list = Json::array();
-  for (const HeldJoint& joint : held)
-    list.push_back({{"joint", joint.name},
-                    {"position", joint.position},
-                    {"unit", joint.slides ? "m" : "rad"},
-                    {"given", joint.given},
-                    {"mimics", text_or_null(joint.leader)}});
-  return list;
-}
-
 Json reduced_json(const std::vector<SpecialPair>& pairs) {
   Json list = Json::array();
   for (const SpecialPair& pair : pairs)
@@ -283,7 +273,7 @@ Json motion_json(const TimingResult& timed, const TimingOptions& asked, const Jo
 
 }  // namespace
 
-std::string to_json(const CampaignSummary& summary) {
+std::string to_json(const CampaignSummary& summary, const std::vector<HeldJoint>& held) {
   const Json json = {{"schema_version", kResultVersion},
                      {"episodes", summary.episodes},
                      {"answered", summary.answered()},
@@ -292,8 +282,9 @@ std::string to_json(const CampaignSummary& summary) {
                      {"errors", summary.errors},
                      {"plan_ms", spread_json(summary.plan_ms)},
                      {"nodes_checked", spread_json(summary.nodes_checked)},
-                     {"fcl_calls", spread_json(summary.fcl_calls)}};
-  return json.dump(2) + '\n';
+                     {"fcl_calls", spread_json(summary.fcl_calls)},
+                     {"held", held_json(held)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 std::string error_json(const std::string& message) {

@@ -59,6 +59,13 @@ Schema cause() {
       }));
 }
 
+Schema held() {
+  return list(
+      section("", {key("joint", text(), "its name"), key("position", number(), "where it stands", "`unit`"),
+                   key("unit", one_of({"m", "rad"}), "of `position`"), key("given", boolean(), "whether `robot.hold` says so"),
+                   key("mimics", or_null(text()), "the joint that it follows, which stands still as well")}));
+}
+
 Schema summary() {
   const auto place = [] { return key("s", number(), "where on the path", "m"); };
   return section("summary", {
@@ -363,11 +370,7 @@ Schema plan_result() {
               "`dropped`: pairs that touch in every sampled posture, not kept apart; `reduced`: pairs near by design, with "
               "`median`, "
               "`clearance`, `edge_clearance` (m); `info PROBLEM --pairs` lists all"),
-          key("held",
-              list(section(
-                  "", {key("joint", text(), "its name"), key("position", number(), "where it stands", "`unit`"),
-                       key("unit", one_of({"m", "rad"}), "of `position`"), key("given", boolean(), "whether `robot.hold` says so"),
-                       key("mimics", or_null(text()), "the joint that it follows, which stands still as well")})),
+          key("held", held(),
               "joints between base and tip that move and are not planned: `joint`, `position` (`unit`), whether `robot.hold` has "
               "it (`given`), the joint that it `mimics` or `null`; what is said of paths is said with them there"),
           key("warnings", list(text()), "e.g. open meshes, merged waypoints"),
@@ -391,6 +394,7 @@ Schema campaign_summary() {
                      key("plan_ms", spread(), "finding the answer: `median`, `p5`, `p95` over the episodes answered", "ms"),
                      key("nodes_checked", spread(), "the same of this counter"),
                      key("fcl_calls", spread(), "the same of this counter"),
+                     key("held", held(), "joints between base and tip that are not planned, as of [results](#result-json)"),
                  });
 }
 

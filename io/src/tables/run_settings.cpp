@@ -39,6 +39,31 @@ std::optional<RunSettings> settings_from(const Json& json) {
   return settings;
 }
 
+Json held_json(const std::vector<HeldJoint>& held) {
+  Json list = Json::array();
+  for (const HeldJoint& joint : held)
+    list.push_back({{"joint", joint.name},
+                    {"position", joint.position},
+                    {"unit", joint.slides ? "m" : "rad"},
+                    {"given", joint.given},
+                    {"mimics", joint.leader.empty() ? Json(nullptr) : Json(joint.leader)}});
+  return list;
+}
+
+std::optional<std::vector<HeldJoint>> held_from(const Json& json) {
+  if (!json.is_array()) return std::nullopt;
+  std::vector<HeldJoint> held;
+  for (const Json& one : json) {
+    const auto is = [&](const char* key, auto type) { return one.contains(key) && (one[key].*type)(); };
+    if (!one.is_object() || !is("joint", &Json::is_string) || !is("position", &Json::is_number) || !is("unit", &Json::is_string) ||
+        !is("given", &Json::is_boolean) || !one.contains("mimics") || !(one["mimics"].is_null() || one["mimics"].is_string()))
+      return std::nullopt;
+    held.push_back({one["joint"].get<std::string>(), one["position"].get<double>(), one["unit"].get<std::string>() == "m",
+                    one["given"].get<bool>(), one["mimics"].is_null() ? "" : one["mimics"].get<std::string>()});
+  }
+  return held;
+}
+
 std::optional<Difference> difference(const RunSettings& first, const RunSettings& second) {
   for (const auto& [name, value] : second.values) {
     const std::string* const other = find(first.values, name);

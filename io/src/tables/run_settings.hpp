@@ -16,6 +16,11 @@ inline constexpr const char* kRunMark = "# swivel ";
 /// None where the two keys are not as to_json() writes them.
 [[nodiscard]] std::optional<RunSettings> settings_from(const nlohmann::ordered_json& json);
 
+/// The list that results have under "held".
+[[nodiscard]] nlohmann::ordered_json held_json(const std::vector<HeldJoint>& held);
+/// None where the list is not as held_json() writes it.
+[[nodiscard]] std::optional<std::vector<HeldJoint>> held_from(const nlohmann::ordered_json& json);
+
 /// The first thing that two settings do not share. `first` and `second`: what each says, none where it does not say it. Both are
 /// none of a file whose contents differ.
 struct Difference {

@@ -55,6 +55,11 @@ std::optional<ShardRecord> record_from(std::string_view line) {
   record.total = json["total"].get<std::uint64_t>();
   record.problem = json["problem"].get<std::string>();
   record.plan_command = json["plan_command"].get<std::string>();
+  if (json.contains("held")) {  // those of earlier builds do not say
+    auto held = held_from(json["held"]);
+    if (!held) return std::nullopt;
+    record.held = std::move(*held);
+  }
   if (record.command == "campaign" && !to_number<std::uint64_t>(record.setting("seed"))) return std::nullopt;
   return record;
 }
@@ -115,6 +120,7 @@ std::string to_line(const ShardRecord& record) {
   json["total"] = record.total;
   json["problem"] = record.problem;
   json["plan_command"] = record.plan_command;
+  json["held"] = held_json(record.held);
   return kRunMark + record.command + ' ' + json.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

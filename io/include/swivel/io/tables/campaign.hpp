@@ -63,6 +63,6 @@ struct EpisodeTable {
 [[nodiscard]] std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates);
 
 /// The answer to `campaign --json -`.
-[[nodiscard]] std::string to_json(const CampaignSummary& summary);
+[[nodiscard]] std::string to_json(const CampaignSummary& summary, const std::vector<HeldJoint>& held);
 
 }  // namespace swivel::io

@@ -20,6 +20,7 @@ struct ShardRecord {
   Shard shard;
   std::uint64_t total = 0;            ///< rows of all shards together
   std::string problem, plan_command;  ///< as the page of the run has them: CampaignFacts, PlacementFacts
+  std::vector<HeldJoint> held = {};   ///< joints between base and tip that stand still in all rows
   /// Of the settings; "" where there is none.
   [[nodiscard]] std::string setting(const std::string& name) const;
 };
