@@ -16,6 +16,7 @@
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_guess.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/io/io.hpp"
 #include "terminal/terminal.hpp"
 
@@ -139,6 +140,18 @@ std::vector<HeldJoint> held_beside(const RobotModel& robot, const ArmModel& arm,
   return beside;
 }
 
+/// Calls `work`; what it finds wrong in a key of `robot` is said in the name of the option that stands for the key.
+template <class Work>
+auto in_the_options_names(const Work& work) {
+  try {
+    return work();
+  } catch (const RobotKeyError& error) {
+    const std::string& key = error.key();
+    const char* const option = key == "hold" ? "--hold" : key == "without" ? "--without" : key == "tip_link" ? "--tip" : "--base";
+    throw InputError(std::string(option) + ": " + error.fault());
+  }
+}
+
 int run(const InfoArguments& arguments) {
   if (arguments.pairs) {
     print_pairs(arguments.urdf);
@@ -148,15 +161,18 @@ int run(const InfoArguments& arguments) {
     throw InputError(arguments.urdf + ": is a problem file: allowed is a URDF file, or `swivel info --pairs " + arguments.urdf +
                      "` for the pairs of bodies and `swivel plan " + arguments.urdf + "` for its path");
   io::ShapeSurvey shapes;
-  const auto robot =
-      io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages), {arguments.without, true}, shapes);
+  const auto robot = in_the_options_names([&] {
+    return io::load_kinematics(arguments.urdf, arguments.srdf, parse_packages(arguments.packages), {arguments.without, true},
+                               shapes);
+  });
   const std::map<std::string, double> hold = parse_hold(arguments.hold);
   for (const auto& [name, position] : hold) require_known("--hold", name, robot->joints, "joint", robot->source);
   std::vector<ArmGuess> others;
   const ArmGuess chosen = choose_arm(*robot, arguments, others);
   const std::string &base = chosen.base, &tip = chosen.tip;
-  const ArmModel arm =
-      build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
+  const ArmModel arm = in_the_options_names([&] {
+    return build_arm(*robot, base, tip, hold, Pose::Identity(), chosen.joints == 6 ? std::optional(Roll{}) : std::nullopt);
+  });
   const ArmClass kind = classify(arm.chain, robot->source);
   say("robot      %s: %zu links, %zu joints\n", robot->name.c_str(), robot->links.size(), robot->joints.size());
   if (!shapes.missing_meshes.empty())

@@ -189,7 +189,22 @@ class Info(WithFolder):
         problem = self.rail(", hold: {rail: 3}")
         done = run("plan", problem)
         self.assertEqual((done.returncode, done.stdout), (2, ""))
-        self.assertIn("joint 'rail' at 3.000000 is outside its limits: allowed is -2.000000 to 2.000000", done.stderr)
+        self.assertEqual(done.stderr, f"swivel: {problem}:1: robot.hold.rail: joint 'rail' at 3 is outside its limits: allowed is -2 to 2\n")
+        done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", "rail=3")
+        self.assertEqual((done.returncode, done.stderr), (2, "swivel: --hold: joint 'rail' at 3 is outside its limits: allowed is -2 to 2\n"))
+        done = run("info", self.folder / "robot.urdf", "--without", "rial")
+        self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1))
+        self.assertTrue(done.stderr.startswith("swivel: --without: unknown link 'rial', nearest is '"), done.stderr)
+        for value in ("nan", "inf", "-inf", "", "1m", "0x1"):
+            done = run("info", self.folder / "robot.urdf", "--base", "hall", "--tip", "tool0", "--hold", f"rail={value}")
+            self.assertEqual((done.returncode, done.stdout, len(done.stderr.splitlines())), (2, "", 1))
+            self.assertIn(f"--hold: 'rail={value}': allowed is JOINT=POSITION", done.stderr)
+        done = run("campaign", self.rail(), "--episodes", "1", "--planner", "lazy", "--json", self.folder / "s.json")
+        self.assertEqual(json.loads((self.folder / "s.json").read_text())["held"], [held])
+        self.assertIn("1 of 1 episodes answered: 0 solved, 1 infeasible, held: rail at 0 m\n", done.stdout)
+        done = run("place", self.rail(), "--path", "--x", "0", "--planner", "lazy")
+        self.assertIn("1 of 1 placements planned, 0 with a path, 1 without: ", done.stdout)
+        self.assertIn(", held: rail at 0 m; ", done.stdout)
 
     def test_near_matches(self):
         for options, words in ((("--tip", "tol0"), "--tip: unknown link 'tol0', nearest is 'tool0'"), (("--base", "baselink"), "--base: unknown link 'baselink', nearest is 'base_link'"),
@@ -385,7 +400,7 @@ class Honoured(WithFolder):
         self.refused(run("plan", self.files(urdf)), "absent.stl")
         srdf = '<robot name="r"><disable_collisions link1="finger" link2="link_7"/></robot>'
         self.assertEqual(self.warned(urdf, robot=", without: [hand]", srdf=srdf), [])
-        self.refused(run("plan", self.files(urdf, robot=", without: [hnad]")), "robot.without: unknown link 'hnad', nearest is 'hand'")
+        self.refused(run("plan", self.files(urdf, robot=", without: [hnad]")), "robot.without[0]: unknown link 'hnad', nearest is 'hand'")
         self.assertIn("9 links, 8 joints", run("info", self.urdf, "--without", "hand").stdout)
 
     def test_srdf(self):

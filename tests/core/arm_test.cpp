@@ -8,6 +8,7 @@
 #include <string>
 
 #include "robots.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 
 namespace swivel {
@@ -288,6 +289,30 @@ TEST(Arm, CylinderWithTwoSpheresReadsAsACapsule) {
   EXPECT_TRUE(std::holds_alternative<Sphere>(bodies[0].shape));
   ASSERT_TRUE(std::holds_alternative<Capsule>(bodies[1].shape));
   EXPECT_EQ(std::get<Capsule>(bodies[1].shape).length, 0.3);
+}
+
+/// What a file says so large is refused at its line; problems made in memory are warned of.
+TEST(Scale, LimitsOfMillimetresAreSuspected) {
+  const TestRobot robot = data_robot("iiwa14");
+  const Chain chain = arm_of(robot).chain;
+  Problem problem;
+  EXPECT_TRUE(limit_scale_warnings(chain, problem).empty());
+  problem.limits.clearance = 0.5;
+  problem.limits.tool_path_error = 0.05;
+  problem.limits.tool_speed = 5;
+  EXPECT_TRUE(limit_scale_warnings(chain, problem).empty());
+  problem.limits.clearance = problem.limits.self_clearance.emplace(5);
+  problem.limits.tool_path_error = 1;
+  problem.limits.edge_tolerance = 0.5;
+  problem.limits.tool_speed = 100;
+  problem.smooth = PathSmoothing{1, 0.001};
+  const std::vector<std::string> warnings = limit_scale_warnings(chain, problem);
+  ASSERT_EQ(warnings.size(), 6u);
+  EXPECT_EQ(warnings[0].find("limits.clearance is 5 m, and the arm reaches 1."), 0u) << warnings[0];
+  EXPECT_NE(warnings[0].find(" m: are these millimetres? Lengths are read as metres"), std::string::npos) << warnings[0];
+  EXPECT_EQ(warnings[3].find("limits.tool_path_error is 1 m, "), 0u) << warnings[3];
+  EXPECT_EQ(warnings[4].find("limits.tool_speed is 100 m/s, "), 0u) << warnings[4];
+  EXPECT_EQ(warnings[5].find("path.smooth.position is 1 m, "), 0u) << warnings[5];
 }
 
 }  // namespace

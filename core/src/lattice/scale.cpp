@@ -35,6 +35,10 @@ Size size_of(const Shape& shape) {
   return of(edges.minCoeff(), edges.maxCoeff());
 }
 
+std::string suspicion(double reach) {
+  return formatted(", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach);
+}
+
 class Scale {
  public:
   explicit Scale(double reach) : reach_(reach) {}
@@ -56,8 +60,7 @@ class Scale {
 
  private:
   void tell(const std::string& what, const std::string& found, const char* hint) {
-    warnings_.push_back(
-        what + found + formatted(", and the arm reaches %.3g m: are these millimetres? Lengths are read as metres", reach_) + hint);
+    warnings_.push_back(what + found + suspicion(reach_) + hint);
   }
 
   double reach_;
@@ -81,6 +84,30 @@ ToolPath path_within_scale(const Problem& problem, const Chain& chain, const Bud
   ToolPath path = problem_path(problem, chain, budget);
   if (const auto far = first_far_waypoint(chain, path)) path.end_at(std::max(1, *far));
   return path;
+}
+
+std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& problem) {
+  const double reach = reach_of_arm(chain, problem.tool);
+  const Limits& limits = problem.limits;
+  std::vector<LargeLength> found;
+  const auto look = [&](const char* section, const char* key, const std::optional<double>& value, double most, const char* unit) {
+    if (value && *value > most) found.push_back({section, key, formatted("is %.4g ", *value) + unit + suspicion(reach), most});
+  };
+  const double tolerance = reach / 4, speed = 10 * reach;
+  look("limits", "clearance", limits.clearance, reach, "m");
+  look("limits", "self_clearance", limits.self_clearance, reach, "m");
+  look("limits", "edge_clearance", limits.edge_clearance, reach, "m");
+  look("limits", "edge_tolerance", limits.edge_tolerance, tolerance, "m");
+  look("limits", "tool_path_error", limits.tool_path_error, tolerance, "m");
+  look("limits", "tool_speed", limits.tool_speed, speed, "m/s");
+  if (problem.smooth) look("path.smooth", "position", problem.smooth->position, tolerance, "m");
+  return found;
+}
+
+std::vector<std::string> limit_scale_warnings(const Chain& chain, const Problem& problem) {
+  std::vector<std::string> warnings;
+  for (const LargeLength& one : large_lengths(chain, problem)) warnings.push_back(one.section + "." + one.key + " " + one.fault);
+  return warnings;
 }
 
 std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot) {

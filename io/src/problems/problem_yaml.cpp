@@ -11,9 +11,12 @@
 #include "swivel/core/base/rpy.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/bounds.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
+#include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/problems/problem.hpp"
@@ -85,6 +88,8 @@ template <class Read>
 auto with_key(const YamlValue& key, const fs::path& file, const Read& read) {
   try {
     return read(file);
+  } catch (const RobotKeyError&) {  // of another key
+    throw;
   } catch (const InputError& error) {
     throw InputError(key.where() + ": " + error.what());
   }
@@ -101,7 +106,7 @@ class ProblemReader {
     read_path(root_.require("path"));
     if (const auto value = root_.find_filled("resolution")) read_resolution(*value);
     if (const auto value = root_.find_filled("limits")) read_limits(*value);
-    require_arm_angle();
+    require_suitable_arm();
     if (const auto value = root_.find_filled("start")) read_start(*value);
     read_start_place();
     if (const auto value = root_.find_filled("cost")) read_cost(*value);
@@ -129,6 +134,24 @@ class ProblemReader {
     return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const auto& object) { return object.name == name; });
   }
 
+  /// Calls `work`; what a key of `robot` says wrong is reported where the key stands.
+  template <class Work>
+  auto at_their_keys(const Work& work) const {
+    try {
+      return work();
+    } catch (const RobotKeyError& error) {
+      std::optional<YamlValue> value = root_.require("robot").section().find(error.key());
+      if (!value) throw;
+      if (error.key() == "hold")
+        for (const auto& [joint, position] : value->entries())
+          if (joint == error.entry()) value = position;
+      if (error.key() == "without")
+        for (const YamlValue& link : value->items())
+          if (link.text() == error.entry()) value = link;
+      throw InputError(value->where(), error.fault());
+    }
+  }
+
   void read_robot(const YamlValue& value) {
     const YamlSection section = value.section();
     const YamlValue urdf = section.require("urdf");
@@ -140,7 +163,8 @@ class ProblemReader {
       for (const YamlValue& link : without->items()) options.without.push_back(link.text());
     if (const auto limits = root_.find_filled("limits"))
       if (const auto soft = limits->section().find("soft_limits")) options.soft_limits = word(*soft, {true, false});
-    const UrdfRobot robot = with_key(urdf, resolve(urdf), [&](const fs::path& file) { return load_urdf(file, packages, options); });
+    const UrdfRobot robot = at_their_keys(
+        [&] { return with_key(urdf, resolve(urdf), [&](const fs::path& file) { return load_urdf(file, packages, options); }); });
     if (srdf) with_key(*srdf, resolve(*srdf), [&](const fs::path& file) { load_srdf({file}, *robot.model, robot.left_out); });
     problem_.model = robot.model;
     problem_.base_link = link_name(base);
@@ -371,12 +395,24 @@ class ProblemReader {
     return build_arm(*problem_.model, problem_.base_link, problem_.tip_link, problem_.hold, problem_.tool, problem_.roll);
   }
 
+  /// Refuses what does not suit the robot's file, or an arm of this kind and size, where it stands in the problem's.
+  void require_suitable_arm() const {
+    const ArmModel model = at_their_keys([&] { return arm(); });
+    for (const LargeLength& found : large_lengths(model.chain, problem_)) {
+      const bool smooth = found.section == "path.smooth";
+      const auto section = smooth ? root_.require("path").section().find("smooth") : root_.find_filled("limits");
+      const auto value = section ? section->section().find(found.key) : std::nullopt;
+      if (value) value->fail(found.fault, formatted("at most %.3g", found.most));
+    }
+    require_arm_angle(model);
+  }
+
   /// For the limit of an arm angle, where that is given.
-  void require_arm_angle() const {
+  void require_arm_angle(const ArmModel& model) const {
     const auto limits = root_.find_filled("limits");
     const auto slope = limits ? limits->section().find("arm_slope") : std::nullopt;
     if (!slope) return;
-    if (!classify(arm().chain, problem_.model->source).srs)
+    if (!classify(model.chain, problem_.model->source).srs)
       slope->fail("is given, but the arm has no arm angle, since it is not S-R-S", "no such key for this arm");
   }
 

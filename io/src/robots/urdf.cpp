@@ -15,6 +15,7 @@
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/nearest_name.hpp"
+#include "swivel/core/messages/robot_key_error.hpp"
 #include "swivel/io/meshes/mesh.hpp"
 #include "swivel/io/robots/urdf_shapes.hpp"
 
@@ -303,9 +304,11 @@ class ModelBuilder {
     std::vector<std::string> open;
     for (const std::string& name : options_.without) {
       if (!links_.contains(name))
-        bad_input(file_, "robot.without: unknown link '" + name + "', nearest is '" + nearest(name, links_) + "'",
-                  "a link of this file");
-      if (name == root_) bad_input(file_, "robot.without: '" + name + "' carries all others", "a link below the root");
+        throw RobotKeyError(
+            file_, "without",
+            "unknown link '" + name + "', nearest is '" + nearest(name, links_) + "': allowed is a link of the robot", name);
+      if (name == root_)
+        throw RobotKeyError(file_, "without", "'" + name + "' carries all others: allowed is a link below the root", name);
       open.push_back(name);
     }
     while (!open.empty()) {

@@ -303,8 +303,9 @@ struct Planner::Impl {
     result.held = robot->arm().held;
     result.warnings = limit_warnings(robot->arm().chain);
     if (!scale_of_robot) scale_of_robot = scale_warnings(robot->arm().chain, problem);
-    for (const auto& lines : {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain), *scale_of_robot,
-                              scale_warnings(robot->arm().chain, layout->path, problem.scene)})
+    for (const auto& lines :
+         {held_warnings(result.held), file_warnings(*problem.model, robot->arm().chain), *scale_of_robot,
+          limit_scale_warnings(robot->arm().chain, problem), scale_warnings(robot->arm().chain, layout->path, problem.scene)})
       result.warnings.insert(result.warnings.end(), lines.begin(), lines.end());
     result.warnings.insert(result.warnings.end(), world->warnings().begin(), world->warnings().end());
     list_special_pairs(*world, result);

@@ -98,7 +98,7 @@ std::vector<RobotBody> robot_bodies(const RobotModel& robot, const ArmModel& arm
     const int link = robot.find_link(body.link);
     if (link < 0)
       throw InputError(robot.source, "robot.attached." + body.name + ".link: unknown link '" + body.link +
-                                         "': allowed are the links of this file");
+                                         "': allowed are the links of the robot");
     const LinkPlacement& placement = arm.links[static_cast<std::size_t>(link)];
     bodies.push_back({body.name, link, true, placement.group, body.shape, placement.pose * body.pose});
   }

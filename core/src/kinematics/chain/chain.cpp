@@ -6,6 +6,7 @@
 #include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/messages/robot_key_error.hpp"
 
 namespace swivel {
 
@@ -48,6 +49,10 @@ Pose joint_motion(const Joint& joint, double position) {
 [[noreturn]] void fail(const RobotModel& robot, const std::string& what) {
   throw InputError(robot.source, what);
 }
+/// Of what `robot` of a problem says.
+[[noreturn]] void fail_key(const RobotModel& robot, const char* key, const std::string& fault, const std::string& entry = {}) {
+  throw RobotKeyError(robot.source, key, fault, entry);
+}
 
 /// The way through the tree of links from base to tip: up to the link that both hang from, which may be the base itself, then down.
 struct Way {
@@ -65,8 +70,9 @@ Way way_between(const RobotModel& robot, int base, int tip) {
   int common = -1;
   for (; !up.empty() && !down.empty() && up.back() == down.back(); up.pop_back(), down.pop_back()) common = up.back();
   if (common < 0)
-    fail(robot, "robot.tip_link: '" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
-                    robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
+    fail_key(robot, "tip_link",
+             "'" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
+                 robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
   Way way;
   way.up = up.size();
   way.links = std::move(up);
@@ -77,9 +83,9 @@ Way way_between(const RobotModel& robot, int base, int tip) {
   return way;
 }
 
-int require_link(const RobotModel& robot, const std::string& key, const std::string& name) {
+int require_link(const RobotModel& robot, const char* key, const std::string& name) {
   const int link = robot.find_link(name);
-  if (link < 0) fail(robot, key + ": unknown link '" + name + "': allowed are the links of this file");
+  if (link < 0) fail_key(robot, key, "unknown link '" + name + "': allowed are the links of the robot");
   return link;
 }
 
@@ -124,7 +130,7 @@ bool is_outside(const Joint& joint, double position) {
 }
 
 std::string limits_allowed(const Joint& joint) {
-  return "is outside its limits: allowed is " + formatted("%f", joint.lower) + " to " + formatted("%f", joint.upper);
+  return "is outside its limits: allowed is " + formatted("%.9g", joint.lower) + " to " + formatted("%.9g", joint.upper);
 }
 
 /// Positions of all joints with the arm at 0: given, else 0 or the nearest limit; mimic joints follow.
@@ -137,12 +143,16 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
   }
   for (const auto& [name, value] : hold) {
     const int j = robot.find_joint(name);
-    if (j < 0) fail(robot, "robot.hold: unknown joint '" + name + "': allowed are the joints of this file");
+    const auto refuse = [&, &name = name](const std::string& fault) {
+      fail_key(robot, "hold", "joint '" + name + "' " + fault, name);
+    };
+    if (j < 0) fail_key(robot, "hold", "unknown joint '" + name + "': allowed are the joints of the robot", name);
     const Joint& joint = robot.joints[static_cast<std::size_t>(j)];
-    if (!joint.movable()) fail(robot, "robot.hold: joint '" + name + "' is fixed: allowed are movable joints");
-    if (joint.mimic) fail(robot, "robot.hold: joint '" + name + "' mimics another: hold that one");
-    if (is_outside(joint, value))
-      fail(robot, "robot.hold: joint '" + name + "' at " + formatted("%f", value) + " " + limits_allowed(joint));
+    if (!joint.movable()) refuse("is fixed: allowed are movable joints");
+    if (joint.mimic)
+      refuse("mimics another: allowed is that one, '" +
+             robot.joints[static_cast<std::size_t>(leads[static_cast<std::size_t>(j)].leader)].name + "'");
+    if (is_outside(joint, value)) refuse("at " + formatted("%.9g", value) + " " + limits_allowed(joint));
     position[static_cast<std::size_t>(j)] = value;
   }
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
@@ -152,8 +162,10 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
     position[j] = leads[j].multiplier * position[leader] + leads[j].offset;
     const std::string& name = robot.joints[leader].name;
     if (joint.movable() && hold.count(name) > 0 && is_outside(joint, position[j]))
-      fail(robot, "robot.hold: joint '" + name + "' at " + formatted("%f", position[leader]) + ": joint '" + joint.name +
-                      "', which mimics it, is then at " + formatted("%f", position[j]) + " and " + limits_allowed(joint));
+      fail_key(robot, "hold",
+               "joint '" + name + "' at " + formatted("%.9g", position[leader]) + ": joint '" + joint.name +
+                   "', which mimics it, is then at " + formatted("%.9g", position[j]) + " and " + limits_allowed(joint),
+               name);
   }
   return position;
 }
@@ -349,8 +361,8 @@ std::vector<std::string> limit_warnings(const Chain& chain) {
 
 ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const std::string& tip_link,
                    const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll) {
-  const int base = require_link(robot, "robot.base_link", base_link);
-  const int tip = require_link(robot, "robot.tip_link", tip_link);
+  const int base = require_link(robot, "base_link", base_link);
+  const int tip = require_link(robot, "tip_link", tip_link);
   const Way way = way_between(robot, base, tip);
   for (const int j : way.joints)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
@@ -367,12 +379,14 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
                      (!roll || robot.joints[static_cast<std::size_t>(arm[arm.size() - kDof])].type != Joint::Type::kPrismatic);
   const std::size_t joints = seven || !roll ? kDof : kDof - 1;
   if (!roll && arm.size() == kDof - 1)
-    fail(robot, "robot.tip_link: the arm from '" + base_link + "' to '" + tip_link +
-                    "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
-                    "in rad, to `path`");
+    fail_key(robot, "tip_link",
+             "the arm from '" + base_link + "' to '" + tip_link +
+                 "' has six joints: allowed with a tool that may turn about its own z axis: add `roll: free`, or [lower, upper] "
+                 "in rad, to `path`");
   if (arm.size() < joints)
-    fail(robot, "robot.tip_link: only " + std::to_string(arm.size()) + " movable joints that are not held between '" + base_link +
-                    "' and '" + tip_link + "': allowed are at least seven, or six with path.roll");
+    fail_key(robot, "tip_link",
+             "only " + std::to_string(arm.size()) + " movable joints that are not held between '" + base_link + "' and '" +
+                 tip_link + "': allowed are at least seven, or six with path.roll");
   arm.erase(arm.begin(), arm.end() - static_cast<std::ptrdiff_t>(joints));
   for (const int j : arm)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kPrismatic)

@@ -25,6 +25,17 @@ inline constexpr double kFar = 20;
 /// after, in millimetres as a rule, has too many layers to look at.
 [[nodiscard]] ToolPath path_within_scale(const Problem& problem, const Chain& chain, const Budget& budget = {});
 
+/// A length of `limits` or `path.smooth` that is as large as if it were millimetres: a clearance of more than the arm's reach, a
+/// tolerance of more than a quarter of it, a tool speed of more than 10 times the reach in a second.
+struct LargeLength {
+  std::string section, key;  ///< "limits", "clearance"
+  std::string fault;         ///< "is 5 m, and the arm reaches 1.31 m: are these millimetres? Lengths are read as metres"
+  double most = 0;           ///< the most that is not suspected
+};
+[[nodiscard]] std::vector<LargeLength> large_lengths(const Chain& chain, const Problem& problem);
+/// One line for each of these.
+[[nodiscard]] std::vector<std::string> limit_scale_warnings(const Chain& chain, const Problem& problem);
+
 /// One line for the tool, and for each body of the robot, that is as large as if its lengths were millimetres.
 [[nodiscard]] std::vector<std::string> scale_warnings(const Chain& chain, const Robot& robot);
 /// One line for the path, and for each object of the scene, that is as large or as far away as if its lengths were millimetres.
