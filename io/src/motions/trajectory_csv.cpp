@@ -21,7 +21,8 @@ const Schema& trajectory_schema() {
                   {"branch", integer(), "", required(),
                    "0 to 7, the sum of 1 (shoulder), 2 (wrist), 4 (elbow), each where the sine of that angle, measured from its "
                    "singular pose, "
-                   "is negative. Of other arms 0 to 3, for plots: the signs of two determinants"},
+                   "is negative; `check` proves it. Of arms that are not S-R-S 0 to 3, [for plots](#branch), which `check` does "
+                   "not look at"},
                   {"JOINT", number(), "rad", required(), "a column for each joint, with its name; continuous joints without jumps"},
               });
   return schema;
