@@ -15,6 +15,7 @@
 #include "options/commands.hpp"
 #include "options/search_options.hpp"
 #include "output/motion_output.hpp"
+#include "output/self_time_output.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/input_error.hpp"
@@ -211,6 +212,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
       if (cut) say_text(cut_text(*cut, aftermath.cut_bytes));
       if (advice) say_text(advice_text(*advice));
     }
+    if (!arguments.quiet && timeline) print_self_times(*timeline);
     if (map && arguments.map) std::fputs(to_text(*map, terminal_columns(), coloured()).c_str(), stdout);
   });
   switch (result.status) {
@@ -279,7 +281,8 @@ void add_plan(CLI::App& app, int& exit_code) {
                       "where there is no path: a proof of it, which `check --certificate` verifies (JSON)");
   command->add_option("--json", arguments->json, "result file, - for standard output");
   command->add_option("--trace", arguments->trace,
-                      "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format");
+                      "timeline of stages, batches and FCL calls by thread, in Chrome's trace event format; prints how long each "
+                      "stage took itself");
   command->add_flag("--map", arguments->map, "print the (s, phi) map: what the search looked at, and the path");
   command->add_option("--map-svg", arguments->map_svg, "the same map as an SVG drawing");
   command->add_option("--report", arguments->report, "the plan as one HTML file: playback, map, plots, summary");

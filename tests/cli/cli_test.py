@@ -220,6 +220,19 @@ class Files(WithFolder):
                 self.assertGreaterEqual(e["ts"], planned["ts"])
                 self.assertLessEqual(e["ts"] + e["dur"], planned["ts"] + planned["dur"] + 1)
         self.assertEqual(self.plan(PROBLEMS / "experiment_b.yaml", "--edges", "nodes")[2]["cost"], result["cost"])
+        # On stderr each stage's own time, longest first; all of it is what the threads spent in outermost spans.
+        table = done.stderr[done.stderr.index("swivel: self time by stage, "):].splitlines()
+        total = float(re.match(r"swivel: self time by stage, ([0-9.]+) ms on all threads$", table[0])[1])
+        rows = [re.match(r"  (.+?) +(\d+) +([0-9.]+) +([0-9.]+) %$", line) for line in table[2:]]
+        self.assertGreater(len(rows), 8)
+        self.assertIn("other stages", rows[-1][1])
+        own = [float(row[3]) for row in rows]
+        self.assertEqual(own[:-1], sorted(own[:-1], reverse=True))
+        self.assertAlmostEqual(sum(own), total, delta=0.1)
+        self.assertAlmostEqual(sum(float(row[4]) for row in rows), 100, delta=1)
+        calls = {row[1]: int(row[2]) for row in rows}
+        self.assertEqual(sum(calls.values()), len(spans))
+        self.assertEqual(calls["node"], result["counters"]["nodes_checked"])
 
     def test_map(self):
         drawing = self.folder / "map.svg"
@@ -606,11 +619,13 @@ class Stopping(WithFolder):
     def test_quiet_measures_nothing(self):
         for quiet in ((), ("--quiet",)):
             trace = self.folder / "trace.json"
-            self.assertEqual(run("plan", PROBLEMS / "experiment_c.yaml", "--out", self.folder / "t.csv", "--trace", trace, *quiet).returncode, 0)
+            done = run("plan", PROBLEMS / "experiment_c.yaml", "--out", self.folder / "t.csv", "--trace", trace, *quiet)
+            self.assertEqual(done.returncode, 0)
             spans = [e for e in json.loads(trace.read_text())["traceEvents"] if e["ph"] == "X"]
             report = next(e for e in spans if e["name"] == "report")
             asked = [e for e in spans if e["name"].startswith("fcl::") and e["ts"] >= report["ts"] and e["ts"] <= report["ts"] + report["dur"]]
             self.assertEqual(asked == [], quiet != ())
+            self.assertEqual("self time by stage" in done.stderr, quiet == ())
 
     def test_layers_of_one_reason_on_one_line(self):
         problem = self.folder / "p.yaml"
