@@ -43,7 +43,7 @@ bool is_eager(const PlanOptions& options) {
 
 /// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
 Certificates certificates_of(const PlanOptions& options) {
-  return is_eager(options) ? Certificates::kOff : Certificates::kOn;
+  return is_eager(options) || options.fcl_alone ? Certificates::kOff : Certificates::kOn;
 }
 
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of

@@ -141,6 +141,78 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(detours, at_least(count / 20));
 }
 
+/// PlanOptions::fcl_alone beside own proofs: fresh, and by a planner that remembers, after an object has moved.
+TEST(Agreement, FclAloneGivesTheSameAnswers) {
+  const std::uint64_t base = seed("Agreement.FclAlone");
+  const auto robots = all_robots();
+  int solved = 0, infeasible = 0, asked = 0, moves = 0;
+  std::int64_t alone_calls = 0, calls = 0, certified = 0;
+  const int count = trials(100);
+  for (int trial = 0; trial < count; ++trial) {
+    Random random(base + static_cast<std::uint64_t>(trial));
+    Problem problem = random_problem(robots[static_cast<std::size_t>(trial) % robots.size()], random);
+    const std::string what =
+        "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
+    for (const PlannerKind kind : {PlannerKind::kLazy, PlannerKind::kParallel}) {
+      PlanOptions options;
+      options.planner = kind;
+      options.threads = 2;
+      PlanOptions alone_options = options;
+      alone_options.fcl_alone = true;
+      Planner planner(problem), alone(problem);
+      const auto compare = [&](const std::string& when) {
+        const PlanResult with_proofs = planner.plan(options), by_fcl = alone.plan(alone_options);
+        expect_same(with_proofs, by_fcl, what + " " + by_fcl.planner + when);
+        ++(with_proofs.status == PlanStatus::kSolved ? solved : infeasible);
+        EXPECT_EQ(by_fcl.counters.certified_free + by_fcl.counters.certified_colliding, 0) << what << when;
+        certified += with_proofs.counters.certified_free + with_proofs.counters.certified_colliding;
+        calls += with_proofs.counters.fcl_calls;
+        alone_calls += by_fcl.counters.fcl_calls;
+        asked += by_fcl.counters.fcl_calls > 0;
+      };
+      compare("");
+      if (HasFatalFailure()) return;
+      if (problem.scene.empty()) continue;
+      Pose pose = problem.scene[0].pose;
+      pose.translation() += Vector3d(random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02));
+      planner.move(problem.scene[0].name, pose);
+      alone.move(problem.scene[0].name, pose);
+      ++moves;
+      compare(" moved");
+      if (HasFatalFailure()) return;
+    }
+  }
+  std::printf("%d plans solved, %d infeasible, %d after a move; FCL alone: %lld calls, in %d plans; else %lld, %lld certified\n",
+              solved, infeasible, moves, static_cast<long long>(alone_calls), asked, static_cast<long long>(calls),
+              static_cast<long long>(certified));
+  EXPECT_GE(solved, at_least(count));
+  EXPECT_GE(infeasible, at_least(count / 5));
+  EXPECT_GE(moves, at_least(count));
+  EXPECT_GE(asked, at_least(count));
+  if (at_least(1) > 0) EXPECT_GT(alone_calls, 10 * calls);
+}
+
+/// Arms along arcs, a roll that is chosen as well, and a part in the hand.
+TEST(Agreement, FclAloneGivesTheSameAnswersOnOtherLattices) {
+  for (const char* name : {"panda_weld_seam", "kr6_weld_pipe", "torch_door", "iiwa14_deburr_in_hand"}) {
+    Problem problem = io::load_problem(data_dir() / "problems" / (std::string(name) + ".yaml"));
+    problem.resolution.ds = 0.02;
+    problem.resolution.dphi = 0.2;
+    problem.resolution.arc = problem.resolution.droll = 0.4;
+    problem.limits.edges = EdgeMode::kNodes;
+    const PreparedRobot robot(problem);
+    PlanOptions options;
+    options.planner = PlannerKind::kLazy;
+    const PlanResult with_proofs = plan(robot, problem, options);
+    options.fcl_alone = true;
+    const PlanResult by_fcl = plan(robot, problem, options);
+    expect_same(with_proofs, by_fcl, name);
+    std::printf("%s: %s, FCL calls %lld, alone %lld\n", name, to_string(by_fcl.status),
+                static_cast<long long>(with_proofs.counters.fcl_calls), static_cast<long long>(by_fcl.counters.fcl_calls));
+    EXPECT_GT(by_fcl.counters.fcl_calls, with_proofs.counters.fcl_calls) << name;
+  }
+}
+
 /// Weights of every size, some or all of them zero, in one table so that each kind is met equally often.
 enum class Weights { kAllZero, kSomeZero, kLeast, kMost, kBothEnds, kCount };
 

@@ -35,6 +35,10 @@ struct PlanOptions {
   /// Prove every trajectory (and motion) as check_trajectory() does before it is returned, within the time-out: one that fails is a
   /// bug and std::logic_error, never an answer; one that is not proved in time is none.
   bool check = false;
+  /// FCL decides every clearance that the search asks about, behind bounding volumes, as it always does for the eager planners: no
+  /// closed forms, no triangle trees of our own, and nothing is kept from one posture to the next. Depths of contact
+  /// (AllowedPair::depth), which FCL does not measure, stay ours. The answer is the same; it takes longer.
+  bool fcl_alone = false;
   Evidence evidence;          ///< what to find besides the verdict
   Hooks hooks;                ///< rules and costs of the caller's own, of any planner
   ProgressFunction progress;  ///< called now and then from the planning thread; must be quick
