@@ -1,18 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole plans of the paper's experiments on a prepared robot: scene / planner / resolution / edge mode / threads. Report stages are
-// not timed. Rows of lazy and parallel have counters eager_ms, eager_dp_ms and the speed-ups over both: the eager planners are run
-// on the same problem before and after each repetition, in the same process.
+// Whole plans on a prepared robot: scene / planner / resolution / edge mode / threads. Scenes are the paper's experiments, an arm
+// without an arm angle (`arcs`), an arm that chooses the roll of its tool as well (`roll`), and an arm whose links are meshes
+// (`meshes`). The planner lazy_fcl_alone is lazy without proofs of our own (PlanOptions::fcl_alone). Report stages are not timed.
+// Rows have counters eager_ms, eager_dp_ms and the speed-ups over both: the eager planners are run on the same problem before and
+// after each repetition, in the same process; a plan of more than a second once for all rows of its problem.
 //   plan_benchmark --benchmark_filter=^c/lazy    every argument of google-benchmark applies
+//   plan_benchmark --plan_limit=60               s: rows of which a plan takes longer are not run, and say so
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "context.hpp"
+#include "mesh_bodies.hpp"
 #include "settings.hpp"
+#include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
 
@@ -20,46 +32,156 @@ namespace {
 
 using namespace swivel;
 
+constexpr double kOncePerProcess = 1;  // s: an eager plan of more serves all rows of its problem
+constexpr double kOnce = 5;            // s: a row whose plans take more has one repetition
+double plan_limit = 60;                // s
+
+struct Scene {
+  const char* name;
+  const char* file;
+  bool of_the_paper;  ///< with every planner and edge mode; else what is needed to compare eager with lazy and parallel
+  int settings;       ///< how many of bench::kSettings
+  bool mesh_bodies = false;
+};
+constexpr int kAllSettings = static_cast<int>(std::size(bench::kSettings));
+constexpr Scene kScenes[] = {{"a", "experiment_a", true, bench::kPaperSettings},
+                             {"b", "experiment_b", true, bench::kPaperSettings},
+                             {"c", "experiment_c", true, kAllSettings},
+                             {"c_20k", "experiment_c_20k", true, bench::kPaperSettings},
+                             {"arcs", "panda_weld_seam", false, bench::kPaperSettings},
+                             {"roll", "torch_door", false, bench::kPaperSettings},
+                             {"meshes", "iiwa14_bench", false, bench::kPaperSettings, true}};
+
+/// A problem, and its robot with all that questions about meshes need.
+struct Prepared {
+  Problem problem;
+  PreparedRobot robot;
+  explicit Prepared(Problem of) : problem(std::move(of)), robot(problem) {
+    constexpr double kFar = 100;  // m, so that bounds prove nothing and FCL's trees, too, are built
+    const World& world = robot.world();
+    world.make_ready([] { return false; });
+    World::Query query(world);
+    for (const BodyPair& pair : world.pairs()) benchmark::DoNotOptimize(query.pair_below(Config::Zero(), pair, kFar));
+  }
+};
+
+const Prepared& prepared(const Scene& scene) {
+  static std::map<std::string, std::unique_ptr<const Prepared>> all;
+  auto& entry = all[scene.name];
+  if (!entry) {
+    Problem problem = io::load_problem(std::filesystem::path(SWIVEL_DATA_DIR) / "problems" / (std::string(scene.file) + ".yaml"));
+    entry = std::make_unique<const Prepared>(scene.mesh_bodies ? bench::with_mesh_bodies(std::move(problem)) : std::move(problem));
+  }
+  return *entry;
+}
+
 struct Case {
   PlannerKind planner;
   EdgeMode edges;
   int threads;
-  bool compare;  ///< with the eager planners
+  bool fcl_alone = false;
+  bool over_eager = false, over_eager_dp = false;  ///< compared with them
 };
+
+std::string label_of(const Scene& scene, const Case& what, const bench::Setting& setting) {
+  std::string label = std::string(scene.name) + "/" + to_string(what.planner) + (what.fcl_alone ? "_fcl_alone" : "") + "/" +
+                      setting.name + (what.edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
+  if (what.planner == PlannerKind::kParallel || what.threads > 1) label += "/threads:" + std::to_string(what.threads);
+  return label;
+}
 
 PlanOptions options_for(PlannerKind planner, int threads) {
   PlanOptions options;
   options.planner = planner;
   options.threads = threads;
+  options.timeout_s = plan_limit;
   return options;
 }
 
-/// Adds the milliseconds that one eager plan takes, by planner.
+bool in_time(const PlanResult& result) {
+  return result.status != PlanStatus::kTimeout;
+}
+
+/// Of plans that take longer than a second, by label: they are not repeated for every row that is compared with them.
+struct SlowPlan {
+  double s = 0;          ///< the limit where it took more
+  bool has_row = false;  ///< it has been measured for its own row
+};
+std::map<std::string, SlowPlan> slow_plans;
+
+SlowPlan slow_plan(const std::string& label) {
+  const auto found = slow_plans.find(label);
+  return found == slow_plans.end() ? SlowPlan() : found->second;
+}
+
+/// Notes how long a plan took, if that was long.
+void note_time(const std::string& label, const PlanResult& result, bool for_its_row) {
+  const double s = in_time(result) ? result.time_ms.at("plan") / 1e3 : plan_limit;
+  if (s > kOncePerProcess) slow_plans[label] = {s, for_its_row || slow_plan(label).has_row};
+}
+
+/// The milliseconds of one eager plan; none where it takes more than the limit.
+std::optional<double> eager_ms(const std::string& label, const Scene& scene, const Problem& problem, PlannerKind planner) {
+  if (const SlowPlan slow = slow_plan(label); slow.s > 0) return slow.s < plan_limit ? std::optional(1e3 * slow.s) : std::nullopt;
+  const PlanResult result = plan(prepared(scene).robot, problem, options_for(planner, 1));
+  note_time(label, result, false);
+  return in_time(result) ? std::optional(result.time_ms.at("plan")) : std::nullopt;
+}
+
+/// Before and after what is compared with it.
 struct EagerTimes {
-  double eager = 0, eager_dp = 0;
-  void measure(const PreparedRobot& robot, const Problem& problem) {
-    eager += plan(robot, problem, options_for(PlannerKind::kEager, 1)).time_ms["plan"];
-    eager_dp += plan(robot, problem, options_for(PlannerKind::kEagerDp, 1)).time_ms["plan"];
+  const Scene& scene;
+  const Problem& problem;
+  PlannerKind planner;
+  std::string label;  ///< of its row
+  bool asked;
+  std::optional<double> sum = 0.0;
+  void measure() {
+    if (!asked || !sum) return;
+    const auto ms = eager_ms(label, scene, problem, planner);
+    sum = ms ? std::optional(*sum + *ms) : std::nullopt;
+  }
+  void count(benchmark::State& state, double ms) const {
+    if (!asked || !sum) return;
+    const std::string name = to_string(planner);
+    state.counters[name + "_ms"] = *sum / 2;
+    state.counters["speed_up_over_" + name] = *sum / 2 / ms;
   }
 };
 
-void run(benchmark::State& state, Problem problem, const Case& what, const bench::Setting& setting) {
-  const PreparedRobot robot(problem);
-  // FCL's trees of meshes belong to the robot and are built at its first question.
-  bench::set_resolution(problem, bench::kSettings[0]);
-  problem.limits.edges = EdgeMode::kNodes;
-  static_cast<void>(plan(robot, problem, options_for(PlannerKind::kEagerDp, 1)));
+void run(benchmark::State& state, const Scene& scene, const Case& what, const bench::Setting& setting) {
+  const std::string label = label_of(scene, what, setting);
+  const auto not_run = [&] { state.SkipWithError(formatted("not run: more than %g s a plan", plan_limit).c_str()); };
+  if (const SlowPlan slow = slow_plan(label); slow.s >= plan_limit)
+    return not_run();
+  else if (slow.has_row && slow.s > kOnce)
+    return state.SkipWithError("not repeated: a plan takes seconds");
+  const Prepared& of = prepared(scene);
+  Problem problem = of.problem;
   bench::set_resolution(problem, setting);
   problem.limits.edges = what.edges;
-  EagerTimes eager;
-  if (what.compare) eager.measure(robot, problem);
+  const auto eager_times = [&](PlannerKind planner, bool asked) {
+    return EagerTimes{scene, problem, planner, label_of(scene, {planner, what.edges, 1}, setting), asked};
+  };
+  EagerTimes eager = eager_times(PlannerKind::kEager, what.over_eager);
+  EagerTimes eager_dp = eager_times(PlannerKind::kEagerDp, what.over_eager_dp);
+  eager.measure();
+  eager_dp.measure();
+  PlanOptions options = options_for(what.planner, what.threads);
+  options.fcl_alone = what.fcl_alone;
   PlanResult result;
   double ms = 0;
   for (auto _ : state) {
-    result = plan(robot, problem, options_for(what.planner, what.threads));
+    result = plan(of.robot, problem, options);
     benchmark::DoNotOptimize(result.trajectory.data());
-    ms += result.time_ms["plan"];
+    note_time(label, result, true);
+    if (!in_time(result)) {
+      not_run();
+      break;
+    }
+    ms += result.time_ms.at("plan");
   }
+  if (!in_time(result)) return;
   const auto nodes = static_cast<double>(result.lattice.nodes);
   state.SetItemsProcessed(state.iterations() * result.lattice.nodes);
   const Counters& work = result.counters;
@@ -76,53 +198,77 @@ void run(benchmark::State& state, Problem problem, const Case& what, const bench
   state.counters["layers"] = result.lattice.layers;
   state.counters["cost"] = result.cost;
   state.counters["solved"] = result.status == PlanStatus::kSolved;
-  if (!what.compare) return;
-  eager.measure(robot, problem);
-  ms /= static_cast<double>(state.iterations());
-  state.counters["eager_ms"] = eager.eager / 2;
-  state.counters["eager_dp_ms"] = eager.eager_dp / 2;
-  state.counters["speed_up_over_eager"] = eager.eager / 2 / ms;
-  state.counters["speed_up_over_eager_dp"] = eager.eager_dp / 2 / ms;
+  state.counters["plan_ms"] = ms / static_cast<double>(state.iterations());
+  eager.measure();
+  eager_dp.measure();
+  eager.count(state, state.counters["plan_ms"]);
+  eager_dp.count(state, state.counters["plan_ms"]);
 }
 
-std::vector<Case> cases(int setting) {
+std::vector<Case> cases(const Scene& scene, int setting) {
   const bool paper = setting < bench::kPaperSettings;
+  const int most_threads = std::max(2, static_cast<int>(std::thread::hardware_concurrency()));
   std::vector<Case> all;
   // Eager planners with continuous edges take minutes: every edge of the lattice is swept through FCL.
   if (setting <= bench::kPaperSettings) {
-    all.push_back({PlannerKind::kEager, EdgeMode::kNodes, 1, false});
-    all.push_back({PlannerKind::kEagerDp, EdgeMode::kNodes, 1, false});
+    all.push_back({.planner = PlannerKind::kEager, .edges = EdgeMode::kNodes, .threads = 1});
+    if (scene.of_the_paper) all.push_back({.planner = PlannerKind::kEagerDp, .edges = EdgeMode::kNodes, .threads = 1});
+  }
+  if (paper) {
+    all.push_back({.planner = PlannerKind::kEager, .edges = EdgeMode::kNodes, .threads = 2, .over_eager = true});
+    all.push_back({.planner = PlannerKind::kLazy, .edges = EdgeMode::kNodes, .threads = 1, .fcl_alone = true, .over_eager = true});
   }
   for (const EdgeMode edges : {EdgeMode::kNodes, EdgeMode::kContinuous}) {
-    const bool compare = paper && edges == EdgeMode::kNodes;
-    all.push_back({PlannerKind::kLazy, edges, 1, compare});
-    for (int threads = 1; threads <= std::max(2, static_cast<int>(std::thread::hardware_concurrency())); threads *= 2)
-      all.push_back({PlannerKind::kParallel, edges, threads, compare});
+    if (edges == EdgeMode::kContinuous && !scene.of_the_paper) continue;
+    const bool over_eager = paper && edges == EdgeMode::kNodes, over_eager_dp = over_eager && scene.of_the_paper;
+    const auto add = [&](PlannerKind planner, int threads) {
+      all.push_back(
+          {.planner = planner, .edges = edges, .threads = threads, .over_eager = over_eager, .over_eager_dp = over_eager_dp});
+    };
+    add(PlannerKind::kLazy, 1);
+    for (int threads = scene.of_the_paper ? 1 : 2; threads <= most_threads; threads *= 2) add(PlannerKind::kParallel, threads);
   }
   return all;
+}
+
+/// Takes --plan_limit=S out of the arguments; false where S is no number of seconds.
+bool take_plan_limit(int& argc, char** argv) {
+  constexpr std::string_view kFlag = "--plan_limit=";
+  char** const last = std::remove_if(argv + 1, argv + argc, [&](const char* word) {
+    if (!std::string_view(word).starts_with(kFlag)) return false;
+    char* end = nullptr;
+    plan_limit = std::strtod(word + kFlag.size(), &end);
+    if (*end != '\0' || end == word + kFlag.size()) plan_limit = 0;
+    return true;
+  });
+  argc = static_cast<int>(last - argv);
+  if (plan_limit > 0) return true;
+  std::fprintf(stderr, "plan_benchmark: --plan_limit: allowed is a number of seconds above 0\n");
+  return false;
+}
+
+void print_help() {
+  benchmark::PrintDefaultHelp();
+  std::printf("          [--plan_limit=<seconds>]   rows of which a plan takes longer are not run (default 60)\n");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::filesystem::path problems = std::filesystem::path(SWIVEL_DATA_DIR) / "problems";
-  for (const std::string scene : {"a", "b", "c", "c_20k"}) {
-    const Problem problem = io::load_problem(problems / ("experiment_" + scene + ".yaml"));
-    const int settings = scene == "c" ? static_cast<int>(std::size(bench::kSettings)) : bench::kPaperSettings;
-    for (int k = 0; k < settings; ++k) {
+  if (!take_plan_limit(argc, argv)) return 2;
+  for (const Scene& scene : kScenes)
+    for (int k = 0; k < scene.settings; ++k) {
       const bench::Setting& setting = bench::kSettings[k];
-      for (const Case& what : cases(k)) {
-        std::string label = scene + "/" + to_string(what.planner) + "/" + setting.name +
-                            (what.edges == EdgeMode::kNodes ? "/nodes" : "/continuous");
-        if (what.planner == PlannerKind::kParallel) label += "/threads:" + std::to_string(what.threads);
-        benchmark::RegisterBenchmark(label.c_str(), [=](benchmark::State& state) { run(state, problem, what, setting); })
+      for (const Case& what : cases(scene, k)) {
+        const std::string label = label_of(scene, what, setting);
+        benchmark::RegisterBenchmark(label.c_str(),
+                                     [&, what, label](benchmark::State& state) { run(state, scene, what, setting, label); })
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime();
       }
     }
-  }
   for (const auto& [key, value] : bench::context()) benchmark::AddCustomContext(key, value);
-  benchmark::Initialize(&argc, argv);
+  benchmark::Initialize(&argc, argv, print_help);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   benchmark::RunSpecifiedBenchmarks();
   return 0;

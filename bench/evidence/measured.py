@@ -11,7 +11,7 @@ RESOLUTION = {"#1": "20 mm / 0.2", "#2": "5 mm / 0.2", "#3": "20 mm / 0.05", "#4
 
 
 def load(file):
-    return json.load(open(file)) if file.exists() else None
+    return json.loads(file.read_text()) if file.exists() else None
 
 
 def table(file):
@@ -22,16 +22,21 @@ def table(file):
 
 
 class Benchmarks:
-    """Medians over the repetitions of google-benchmark, by name."""
+    """Medians over the repetitions of google-benchmark, by name; and of rows that were not run, the reason."""
 
     def __init__(self, file):
         content = load(file)
         self.context = content["context"] if content else {}
-        runs = {}
+        runs, self.not_run = {}, {}
         for entry in content["benchmarks"] if content else []:
             if entry["run_type"] == "iteration":
-                runs.setdefault(entry["run_name"].removesuffix("/real_time"), []).append(entry)
-        self.runs = {name: {key: statistics.median(entry[key] for entry in entries) for key, value in entries[0].items()
+                name = entry["run_name"].removesuffix("/real_time")
+                if entry.get("error_occurred"):
+                    self.not_run[name] = entry["error_message"]
+                else:
+                    runs.setdefault(name, []).append(entry)
+        self.repetitions = runs
+        self.runs = {name: {key: statistics.median(entry[key] for entry in entries if key in entry) for key, value in entries[0].items()
                             if isinstance(value, (int, float))} for name, entries in runs.items()}
 
     def __bool__(self):
@@ -39,6 +44,15 @@ class Benchmarks:
 
     def get(self, name, key="real_time"):
         return self.runs.get(name, {}).get(key)
+
+    def quartiles(self, name, key):
+        """Of a counter over the repetitions: lower quartile, median, upper quartile; None where there is none."""
+        values = [entry[key] for entry in self.repetitions.get(name, []) if key in entry]
+        if not values:
+            return None
+        if len(values) == 1:
+            return values[0], values[0], values[0]
+        return tuple(statistics.quantiles(values, n=4, method="inclusive"))
 
     def matching(self, pattern):
         return {name: run for name, run in self.runs.items() if re.fullmatch(pattern, name)}

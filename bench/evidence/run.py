@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import planner_table
 import plots
 import tables
 
@@ -44,8 +45,11 @@ def table1(data, quick):
 
 
 def plans(data, quick):
-    benchmark("plan_benchmark", data / "plans.json", 1 if quick else 3, 0.01 if quick else 0.05,
-              *(["--benchmark_filter=^[bc]/.*#[1-4]"] if quick else []))
+    if quick:
+        benchmark("plan_benchmark", data / "plans.json", 3, 0.01, "--plan_limit=2", f"--benchmark_filter={planner_table.FILTER}")
+    else:
+        benchmark("plan_benchmark", data / "plans.json", 5, 0.05, "--plan_limit=60")
+    print(tables.machine(data), planner_table.as_text(data), sep="\n\n", end="\n\n", flush=True)
 
 
 def pieces(data, quick):

@@ -6,25 +6,12 @@ import statistics
 from collections import Counter
 
 from measured import PAPER_SETTINGS, RESOLUTION, SETTINGS, Benchmarks, TableOne, load, mean, median, solved
+from planner_table import planners
+from words import markdown, number
 
 # The paper's Table I: mean ms, mean mm, %. Intel i7-4710HQ, 2.50 GHz, one thread.
 PAPER = {"jacobian": (0.15, None, 0), "null_space": (5.34, 0.013, 15), "#1": (136.35, 1.32, 85), "#2": (837.86, 0.353, 93),
          "#3": (936.32, 0.532, 91), "#4": (6356.76, 0.021, 98)}
-
-
-def number(value, digits=3):
-    """Three significant digits, never an exponent."""
-    if value is None:
-        return "–"
-    if value == 0:
-        return "0"
-    decimals = max(0, digits - 1 - math.floor(math.log10(abs(value))))
-    return f"{value:,.{decimals}f}" if decimals else f"{round(value, digits - 1 - math.floor(math.log10(abs(value)))):,.0f}"
-
-
-def markdown(header, rows):
-    lines = ["| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
 def machine(data):
@@ -198,7 +185,7 @@ def headline(data):
     return markdown([f"{len(one.episodes('lazy', '#4'))} door poses, 5 mm / 0.05 rad", "ms", "tool-path error, mm", "success, %", "paper: ms", "mm", "%"], rows)
 
 
-BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, plans, scenes, pieces, headline)}
+BLOCKS = {block.__name__: block for block in (machine, experiments, table1, findings, planners, plans, scenes, pieces, headline)}
 
 
 def fill(data, documents):

@@ -6,7 +6,7 @@ namespace swivel::bench {
 
 struct Setting {
   const char* name;
-  double ds, dphi;  ///< m, rad
+  double ds, dphi;  ///< m; rad, of arm angles and rolls, or of self-motion where the arm has no arm angle
 };
 /// The four resolutions of the paper's Table I, and two finer ones.
 inline constexpr Setting kSettings[] = {{"#1", 0.02, 0.2},   {"#2", 0.005, 0.2},    {"#3", 0.02, 0.05},
@@ -15,7 +15,7 @@ inline constexpr int kPaperSettings = 4;
 
 inline void set_resolution(Problem& problem, const Setting& setting) {
   problem.resolution.ds = setting.ds;
-  problem.resolution.dphi = setting.dphi;
+  problem.resolution.dphi = problem.resolution.arc = problem.resolution.droll = setting.dphi;
 }
 
 }  // namespace swivel::bench
