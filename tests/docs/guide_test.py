@@ -9,6 +9,7 @@ Blocks are taken in their order, by language:
   yaml        with title="NAME" a file; else a part of a problem file, whose keys and values the schema must allow
   python      run
   cpp, python that are one line --8<-- "FILE": an example, which has tests of its own
+The README's program in C++ is run by examples/CMakeLists.txt; of `./swivel test` and bench/reproduce its options are held against --help alone.
 """
 import json
 import os
@@ -31,7 +32,15 @@ class Page:
         self.skipped = []
         for name in ("data", "examples"):
             (folder / name).symlink_to(SOURCE / name)
-        (folder / "swivel").symlink_to(PROGRAM)
+        self.script("swivel", f'[ "$1" != test ] || exit 0  # it runs this test\nexec "{PROGRAM}" "$@"')
+        options = f'for word; do case $word in --*) grep -q -e "$word" "$help" || {{ echo "no option $word" >&2; exit 2; }};; esac; done'
+        self.script("bench/reproduce", f'help=$(mktemp)\n"{SOURCE}/bench/reproduce" --help >"$help" || exit 2\n{options}')
+
+    def script(self, name, text):
+        file = self.folder / name
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(f"#!/bin/sh\n{text}\n")
+        file.chmod(0o755)
 
     def sh(self, text, _):
         code = re.search(r"ends with exit code (\d+)", text)
@@ -78,6 +87,8 @@ class Page:
         expect(done.returncode == 0, f"ended with {done.returncode}:\n{text}\n{self.printed}")
 
     def cpp(self, text, _):
+        if text in (SOURCE / "README.md").read_text():
+            return
         included = INCLUDED.fullmatch(text)
         expect(included, "programs in C++ are those of examples/, by inclusion")
         self.example(included[1], "examples/CMakeLists.txt")
