@@ -16,11 +16,17 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 COPIED = ["*.md", "docs/*.md", "docs/guide/*.md", "docs/decisions/*.md", "docs/measurements/*.md", "docs/figures/*", "examples/**/*", "data/README.md", "data/problems/*", "cmake/packages.txt"]
 
 
+# Typesets formulas; copied beside the pages, since nothing is fetched from elsewhere.
+KATEX = pathlib.Path("/usr/share/javascript/katex")
+
+
 def missing():
     """The Debian packages of what is not there."""
     names = [package for program, package in (("mkdocs", "mkdocs-material"), ("doxygen", "doxygen")) if not shutil.which(program)]
     if not names and "material" not in subprocess.run(["mkdocs", "build", "--help"], capture_output=True, text=True).stdout:
         names.append("mkdocs-material")
+    if not (KATEX / "katex.min.js").is_file():
+        names.append("libjs-katex")
     return names
 
 
@@ -31,7 +37,12 @@ def copy_documents(pages):
                 target = pages / file.relative_to(ROOT)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(file, target)
-    shutil.copyfile(ROOT / "docs/site.css", pages / "site.css")
+    for name in ("site.css", "formulas.js"):
+        shutil.copyfile(ROOT / "docs" / name, pages / name)
+    for file in [KATEX / "katex.min.js", KATEX / "katex.min.css", *(KATEX / "fonts").glob("*.woff2")]:
+        target = pages / "katex" / file.relative_to(KATEX)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(file, target)
 
 
 def python_reference():
