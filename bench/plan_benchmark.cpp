@@ -261,8 +261,7 @@ int main(int argc, char** argv) {
       const bench::Setting& setting = bench::kSettings[k];
       for (const Case& what : cases(scene, k)) {
         const std::string label = label_of(scene, what, setting);
-        benchmark::RegisterBenchmark(label.c_str(),
-                                     [&, what, label](benchmark::State& state) { run(state, scene, what, setting, label); })
+        benchmark::RegisterBenchmark(label.c_str(), [&, what](benchmark::State& state) { run(state, scene, what, setting); })
             ->Unit(benchmark::kMillisecond)
             ->UseRealTime();
       }
