@@ -56,13 +56,20 @@ std::optional<std::string> unexpected_word(const CLI::App& app) {
          " (allowed are those of `" + help + "`)";
 }
 
-/// No value may be empty: a variable of a shell that is not set leaves such a word, and the option would be passed over.
-void refuse_empty_values(CLI::App& app) {
+/// Makes all commands refuse values that CLI11 takes and nobody means: an empty one (a variable of a
+/// shell that is not set), which would be passed over, and a negative one of a count or a seed,
+/// which would wrap around.
+void refuse_odd_values(CLI::App& app) {
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
-    for (CLI::Option* option : command->get_options())
+    for (CLI::Option* option : command->get_options()) {
       option->check([name = command->get_name()](const std::string& value) {
         return value.empty() ? "is empty: allowed is what `swivel " + name + " --help` says" : std::string();
       });
+      if (option->get_type_name() == "UINT")
+        option->check([](const std::string& value) {
+          return value.starts_with('-') ? value + ": allowed are whole numbers from 0" : std::string();
+        });
+    }
 }
 
 int run(int argc, char** argv) {
@@ -79,7 +86,7 @@ int run(int argc, char** argv) {
   add_info(app, exit_code);
   add_fit(app, exit_code);
   add_schema(app, exit_code);
-  refuse_empty_values(app);
+  refuse_odd_values(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

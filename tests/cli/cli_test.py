@@ -430,7 +430,7 @@ limits: {{clearance: 0.005}}
                 with self.subTest(command=command, option=option):
                     self.refused(f"{option}: is empty", command, *words, option, "")
                     options += 1
-        self.assertEqual(options, 38)
+        self.assertEqual(options, 39)
         self.refused("out: is empty", "merge", "", problem)
         self.refused("problem: is empty", "plan", "")
 
@@ -444,8 +444,8 @@ limits: {{clearance: 0.005}}
             self.refused(f"--timeout: {value}: allowed are", "place", problem, "--object", "post", "--x", "0", f"--timeout={value}")
             self.refused(f"--speed: {value}: allowed are", "time", problem, problem, f"--speed={value}")
             self.refused("--x: '", "plan", problem, "--path", f"--x={'1e9' if value == '-1' else value}")
-        for option in ("--seed", "--episode"):
-            self.refused(option, "plan", problem, "--seed", "1", "--episode", "1", f"{option}=-1")
+        for option, other in (("--seed", "--episode"), ("--episode", "--seed")):
+            self.refused(f"{option}: -1", "plan", problem, other, "1", f"{option}=-1")
         self.refused("--episodes", "campaign", problem, "--episodes=-1")
         self.refused("--top", "place", problem, "--object", "post", "--x", "0", "--top=-1")
 
@@ -536,7 +536,7 @@ limits: {{clearance: 0.005}}
 
     def test_a_terminal_breaks_no_warning(self):
         """Nor on standard error; a pipe has the line whole."""
-        for arguments in ([SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--full-map", "--speed", "0.1", "--certificate", "none.json"], [SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--ds", "1e-5", "--dphi", "1e-5"]):
+        for arguments in ([SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--object", "nothing"], [SWIVEL, "plan", str(PROBLEMS / "experiment_a.yaml"), "--ds", "1e-5", "--dphi", "1e-5"]):
             plain = subprocess.run(arguments, capture_output=True, text=True, timeout=300).stderr
             self.assertEqual(plain.count("\n"), 1, plain)
             self.assertGreater(len(plain), 100)

@@ -240,12 +240,16 @@ class Faults(WithFiles):
     def test_twice(self):
         new, link, hard = (self.folder / name for name in ("new.csv", "folder", "hard.csv"))
         link.symlink_to(".")
-        os.link(self.json, hard)
-        for out, other in ((self.json, self.json), (self.json, f"{self.folder}/./r.json"), (self.json, link / "r.json"), (hard, self.json), (new, link / "new.csv")):
+        os.link(self.old, hard)
+        for out, other in ((self.old, self.old), (self.old, f"{self.folder}/./{self.old.name}"), (self.old, link / self.old.name), (hard, self.old), (new, link / "new.csv")):
             with self.subTest(out=out, other=other):
                 self.is_refused(run("plan", SOLVED, *QUICK, "--out", out, "--json", other), "--json", "the file of --out as well")
                 self.assertFalse(new.exists())
         self.is_refused(run(*CAMPAIGN, "--episodes", "1", "--out", new, "--json", f"{new}.part"), "--json", "--out as well")
+
+    @staticmethod
+    def why(option, name):
+        return "would be in it as CSV" if option == "--out" and name.suffix == ".yaml" else "one of the files that are read"
 
     def test_an_output_that_is_an_input(self):
         for folder in ("robots", "meshes", "paths", "problems"):
@@ -259,9 +263,9 @@ class Faults(WithFiles):
             names = [file, self.folder / "problems/../problems/.." / file.relative_to(self.folder), self.folder / f"soft{k}", self.folder / f"hard{k}"]
             for option, name in zip(("--out", "--json", "--map-svg", "--trace"), names):
                 with self.subTest(option=option, name=name):
-                    self.is_refused(run("plan", problem, *QUICK, option, name), option, "one of the files that are read")
+                    self.is_refused(run("plan", problem, *QUICK, option, name), option, self.why(option, name))
             for option in ("--out", "--json"):
-                self.is_refused(run("campaign", problem, "--episodes", "1", *QUICK, option, file), option, "one of the files that are read")
+                self.is_refused(run("campaign", problem, "--episodes", "1", *QUICK, option, file), option, self.why(option, file))
         self.assertEqual(before, [file.read_bytes() for file in inputs])
         path = self.folder / "paths/episode_0.csv"
         shutil.copy(self.folder / "paths/door_polish.csv", path)
