@@ -398,7 +398,7 @@ class Honoured(WithFolder):
             joint("mount", "fixed", "tool0", "hand").replace('<link name="hand"/>', "") + joint("grip", "prismatic", "hand", "finger")
         urdf = IIWA.replace("</robot>", hand + "</robot>")
         self.refused(run("plan", self.files(urdf)), "absent.stl")
-        srdf = '<robot name="r"><disable_collisions link1="finger" link2="link_7"/></robot>'
+        srdf = '<robot name="iiwa14"><disable_collisions link1="finger" link2="link_7"/></robot>'
         self.assertEqual(self.warned(urdf, robot=", without: [hand]", srdf=srdf), [])
         self.refused(run("plan", self.files(urdf, robot=", without: [hnad]")), "robot.without[0]: unknown link 'hnad', nearest is 'hand'")
         self.assertIn("9 links, 8 joints", run("info", self.urdf, "--without", "hand").stdout)
