@@ -179,7 +179,7 @@ TEST(Robot, WordsThatAreNotKnownAreRefused) {
       {"no axis", limit + "<axis/>", {"axis xyz is missing: allowed is 3 numbers"}},
       {"an empty rpy", limit + "<origin rpy=''/>", {"origin rpy is empty: allowed is 3 numbers"}},
       {"an empty leader", limit + "<mimic joint=''/>", {"mimic joint is empty: allowed is a name"}},
-      {"an empty multiplier", limit + "<mimic joint='j' multiplier=''/>", {"mimic multiplier is empty: allowed is a number"}},
+      {"an empty multiplier", limit + "<mimic joint='k' multiplier=''/>", {"mimic multiplier is empty: allowed is a number"}},
       {"element of joint", limit + "<orgin xyz='0 0 1'/>", {"<orgin>", "'origin'"}},
       {"two limits", limit + "\n" + limit, {"URDF text:5", "second <limit>", "line 4"}},
       {"two origins", limit + "<origin xyz='0 0 1'/><origin xyz='0 0 2'/>", {"second <origin>"}},

@@ -491,6 +491,7 @@ class ModelBuilder {
     if (child == nullptr || !joint.movable()) return;
     const Element mimic(*child, file_, owner);
     const std::string name = mimic.text("joint");
+    const double multiplier = mimic.number_or("multiplier", 1), offset = mimic.number_or("offset", 0);
     const auto found = joints_.find(name);
     if (found == joints_.end())
       mimic.fail(left_out_.contains(name) ? "mimics joint '" + name + "', which robot.without leaves out"
@@ -503,7 +504,7 @@ class ModelBuilder {
       if (&next == &joint) mimic.fail("mimics itself", "the name of another joint");
       k = next.mimic ? next.mimic->joint : -1;
     }
-    joint.mimic = Joint::Mimic{leader, mimic.number_or("multiplier", 1), mimic.number_or("offset", 0)};
+    joint.mimic = Joint::Mimic{leader, multiplier, offset};
   }
 
   struct Up {
