@@ -72,8 +72,7 @@ Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& proble
     continuous_[k] = limit.continuous || limit.wide();
     if (!roll && !continuous_[k] && limit.lower + limits_.joint_margin > limit.upper - limits_.joint_margin)
       throw InputError(problem.source, "limits.joint_margin: leaves no range for joint '" + chain.joint_names[k] + "'" +
-                                           ": allowed is at most " +
-                                           formatted("%.9g", (limit.upper - limit.lower) / 2));
+                                           ": allowed is at most " + formatted("%.9g", (limit.upper - limit.lower) / 2));
     cost_scale_[k] = cost_.metric != CostMetric::kTime ? cost_.weights[k] : roll ? 0 : 1 / limit.velocity;
     if (cost_.metric == CostMetric::kTime && !weight_allowed(cost_scale_[k]))
       throw InputError(problem.source,

@@ -22,8 +22,7 @@ void validate_start(const Problem& problem, const Chain& chain, const ToolPath& 
     const double lower = limit.lower + problem.limits.joint_margin, upper = limit.upper - problem.limits.joint_margin;
     if (!std::isfinite(q[k]) || (!limit.continuous && (q[k] < lower - kLimitTolerance || q[k] > upper + kLimitTolerance)))
       throw InputError(problem.source, "start.joints: joint '" + chain.joint_names[static_cast<std::size_t>(k)] + "' at " +
-                                           formatted("%.9g", q[k]) + " is outside its limits" +
-                                           ": allowed is " +
+                                           formatted("%.9g", q[k]) + " is outside its limits" + ": allowed is " +
                                            formatted("%.9g", lower) + " to " + formatted("%.9g", upper));
   }
   const double tolerance = problem.start_tolerance;
