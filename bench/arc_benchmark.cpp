@@ -22,9 +22,11 @@
 
 #include "arguments.hpp"
 #include "swivel/core/base/timeline.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 

@@ -17,9 +17,11 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 

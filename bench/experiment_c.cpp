@@ -18,6 +18,7 @@
 #include "arguments.hpp"
 #include "context.hpp"
 #include "settings.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"

@@ -18,6 +18,7 @@
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 

@@ -18,6 +18,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace {

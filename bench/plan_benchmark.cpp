@@ -27,6 +27,7 @@
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include "settings.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 

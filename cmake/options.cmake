@@ -15,6 +15,7 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
 
 if(PROJECT_IS_TOP_LEVEL AND NOT DEFINED CMAKE_CXX_COMPILER_LAUNCHER)
   find_program(SWIVEL_CCACHE ccache)
@@ -61,7 +62,7 @@ function(swivel_precompiled_as target other)
 endfunction()
 
 # swivel_component(NAME SOURCES a.cpp ... PUBLIC dep ... PRIVATE dep ... PRECOMPILE <header> ... PKG_CONFIG -lflag ...): one library, one
-# include root, one layer, installed. PRECOMPILE: headers to compile once. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
+# include root, one layer, installed with those of its headers that SWIVEL_PUBLIC_HEADERS names. PRECOMPILE: headers to compile once. PKG_CONFIG: what a program must link where the library is static. Without SOURCES it is headers alone, under HEADERS.
 function(swivel_component name)
   cmake_parse_arguments(arg "" "HEADERS" "SOURCES;PUBLIC;PRIVATE;PRECOMPILE;PKG_CONFIG" ${ARGN})
   set(library swivel_${name})
@@ -96,7 +97,12 @@ function(swivel_component name)
   install(TARGETS ${library} EXPORT swivelTargets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT dev)
-  install(DIRECTORY ${arg_HEADERS}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT dev FILES_MATCHING PATTERN "*.hpp")
+  foreach(header IN LISTS SWIVEL_PUBLIC_HEADERS)
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${arg_HEADERS}/${header})
+      get_filename_component(folder ${header} DIRECTORY)
+      install(FILES ${arg_HEADERS}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder} COMPONENT dev)
+    endif()
+  endforeach()
 endfunction()
 
 # Once, after the components: targets, config and version file, so that find_package(swivel) works, and swivel.pc for pkg-config.

@@ -13,6 +13,8 @@
 
 #include "arguments.hpp"
 #include "baselines.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/problem/tool_path.hpp"
 #include "swivel/io/io.hpp"
 
 namespace {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "swivel/collision/world/world.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 

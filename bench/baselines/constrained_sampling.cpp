@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 
 namespace swivel::baselines {

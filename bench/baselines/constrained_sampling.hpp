@@ -8,6 +8,7 @@
 
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::baselines {
 

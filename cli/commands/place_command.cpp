@@ -16,11 +16,13 @@
 #include "options/search_options.hpp"
 #include "options/shard_option.hpp"
 #include "output/placement_output.hpp"
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/placement.hpp"
 #include "swivel/io/tables/shards.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/place.hpp"
 #include "terminal/progress.hpp"
 

@@ -9,6 +9,7 @@
 #include "swivel/io/io.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 #include "terminal/terminal.hpp"

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "terminal/terminal.hpp"
 
 namespace swivel::cli {

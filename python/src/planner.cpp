@@ -14,6 +14,7 @@
 #include "swivel/planner/measure/measure.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 

@@ -17,6 +17,7 @@
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/robot/planning_arm.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel::python {

@@ -15,6 +15,7 @@
 #include "swivel/core/study/grid_refinement.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/tables/placement.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
 #include "swivel/planner/study/place.hpp"
 

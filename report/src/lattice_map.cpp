@@ -8,10 +8,11 @@
 #include <optional>
 
 #include "swivel/collision/world/world.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/lattice/kinds/arc_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
-#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/kinematics/srs/srs.hpp"
+#include "swivel/core/lattice/lattice.hpp"
+#include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {
 
@@ -22,6 +23,11 @@ constexpr int kCells = 90;  // of a panel, where there is no grid
 /// What took FCL to find is told before what a certificate proves.
 std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
   return {node.state, !node.certified};
+}
+
+/// Of one roll.
+int cells_of(const LatticeInfo::Grid& grid) {
+  return grid.branches * grid.windings * grid.phi;
 }
 
 /// The values of the coordinate, in [-pi, pi], and the branches of the nodes of each layer, in the order of slots.
@@ -63,7 +69,6 @@ void fit_cells(LatticeMap& map, std::vector<double> values) {
 /// of several the path's is shown, or the most important. `nodes`: of the layer's slots. `on_path`: the path's slot, or -1.
 std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, int layer, const Values& values,
                                 const std::vector<LatticeMap::Node>& nodes, int on_path) {
-  const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice);
   const double* const value = values.value.data() + values.first[static_cast<std::size_t>(layer)];
   const int* const branch = values.branch.data() + values.first[static_cast<std::size_t>(layer)];
   std::vector<int> shown(static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles), -1);
@@ -75,7 +80,7 @@ std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, i
   for (int slot = 0; slot < static_cast<int>(nodes.size()); ++slot) {
     const double from = map.place(value[slot]);
     offer(slot, std::clamp(static_cast<int>(std::lround(from)), 0, map.angles - 1));
-    const int next = arcs ? arcs->next_on_arc(layer, slot) : lattice.beside(layer, slot, 1);
+    const int next = lattice.next_on_arc(layer, slot);
     if (next < 0) continue;
     const double way = wrap_angle(value[next] - value[slot]) / map.step;
     for (auto k = static_cast<int>(std::ceil(std::min(from, from + way))); k <= std::max(from, from + way); ++k) {
@@ -87,6 +92,10 @@ std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, i
 }
 
 }  // namespace
+
+int LatticeMap::sheets() const {
+  return kBranches * windings;
+}
 
 double LatticeMap::place(double value) const {
   const double turn = kTwoPi / step, before = closed ? 0.5 : (turn - (angles - 1)) / 2, k = (value - low) / step;
@@ -140,24 +149,24 @@ std::string LatticeMap::sheet_name(int sheet) const {
 }
 
 std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int cells) {
-  const auto& rolls = dynamic_cast<const RollLattice&>(lattice);
   const double cell = kTwoPi / cells;
-  const int inner = rolls.inner(layer, like);
+  const int inner = lattice.grid_place(layer, like).cell, width = cells_of(*lattice.describe().grid);
+  const auto roll = [&](int slot) { return lattice.grid_place(layer, slot).roll; };
   std::vector<int> slots;
-  for (int k = 0; k < lattice.slots(layer); k += rolls.width()) slots.push_back(lattice.slots(layer) == 1 ? 0 : k + inner);
+  for (int k = 0; k < lattice.slots(layer); k += width) slots.push_back(lattice.slots(layer) == 1 ? 0 : k + inner);
   // Cells between two rolls belong to the nearer one.
   double apart = cell;
   for (const int slot : slots) {
     double next = kTwoPi;
     for (const int other : slots)
-      if (other != slot) next = std::min(next, std::abs(wrap_angle(rolls.roll(layer, other) - rolls.roll(layer, slot))));
+      if (other != slot) next = std::min(next, std::abs(wrap_angle(roll(other) - roll(slot))));
     if (next < kTwoPi) apart = std::max(apart, next);
   }
   std::vector<int> result(static_cast<std::size_t>(cells), -1);
   for (int k = 0; k < cells; ++k) {
     double least = apart / 2 + 1e-9;
     for (const int slot : slots) {
-      const double away = std::abs(wrap_angle(rolls.roll(layer, slot) - (k * cell - kPi)));
+      const double away = std::abs(wrap_angle(roll(slot) - (k * cell - kPi)));
       if (away < least) least = away, result[static_cast<std::size_t>(k)] = slot;
     }
   }
@@ -165,8 +174,7 @@ std::vector<int> slots_of_rolls(const Lattice& lattice, int layer, int like, int
 }
 
 int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot) {
-  if (dynamic_cast<const SrsLattice*>(&lattice)) return slot;
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->inner(layer, slot);
+  if (map.grid()) return lattice.grid_place(layer, slot).cell;
   const int angle = static_cast<int>(std::lround(map.place(lattice.phi(layer, slot))));
   return lattice.branch(layer, slot) * map.angles + std::clamp(angle, 0, map.angles - 1);
 }
@@ -178,13 +186,11 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
   LatticeMap map;
   map.layers = lattice.layers();
   Values values;
-  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice)) {
-    map.angles = grid->angles();
-    map.windings = grid->windings();
-  } else if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
-    map.angles = rolls->at_roll(0).angles();
-    map.windings = rolls->at_roll(0).windings();
-    map.turns = rolls->rolls() > 1 && !view.path.empty();
+  const auto grid = lattice.describe().grid;
+  if (grid) {
+    map.angles = grid->phi;
+    map.windings = grid->windings;
+    map.turns = grid->rolls.value_or(1) > 1 && !view.path.empty();
   } else {
     using Coordinate = LatticeMap::Coordinate;
     map.coordinate = lattice.chain().roll ? Coordinate::kRoll : Coordinate::kGeneralisedArmAngle;
@@ -228,10 +234,11 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     map.s.push_back(lattice.path().layer(layer).s);
     budget.poll(Stage::kDrawing, layer, map.layers);
     int first = 0, last = lattice.slots(layer);
-    if (const auto* rolls =
-            dynamic_cast<const RollLattice*>(&lattice)) {  // at the roll of the path, behind its end at its last one
-      if (layer < static_cast<int>(view.path.size())) rank = rolls->rank_of(layer, view.path[static_cast<std::size_t>(layer)]);
-      if (last > rolls->width()) first = rolls->slot_of(rank, 0), last = first + rolls->width();
+    if (grid) {  // at the roll of the path, behind its end at its last one
+      const int width = cells_of(*grid);
+      if (layer < static_cast<int>(view.path.size()))
+        rank = lattice.grid_place(layer, view.path[static_cast<std::size_t>(layer)]).rank;
+      if (last > width) first = rank * width, last = first + width;
     }
     lattice.layer_nodes(layer, listed);
     if (!map.grid()) {  // all slots exist
@@ -265,7 +272,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     }
     if (!map.turns || layer >= static_cast<int>(view.path.size())) continue;
     const int on_path = view.path[static_cast<std::size_t>(layer)], panel = map.sheets() * map.angles;
-    const double roll = wrap_angle(dynamic_cast<const RollLattice&>(lattice).roll(layer, on_path));
+    const double roll = wrap_angle(lattice.grid_place(layer, on_path).roll);
     map.path_of_rolls.push_back(panel + static_cast<int>(std::lround((roll + kPi) / kTwoPi * map.angles)) % map.angles);
     const std::vector<int> slots = slots_of_rolls(lattice, layer, on_path, map.angles);
     for (int k = 0; k < map.angles; ++k) {

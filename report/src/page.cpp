@@ -14,11 +14,10 @@
 #include "scene_json.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
-#include "swivel/core/lattice/kinds/srs_lattice.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/motion/time_path.hpp"
 
 namespace swivel {
 
@@ -35,19 +34,23 @@ struct Row {
   std::optional<double> roll{};  ///< rad
 };
 
+/// Whether the tool may stand turned, so that nodes have rolls.
+bool may_turn(const Lattice& lattice) {
+  const auto grid = lattice.describe().grid;
+  return grid && grid->rolls;
+}
+
 /// `rows`: of the path's layers, from the first on. Their sheets are mostly those of the lattice's path (`slots`); where their
 /// branch is another, those of the nodes that are nearest.
 std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map, const std::vector<TrajectoryRow>& rows,
                         const std::vector<int>& slots) {
-  const auto* grid = dynamic_cast<const SrsLattice*>(&lattice);
-  const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
+  const bool turned = may_turn(lattice);
   const std::vector<double> turns = rolls_of(rows);
   const ToolPath& path = lattice.path_of_rows();
   std::vector<Row> shown;
-  LayerNodes nodes;
   std::size_t knot = 0;  // the layer of the lattice at the row, or before it
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const auto layer_of = [&](std::size_t k) { return rolls ? static_cast<std::size_t>(rolls->knots()[k]) : k; };
+    const auto layer_of = [&](std::size_t k) { return static_cast<std::size_t>(lattice.layer_of_rows(static_cast<int>(k))); };
     if (knot + 1 < slots.size() && layer_of(knot + 1) <= i) ++knot;
     Row row{rows[i], static_cast<double>(knot)};
     if (const std::size_t first = layer_of(knot); i > first) {
@@ -58,15 +61,15 @@ std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map, const std
     }
     row.angle = map.place(row.at.phi);
     row.sheet = map.path[knot] / map.angles;
-    if (rolls) row.roll = turns[i];
+    if (turned) row.roll = turns[i];
     if (const int branch = row.at.branch; row.sheet / map.windings != branch) {
       row.sheet = branch * map.windings;
       double least = std::numeric_limits<double>::infinity();
-      if (grid) grid->solve(static_cast<int>(i), nodes);
-      for (int sheet = row.sheet, end = sheet + map.windings; grid && sheet < end; ++sheet) {
+      for (int sheet = row.sheet, end = sheet + map.windings; map.grid() && !turned && sheet < end; ++sheet) {
         const int cell = static_cast<int>(std::lround(row.angle)) % map.angles;
-        if (!nodes.valid(sheet, cell)) continue;
-        const double away = (nodes.config(sheet, cell) - row.at.q).norm();
+        const auto node = lattice.node(static_cast<int>(i), sheet * map.angles + cell);
+        if (!node) continue;
+        const double away = (*node - row.at.q).norm();
         if (away < least) least = away, row.sheet = sheet;
       }
     }
@@ -251,10 +254,10 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   const int from = map.path.empty() ? 0 : map.path.back();  // a cell
   std::vector<Lattice::Node> listed;
   lattice.layer_nodes(layer, listed);
-  const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
-  const int rank = rolls && !path.empty() ? rolls->rank_of(layer - 1, path.back()) : 0;  // at which the map is drawn
+  const bool turned = may_turn(lattice);
+  const int rank = turned && !path.empty() ? lattice.grid_place(layer - 1, path.back()).rank : 0;  // at which the map is drawn
   const auto is_drawn = [&](const Lattice::Node& node, int cell) {
-    if (rolls) return rolls->rank_of(layer, node.slot) == rank;
+    if (turned) return lattice.grid_place(layer, node.slot).rank == rank;
     const std::size_t cells = static_cast<std::size_t>(map.panels()) * static_cast<std::size_t>(map.angles);
     return map.grid() || map.slots[static_cast<std::size_t>(layer) * cells + static_cast<std::size_t>(cell)] == node.slot;
   };
@@ -309,7 +312,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
                {"pair", std::move(pair)},
                {"line", std::move(line)},
                {"what", std::move(what)}};
-  if (rolls) json["roll"] = rolls->roll(layer, best->slot);
+  if (turned) json["roll"] = lattice.grid_place(layer, best->slot).roll;
   return json;
 }
 
@@ -364,6 +367,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   std::vector<std::size_t> row_of_layer;
   for (std::size_t row = 0; row < rows.size(); ++row)
     if (rows[row].layer == static_cast<double>(row_of_layer.size())) row_of_layer.push_back(row);
+  const bool turned = may_turn(lattice);
   int rank = 0;  // of the roll that the path has, as in make_map()
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
@@ -371,24 +375,23 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.layer_nodes(layer, listed);
-      const auto* rolls = dynamic_cast<const RollLattice*>(&lattice);
       const auto show = [&](const Lattice::Node& node, int sheet, int angle) {
         const int row = angle / cells.angles_each, k = panel_of[sheet] * cells.rows + row;
         if (panel_of[sheet] < 0 || shown[k].layer >= 0 || map.at(layer, sheet, angle) != cells.node(sheet, column, row)) return;
         const auto near = static_cast<std::size_t>(layer);
         const Config q = turned_towards(lattice, lattice.row(layer, node.slot, node.q).value_or(node.q), rows,
                                         near < row_of_layer.size() ? row_of_layer[near] : rows.size());
-        const double roll = rolls ? roll_between(lattice.path().layer(layer).tool, lattice.chain().tool(q)) : 0;
+        const double roll = turned ? roll_between(lattice.path().layer(layer).tool, lattice.chain().tool(q)) : 0;
         shown[k] = {layer, node.slot, lattice.phi(layer, node.slot), roll, q};
       };
       const bool on_path = layer < static_cast<int>(path.size());
-      if (rolls && on_path) rank = rolls->rank_of(layer, path[static_cast<std::size_t>(layer)]);
+      if (turned && on_path) rank = lattice.grid_place(layer, path[static_cast<std::size_t>(layer)]).rank;
       const int panel_cells = map.panels() * map.angles;
       for (int cell = 0; cell < panel_cells && !map.grid(); ++cell)
         if (const int slot = map.slots[static_cast<std::size_t>(layer) * panel_cells + cell]; slot >= 0)
           show(listed[static_cast<std::size_t>(slot)], cell / map.angles, cell % map.angles);
       for (const Lattice::Node& node : listed) {
-        if (!map.grid() || (rolls && rolls->rank_of(layer, node.slot) != rank)) continue;
+        if (!map.grid() || (turned && lattice.grid_place(layer, node.slot).rank != rank)) continue;
         const int cell = map_cell(map, lattice, layer, node.slot);
         show(node, cell / map.angles, cell % map.angles);
       }
@@ -432,7 +435,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
     for (const double q : pose.q) joints.push_back(static_cast<std::int16_t>(std::lround(q / reach * 32767)));
     layers.push_back(static_cast<std::uint16_t>(pose.layer));
     phis.push_back(static_cast<float>(pose.phi));
-    if (dynamic_cast<const RollLattice*>(&lattice)) rolls.push_back(static_cast<float>(pose.roll));
+    if (turned) rolls.push_back(static_cast<float>(pose.roll));
   }
   return {{"layers", map.layers},
           {"angles", map.angles},
@@ -484,7 +487,7 @@ std::string to_page(const PlanView& view, const LatticeMap& map, const std::stri
   Bodies bodies(world, problem.scene);
   std::vector<TrajectoryRow> trajectory;
   for (std::vector<int> slots = view.path; !slots.empty() && trajectory.empty(); slots.pop_back())
-    trajectory = path_rows(lattice, slots);  // of a path that may end anywhere: as far as its joints stay within their limits
+    trajectory = lattice.path_rows(slots);  // of a path that may end anywhere: as far as its joints stay within their limits
   const std::vector<Row> found = placed(lattice, map, trajectory, view.path);
   const std::vector<Row> rows = motion.refined ? placed(lattice, map, *motion.refined, view.path) : found;
   const ToolPath& every = lattice.path_of_rows();

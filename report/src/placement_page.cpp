@@ -7,6 +7,7 @@
 #include "page_template.hpp"
 #include "scene_json.hpp"
 #include "swivel/core/base/rpy.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/report/placement_map.hpp"
 
 namespace swivel {

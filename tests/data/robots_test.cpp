@@ -4,9 +4,10 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
-#include <variant>
+#include <vector>
 
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -75,21 +76,21 @@ TEST(Problems, OfArmsWithArcsHaveMotionsThatKeepTheLimits) {
     EXPECT_TRUE(World(*problem.model, arm, problem).warnings().empty()) << name;
     const ArmClass found = classify(arm.chain, name);
     const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
-    std::optional<ArcLattice> lattice(std::in_place, arm.chain, found.lock, path, problem);
-    std::variant<ArcLattice::Rows, ArcLattice::Joints> unwrapped;
+    std::unique_ptr<Lattice> lattice = std::make_unique<ArcLattice>(arm.chain, found.lock, path, problem);
+    std::vector<Config> unwrapped;
     for (int attempt = 0; attempt < 3; ++attempt) {
       const auto cost_to_go = make_cost_to_go(*lattice);
       cost_to_go->sweep(lattice->layers() - 1);
       std::int64_t expansions = 0;
       const SlotPath slots = best_path(*cost_to_go, expansions);
       ASSERT_EQ(slots.size(), static_cast<std::size_t>(lattice->layers())) << name;
-      unwrapped = lattice->unwrap(slots);
-      const ArcLattice::Joints off = lattice->off_nearest(slots);
-      if (off == ArcLattice::Joints{}) break;
-      lattice.emplace(lattice->with_windings(off));
+      unwrapped = lattice->path_joints(slots);
+      const Lattice::Joints off = lattice->off_nearest(slots);
+      if (off == Lattice::Joints{}) break;
+      lattice = lattice->with_windings(off);
     }
-    ASSERT_TRUE(std::holds_alternative<ArcLattice::Rows>(unwrapped)) << name;
-    for (const Config& q : std::get<ArcLattice::Rows>(unwrapped)) {
+    ASSERT_FALSE(unwrapped.empty()) << name;
+    for (const Config& q : unwrapped) {
       ++rows;
       for (std::size_t j = 0; j < kDof; ++j) {
         const JointLimit& limit = arm.chain.limit[j];

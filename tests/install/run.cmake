@@ -38,6 +38,26 @@ if(NOT notices MATCHES "LICENSE" OR (PAGES AND NOT notices MATCHES "THIRD-PARTY.
   message(SEND_ERROR "licences are missing among what is installed: ${notices}")
 endif()
 
+# The headers that the project names, no other, are installed, and include no other of the project.
+include(${SOURCE}/cmake/public_headers.cmake)
+file(GLOB_RECURSE headers RELATIVE ${prefix}/include ${prefix}/include/*)
+set(named ${SWIVEL_PUBLIC_HEADERS})
+list(SORT headers)
+list(SORT named)
+list(LENGTH named count)
+if(NOT headers STREQUAL named OR count LESS 20 OR count GREATER 60)
+  message(SEND_ERROR "installed are the headers ${headers}, named are the ${count} (20 to 60 are allowed) ${named}")
+endif()
+foreach(header IN LISTS headers)
+  file(STRINGS ${prefix}/include/${header} includes REGEX "^#include \"")
+  foreach(line IN LISTS includes)
+    string(REGEX REPLACE "^#include \"([^\"]+)\".*" "\\1" included "${line}")
+    if(NOT included IN_LIST named)
+      message(SEND_ERROR "${header} includes ${included}, which is not installed")
+    endif()
+  endforeach()
+endforeach()
+
 # Every header compiles alone, and reads nothing but headers of Swivel, Eigen and the standard library. The headers are the same where
 # libraries are static, so this minute is spent once.
 if(SHARED)

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/report/lattice_map.hpp"
+#include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 #include <gtest/gtest.h>
 #include <tinyxml2.h>
@@ -59,7 +61,9 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     const PlanResult result = arm.plan({});
     ASSERT_EQ(result.status, PlanStatus::kSolved);
     const PlanView view = arm.view();
-    const auto& lattice = dynamic_cast<const RollLattice&>(view.lattice);
+    const Lattice& lattice = view.lattice;
+    const LatticeInfo::Grid grid = result.lattice.grid.value();
+    const int width = grid.branches * grid.windings * grid.phi;
     const LatticeMap map = make_map(view, true);
     ASSERT_TRUE(map.turns);
     ASSERT_EQ(map.path_of_rolls.size(), view.path.size());
@@ -67,7 +71,7 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     std::map<NodeState, int> count;
     const double cell = kTwoPi / map.angles;
     for (int layer = 0; layer < map.layers; ++layer) {
-      const int on_path = view.path[static_cast<std::size_t>(layer)], inner = lattice.inner(layer, on_path);
+      const int on_path = view.path[static_cast<std::size_t>(layer)], inner = lattice.grid_place(layer, on_path).cell;
       const int path_cell = map.path_of_rolls[static_cast<std::size_t>(layer)] - map.sheets() * map.angles;
       EXPECT_EQ(map.at(layer, map.sheets(), path_cell).state, NodeState::kFree) << layer;
       const Roll window = lattice.path().layer(layer).window;
@@ -77,8 +81,8 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
         ++count[seen.state];
         int nearest = 0;
         double least = kPi;
-        for (int rank = 0; rank < lattice.rolls(); ++rank) {
-          const double away = std::abs(std::remainder(lattice.roll_of_rank(layer, rank) - roll, kTwoPi));
+        for (int rank = 0; rank < *grid.rolls; ++rank) {
+          const double away = std::abs(std::remainder(lattice.grid_place(layer, rank * width + inner).roll - roll, kTwoPi));
           if (away < least) least = away, nearest = rank;
         }
         if (windows && (roll < window.lower - 0.13 || roll > window.upper + 0.13)) {
@@ -86,7 +90,7 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
           continue;
         }
         if (least > 0.12) continue;  // between two rolls either may be told
-        const int slot = lattice.slot_of(nearest, inner);
+        const int slot = nearest * width + inner;
         const auto q = lattice.node(layer, slot);
         ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
         if (q) {
@@ -120,7 +124,7 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
     Planner arm(problem);
     (void)arm.plan({});
     const PlanView view = arm.view();
-    const auto& lattice = dynamic_cast<const ArcLattice&>(view.lattice);
+    const Lattice& lattice = view.lattice;
     const LatticeMap map = make_map(view, true);
     World::Query query(view.world);
     EXPECT_EQ(map.coordinate, coordinate);
@@ -170,7 +174,7 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
           }
           EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end()) << layer << ' ' << cell;
           const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
-            return query.first_below(lattice.point(layer, slot).q, problem.limits.clearance).has_value();
+            return query.first_below(*lattice.node(layer, slot), problem.limits.clearance).has_value();
           });
           EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree) << name << ' ' << layer << ' ' << cell;
         }

@@ -12,10 +12,12 @@
 
 #include "robots.hpp"
 #include "swivel/core/answer/answer_text.hpp"
+#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motions/motion.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/page.hpp"
 

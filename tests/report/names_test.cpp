@@ -11,6 +11,7 @@
 #include "swivel/core/messages/bounds.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
+#include "swivel/planner/plan/planner.hpp"
 #include "swivel/report/lattice_map.hpp"
 #include "swivel/report/overview.hpp"
 #include "swivel/report/page.hpp"

@@ -20,6 +20,7 @@
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel::test {

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/kinematics/equations/pose_shift.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -239,6 +241,46 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
                                          : Eigen::AngleAxisd(asked.linear().transpose() * tool.linear()).angle();
   }
   return deviation;
+}
+
+PoseShift BodyPoseClasses::row_shift(int, int, const Config&) const {
+  return {};
+}
+
+PoseShift BodyPoseClasses::rows_apart(int, int, const Config&) const {
+  return {};
+}
+
+LatticeInfo Lattice::describe() const {
+  LatticeInfo info;
+  info.layers = layers();
+  info.nodes = nodes();
+  info.merged_waypoints = path_->merged_waypoints();
+  return info;
+}
+
+std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
+  std::vector<Config> rows;
+  rows.reserve(slots.size());
+  for (const int slot : slots) {
+    const Config q = *row(static_cast<int>(rows.size()), slot);
+    rows.push_back(rows.empty() ? q : Config(rows.back() + delta(rows.back(), q)));
+  }
+  return rows;
+}
+
+std::vector<TrajectoryRow> Lattice::path_rows(const std::vector<int>& slots) const {
+  std::vector<TrajectoryRow> rows;
+  rows.reserve(slots.size());
+  for (const Config& q : path_joints(slots)) {
+    const int i = static_cast<int>(rows.size()), slot = slots[rows.size()];
+    rows.push_back({path_->layer(i).s, phi(i, slot), branch(i, slot), q});
+  }
+  return rows;
+}
+
+std::unique_ptr<Lattice> Lattice::with_windings(const Joints&) const {
+  return nullptr;
 }
 
 }  // namespace swivel

@@ -7,6 +7,7 @@
 
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/core/problem/cubic_spline.hpp"
 
 namespace swivel {
 
@@ -294,6 +295,10 @@ std::vector<double> ToolPath::shares() const {
 Roll ToolPath::window_at(double travel) const {
   const PathLayer &from = layer(step_at(travel)), &to = layer(step_at(travel) + 1);
   return between(from.window, to.window, std::clamp((travel - from.travel) / (to.travel - from.travel), 0.0, 1.0));
+}
+
+double ToolPath::roll_at(double travel) const {
+  return unturned_ ? roll_->at(travel) : 0;
 }
 
 Pose ToolPath::at_travel(double travel) const {

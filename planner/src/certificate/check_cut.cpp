@@ -3,12 +3,13 @@
 
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/lattice/kinds/arc_lattice.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 
@@ -209,9 +210,8 @@ CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut
   result.complete = robot.arm_class().complete();
   try {
     for (const auto& joints : cut.windings) {
-      const auto* arcs = dynamic_cast<const ArcLattice*>(lattice.get());
-      if (arcs == nullptr) throw Refused{"windings: are of arms that are planned on arcs"};
-      lattice = std::make_unique<ArcLattice>(arcs->with_windings(joints));
+      lattice = lattice->with_windings(joints);
+      if (!lattice) throw Refused{"windings: are of arms that are planned on arcs"};
     }
     const World world(robot.world(), problem, budget);
     Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), cut, result, check, budget).run();

@@ -6,11 +6,12 @@
 
 #include "certificate/witnesses.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
 
@@ -238,7 +239,7 @@ Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<S
   Cut cut = Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
   cut.resolution = view.problem.resolution;
   cut.edges = view.problem.limits.edges;
-  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&view.lattice)) cut.windings = arcs->windings();
+  cut.windings = view.lattice.joints_with_windings();
   return cut;
 }
 

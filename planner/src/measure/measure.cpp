@@ -9,6 +9,7 @@
 #include "measure/deepest_contact.hpp"
 #include "measure/measure_rows.hpp"
 #include "measure/nearest_approach.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"

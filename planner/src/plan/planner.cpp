@@ -15,15 +15,14 @@
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
-#include "swivel/core/lattice/kinds/roll_lattice.hpp"
-#include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
+#include "swivel/planner/robot/planning_arm.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"
 #include "verify/answer_check.hpp"
@@ -77,24 +76,14 @@ void refuse_if_too_large(const Lattice& lattice, const std::string& source) {
 /// Of a path that may end anywhere: as far as its joints stay within their limits.
 std::vector<TrajectoryRow> partial_rows(const Lattice& lattice, SlotPath path) {
   std::vector<TrajectoryRow> rows;
-  for (; !path.empty() && rows.empty(); path.pop_back()) rows = path_rows(lattice, path);
+  for (; !path.empty() && rows.empty(); path.pop_back()) rows = lattice.path_rows(path);
   return rows;
 }
 
 LatticeInfo info_of(const Lattice& lattice, const ArmClass& arm) {
-  LatticeInfo info;
-  info.layers = lattice.layers();
-  info.nodes = lattice.nodes();
-  info.merged_waypoints = lattice.path().merged_waypoints();
+  LatticeInfo info = lattice.describe();
   info.method = arm.method();
   info.complete = arm.complete();
-  if (const auto* grid = dynamic_cast<const SrsLattice*>(&lattice))
-    info.grid = LatticeInfo::Grid{grid->angles(), kBranches, grid->windings(), grid->window()};
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) {
-    const SrsLattice& one = rolls->at_roll(0);
-    info.grid = LatticeInfo::Grid{one.angles(), kBranches, one.windings(), rolls->widest_phi_window(), rolls->rolls()};
-  }
-  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice)) info.arcs = arcs->arcs();
   return info;
 }
 
@@ -326,8 +315,10 @@ struct Planner::Impl {
     }
     for (;;) {
       const Lattice& lattice = *layout->last().lattice;
-      if (!found.decided || found.outcome.path.empty() || keeps_nearest_turns(lattice, found.outcome.path)) return found;
-      layout->second = Searched{with_windings_for(lattice, found.outcome.path), nullptr};
+      if (!found.decided || found.outcome.path.empty()) return found;
+      const Lattice::Joints off = lattice.off_nearest(found.outcome.path);
+      if (off == Lattice::Joints{}) return found;
+      layout->second = Searched{lattice.with_windings(off), nullptr};
       result.lattice.nodes = layout->second->lattice->nodes();
       found = search(*layout->second, false, rule, options, budget, result);
     }
@@ -416,7 +407,7 @@ struct Planner::Impl {
     result.status = found.outcome.path.empty() ? PlanStatus::kInfeasible : PlanStatus::kSolved;
     if (result.status == PlanStatus::kSolved) {
       result.cost = result.lattice.cost = found.outcome.cost;
-      result.trajectory = path_rows(lattice, path);
+      result.trajectory = lattice.path_rows(path);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
       if (lattice.has_own_rows() || lattice.has_layers_between())
         result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);

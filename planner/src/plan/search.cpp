@@ -2,6 +2,7 @@
 #include "plan/search.hpp"
 
 #include "plan/stopwatch.hpp"
+#include "swivel/graph/eager/eager.hpp"
 
 namespace swivel {
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
@@ -17,6 +18,7 @@
 #include "swivel/core/motion/smooth_path.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/asked_hooks.hpp"
 
 namespace swivel {

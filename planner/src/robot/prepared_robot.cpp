@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
+#include "swivel/planner/robot/prepared_robot.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/planner/robot/planning_arm.hpp"
 
 namespace swivel {
 
@@ -29,26 +33,55 @@ PlanningArm planning_arm(const Robot& robot) {
   return {std::move(model), std::move(kind)};
 }
 
+struct PreparedRobot::Impl {
+  Impl(const Problem& problem, PlanningArm of, const Budget& budget)
+      : basis(problem),
+        arm(std::move(of)),
+        world(*problem.model, arm.model, problem, budget),
+        radii(motion_radii(arm.model.chain, world.bodies())) {}
+  Impl(const Impl& like, const Problem& problem, const Budget& budget)
+      : basis(checked(problem)),
+        arm(like.arm),
+        world(like.world, *problem.model, arm.model, problem, budget),
+        radii(motion_radii(arm.model.chain, world.bodies())) {}
+
+  Robot basis;  // holds the model, so that no other takes its address
+  PlanningArm arm;
+  World world;
+  std::array<double, kDof> radii;
+};
+
 PreparedRobot::PreparedRobot(const Problem& problem, PlanningArm arm, const Budget& budget)
-    : basis_(problem),
-      arm_(std::move(arm)),
-      world_(*problem.model, arm_.model, problem, budget),
-      radii_(motion_radii(arm_.model.chain, world_.bodies())) {}
+    : impl_(std::make_unique<const Impl>(problem, std::move(arm), budget)) {}
 
 PreparedRobot::PreparedRobot(const Problem& problem, const Budget& budget)
     : PreparedRobot(problem, planning_arm(checked(problem)), budget) {}
 
 PreparedRobot::PreparedRobot(const PreparedRobot& like, const Problem& problem, const Budget& budget)
-    : basis_(checked(problem)),
-      arm_(like.arm_),
-      world_(like.world_, *problem.model, arm_.model, problem, budget),
-      radii_(motion_radii(arm_.model.chain, world_.bodies())) {}
+    : impl_(std::make_unique<const Impl>(*like.impl_, problem, budget)) {}
+
+PreparedRobot::~PreparedRobot() = default;
+PreparedRobot::PreparedRobot(PreparedRobot&&) noexcept = default;
+PreparedRobot& PreparedRobot::operator=(PreparedRobot&&) noexcept = default;
+
+const ArmModel& PreparedRobot::arm() const {
+  return impl_->arm.model;
+}
+const ArmClass& PreparedRobot::arm_class() const {
+  return impl_->arm.kind;
+}
+const std::array<double, kDof>& PreparedRobot::radii() const {
+  return impl_->radii;
+}
+const World& PreparedRobot::world() const {
+  return impl_->world;
+}
 
 const SrsArm& PreparedRobot::srs(const char* what) const {
-  if (!arm_.kind.srs)
-    throw InputError(basis_.model->source,
-                     arm_.kind.not_srs + ": allowed for " + what + " are arms with a spherical shoulder and wrist");
-  return *arm_.kind.srs;
+  if (!impl_->arm.kind.srs)
+    throw InputError(impl_->basis.model->source,
+                     impl_->arm.kind.not_srs + ": allowed for " + what + " are arms with a spherical shoulder and wrist");
+  return *impl_->arm.kind.srs;
 }
 
 void PreparedRobot::require_prepared_for(const Problem& problem) const {
@@ -57,13 +90,14 @@ void PreparedRobot::require_prepared_for(const Problem& problem) const {
       throw InvalidArgument((problem.source.empty() ? "" : problem.source + ": ") + what +
                             " differs from what the robot was prepared for: allowed is a PreparedRobot made of this problem");
   };
-  require(problem.model == basis_.model, "model");
-  require(problem.base_link == basis_.base_link, "base_link");
-  require(problem.tip_link == basis_.tip_link, "tip_link");
-  require(problem.tool.matrix() == basis_.tool.matrix(), "tool");
-  require(problem.hold == basis_.hold, "hold");
-  require(problem.roll == basis_.roll, "roll");
-  require(std::equal(problem.attached.begin(), problem.attached.end(), basis_.attached.begin(), basis_.attached.end(), same),
+  require(problem.model == impl_->basis.model, "model");
+  require(problem.base_link == impl_->basis.base_link, "base_link");
+  require(problem.tip_link == impl_->basis.tip_link, "tip_link");
+  require(problem.tool.matrix() == impl_->basis.tool.matrix(), "tool");
+  require(problem.hold == impl_->basis.hold, "hold");
+  require(problem.roll == impl_->basis.roll, "roll");
+  require(std::equal(problem.attached.begin(), problem.attached.end(), impl_->basis.attached.begin(), impl_->basis.attached.end(),
+                     same),
           "attached");
 }
 

@@ -7,8 +7,10 @@
 #include <numeric>
 #include <utility>
 
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

@@ -9,6 +9,8 @@
 #include <string>
 
 #include "swivel/core/messages/input_error.hpp"
+#include "swivel/parallel/executor.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <memory>
 
+#include "swivel/core/kinematics/equations/pose_shift.hpp"
+
 namespace swivel {
 
 std::vector<RowMargin::Body> RowMargin::measured() const {

@@ -6,6 +6,9 @@
 
 namespace swivel {
 
+class PreparedRobot;
+class World;
+
 /// check_motion() in front of objects that a world of the robot has met, so that no mesh is prepared again.
 [[nodiscard]] CheckResult check_motion_in(const World& world, const PreparedRobot& robot, const Problem& problem,
                                           const std::vector<TimedRow>& rows, const CheckOptions& options);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "swivel/core/kinematics/chain/arm.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

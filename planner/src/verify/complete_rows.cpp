@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -16,6 +17,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "verify/check_rates.hpp"
 #include "verify/path_following.hpp"
 #include "verify/places_on_path.hpp"

@@ -10,6 +10,7 @@
 #include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "without.hpp"
 
 namespace swivel {

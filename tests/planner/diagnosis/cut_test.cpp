@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Certificates that a problem has no path: verified by check_cut() and by plain loops; forged ones are refused.
 #include "swivel/planner/certificate/cut.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -13,12 +14,13 @@
 #include "inexact_robots.hpp"
 #include "plain_edge_rule.hpp"
 #include "random_problem.hpp"
-#include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {
@@ -34,8 +36,7 @@ class Plain {
         world_(robot.world(), problem),
         rule_(world_.edge_rule(robot.radii())),
         query_(world_) {
-    for (const auto& joints : cut.windings)
-      lattice_ = std::make_unique<ArcLattice>(dynamic_cast<const ArcLattice&>(*lattice_).with_windings(joints));
+    for (const auto& joints : cut.windings) lattice_ = lattice_->with_windings(joints);
   }
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
 

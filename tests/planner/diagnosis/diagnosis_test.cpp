@@ -9,6 +9,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "validity/collision_validity.hpp"
 
 namespace swivel {

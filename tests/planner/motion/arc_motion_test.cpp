@@ -12,6 +12,7 @@
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

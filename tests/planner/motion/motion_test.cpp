@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Refined paths and motions in time on random problems, held against the check that knows nothing of either.
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/collision/world/world.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +19,7 @@
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/refine/refine.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -7,6 +7,7 @@
 #include "motion_problem.hpp"
 #include "robots.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {

@@ -10,6 +10,7 @@
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "window.hpp"
 

@@ -10,11 +10,13 @@
 #include "motion_problem.hpp"
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
@@ -75,7 +77,8 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     const Chain& chain = robot.arm().chain;
     const ToolPath path = problem_path(problem, chain);
     const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
-    const ArcLattice lattice = circles.with_windings(circles.circles());
+    const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
+    const Lattice& lattice = *turns_apart;
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
     const Answer truth = brute_force(lattice, robot.world(), rule, [](int, int, int) { return true; });
 
@@ -110,7 +113,7 @@ TEST(Arms, FourPlannersAndBruteForceOnRandomProblems) {
     ++solved;
     ASSERT_EQ(results[0].lattice.cost, truth.cost) << what;
     for (std::size_t i = 0; i < truth.slots.size(); ++i) {
-      const Config off = results[0].trajectory[i].q - lattice.point(static_cast<int>(i), truth.slots[i]).q;
+      const Config off = results[0].trajectory[i].q - *lattice.node(static_cast<int>(i), truth.slots[i]);
       for (std::size_t j = 0; j < kDof; ++j)
         if (!chain.limit[j].continuous) {
           ASSERT_LT(std::abs(off[static_cast<Eigen::Index>(j)]), 1e-9) << what << " row " << i;
@@ -279,10 +282,11 @@ TEST(Arms, TheRollCostsWhatTheToolIsTurned) {
     const Chain& chain = robot.arm().chain;
     const ToolPath path = problem_path(problem, chain);
     const ArcLattice circles(chain, robot.arm_class().lock, path, problem);
-    const ArcLattice lattice = circles.with_windings(circles.circles());
+    const std::unique_ptr<Lattice> turns_apart = circles.with_windings(circles.circles());
+    const Lattice& lattice = *turns_apart;
     const auto turns_slowly = [&](int layer, int a, int b) {
       const double most_turn = roll_step_bound(path, layer, problem.limits, problem.resolution);
-      return std::abs(std::remainder(lattice.point(layer + 1, b).q[6] - lattice.point(layer, a).q[6], kTwoPi)) <= most_turn;
+      return std::abs(std::remainder((*lattice.node(layer + 1, b))[6] - (*lattice.node(layer, a))[6], kTwoPi)) <= most_turn;
     };
     const Answer truth = brute_force(lattice, robot.world(), robot.world().edge_rule(robot.radii()), turns_slowly, hooks);
     std::optional<PlanResult> first;

@@ -20,6 +20,7 @@
 #include "swivel/graph/eager/eager.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "validity/collision_validity.hpp"
 #include "validity/hooked_validity.hpp"

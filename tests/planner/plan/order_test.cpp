@@ -6,10 +6,12 @@
 
 #include "answer_order.hpp"
 #include "random_problem.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {

@@ -8,6 +8,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/core/study/campaign.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 
 namespace swivel {

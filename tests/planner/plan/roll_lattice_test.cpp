@@ -10,6 +10,7 @@
 #include "random_problem.hpp"
 #include "roll_windows.hpp"
 #include "swivel/core/base/angle.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"
@@ -19,8 +20,10 @@
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 
 namespace swivel {
@@ -106,10 +109,9 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     const Chain& chain = robot.arm().chain;
     const ToolPath path = problem_path(problem, chain);
     // Joint 7 at rest where that is enough.
-    std::unique_ptr<Lattice> made = make_coaxial_lattice(chain, robot.arm_class(), path, problem);
-    const bool coaxial = made != nullptr;
-    if (!coaxial) made = make_lattice(chain, robot.arm_class(), path, problem);
-    const auto* lattice = dynamic_cast<const RollLattice*>(made.get());
+    const std::optional<double> rest = last_joint_at_rest(chain, robot.arm_class(), problem);
+    const bool coaxial = rest.has_value();
+    std::unique_ptr<const RollLattice> lattice = RollLattice::make(chain, robot.srs(), path, problem, {}, rest);
     const EdgeRule rule = robot.world().edge_rule(robot.radii());
     // Own words for what may follow what: cells on circles.
     const auto in_window = [&](int layer, int a, int b) {
@@ -142,8 +144,7 @@ TEST(RollLattice, FourPlannersAndBruteForceOnRandomProblems) {
     Answer truth = brute_force(*lattice, robot.world(), rule, in_window);
     at_rest += coaxial && truth.solved;
     if (coaxial && !truth.solved) {
-      made = make_lattice(chain, robot.arm_class(), path, problem);
-      lattice = dynamic_cast<const RollLattice*>(made.get());
+      lattice = RollLattice::make(chain, robot.srs(), path, problem);
       truth = brute_force(*lattice, robot.world(), rule, in_window);
       moved_after_all += truth.solved;
     }

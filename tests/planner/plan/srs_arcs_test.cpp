@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "motion_problem.hpp"
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/make_lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/graph/search/path_first.hpp"
@@ -51,9 +52,9 @@ Found least(std::unique_ptr<Lattice> lattice) {
     SearchCounters counters;
     const SearchOutcome found = path_first(*cost_to_go, validity, {}, counters, {});
     if (found.path.empty()) return {};
-    std::vector<Config> joints = path_joints(*lattice, found.path);
+    std::vector<Config> joints = lattice->path_joints(found.path);
     if (!joints.empty()) return {std::move(joints), found.cost};
-    lattice = with_windings_for(*lattice, found.path);
+    lattice = lattice->with_windings(lattice->off_nearest(found.path));
   }
 }
 

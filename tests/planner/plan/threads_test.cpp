@@ -12,6 +12,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {

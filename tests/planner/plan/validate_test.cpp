@@ -10,6 +10,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/campaign.hpp"
 #include "swivel/planner/verify/check.hpp"
 

@@ -10,8 +10,10 @@
 #include <string>
 
 #include "robots.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace {
 std::atomic<std::int64_t> allocations{0};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/study/place.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 #include <gtest/gtest.h>
 

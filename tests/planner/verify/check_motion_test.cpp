@@ -8,6 +8,7 @@
 
 #include "motion_mutations.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {

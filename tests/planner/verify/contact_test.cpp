@@ -6,12 +6,15 @@
 
 #include "robots.hpp"
 #include "seed.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/study/advise.hpp"
 #include "swivel/planner/verify/check.hpp"
 

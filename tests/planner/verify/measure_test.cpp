@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "swivel/planner/measure/measure.hpp"
+#include "swivel/collision/world/world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "random_problem.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/planner/plan/planner.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 namespace {

@@ -11,6 +11,7 @@
 #include "swivel/io/motions/motion.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
+#include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
 #include "swivel/planner/verify/complete_rows.hpp"
 

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "lattice/start.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 
@@ -550,18 +551,29 @@ std::variant<ArcLattice::Rows, ArcLattice::Joints> ArcLattice::unwrap(const std:
   return rows;
 }
 
-ArcLattice::Joints ArcLattice::off_nearest(const std::vector<int>& slots) const {
+std::vector<Config> ArcLattice::path_joints(const std::vector<int>& slots) const {
+  auto rows = unwrap(slots);
+  return std::holds_alternative<Rows>(rows) ? std::get<Rows>(std::move(rows)) : Rows{};
+}
+
+LatticeInfo ArcLattice::describe() const {
+  LatticeInfo info = Lattice::describe();
+  info.arcs = arcs();
+  return info;
+}
+
+Lattice::Joints ArcLattice::off_nearest(const std::vector<int>& slots) const {
   const Rows rows = followed(slots);
   Joints off{};
   for (std::size_t j = 0; j < kDof; ++j) off[j] = circles()[j] && !fit(j, rows).nearest;
   return off;
 }
 
-ArcLattice ArcLattice::with_windings(const Joints& joints) const {
+std::unique_ptr<Lattice> ArcLattice::with_windings(const Joints& joints) const {
   Layers wound;
   wound.arcs = layers_.arcs;
   wound.circles = circles();
-  wound.windings = windings();
+  wound.windings = layers_.windings;
   wound.windings.push_back(joints);
   for (std::size_t j = 0; j < kDof; ++j) wound.circles[j] = wound.circles[j] && !joints[j];
   for (int i = 0; i < layers(); ++i) {
@@ -599,7 +611,7 @@ ArcLattice ArcLattice::with_windings(const Joints& joints) const {
           if ((points[b].q - points[a].q).cwiseAbs().maxCoeff() < kPi) next[a] = static_cast<int>(b);
     }
   }
-  return {chain(), method_, path(), problem_, std::move(wound)};
+  return std::unique_ptr<Lattice>(new ArcLattice(chain(), method_, path(), problem_, std::move(wound)));
 }
 
 }  // namespace swivel

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/kinds/arc_lattice.hpp"
 #include "swivel/core/lattice/kinds/roll_lattice.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -48,41 +49,6 @@ std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass
                                               const Budget& budget) {
   const auto rest = last_joint_at_rest(chain, arm, problem);
   return rest ? RollLattice::make(chain, *arm.srs, path, problem, budget, rest) : nullptr;
-}
-
-std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots) {
-  if (const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice)) {
-    auto rows = arcs->unwrap(slots);
-    return std::holds_alternative<ArcLattice::Rows>(rows) ? std::get<ArcLattice::Rows>(std::move(rows)) : ArcLattice::Rows{};
-  }
-  std::vector<Config> rows;
-  rows.reserve(slots.size());
-  for (const int slot : slots) {
-    const Config q = *lattice.row(static_cast<int>(rows.size()), slot);
-    rows.push_back(rows.empty() ? q : Config(rows.back() + lattice.delta(rows.back(), q)));
-  }
-  return rows;
-}
-
-bool keeps_nearest_turns(const Lattice& lattice, const std::vector<int>& slots) {
-  const auto* arcs = dynamic_cast<const ArcLattice*>(&lattice);
-  return !arcs || arcs->off_nearest(slots) == ArcLattice::Joints{};
-}
-
-std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots) {
-  if (const auto* rolls = dynamic_cast<const RollLattice*>(&lattice)) return rolls->rows(slots);
-  std::vector<TrajectoryRow> rows;
-  rows.reserve(slots.size());
-  for (const Config& q : path_joints(lattice, slots)) {
-    const int i = static_cast<int>(rows.size()), slot = slots[rows.size()];
-    rows.push_back({lattice.path().layer(i).s, lattice.phi(i, slot), lattice.branch(i, slot), q});
-  }
-  return rows;
-}
-
-std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots) {
-  const auto& arcs = dynamic_cast<const ArcLattice&>(lattice);
-  return std::make_unique<ArcLattice>(arcs.with_windings(arcs.off_nearest(slots)));
 }
 
 }  // namespace swivel

@@ -424,7 +424,14 @@ Lattice::Between RollLattice::between(int layer, int a, const Config& qa, int b,
   return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
 }
 
-std::vector<TrajectoryRow> RollLattice::rows(const std::vector<int>& slots) const {
+LatticeInfo RollLattice::describe() const {
+  LatticeInfo info = Lattice::describe();
+  const SrsLattice& one = at_roll(0);
+  info.grid = LatticeInfo::Grid{one.angles(), kBranches, one.windings(), widest_phi_window(), rolls()};
+  return info;
+}
+
+std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots) const {
   std::vector<TrajectoryRow> rows;
   for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
     const int slot = slots[static_cast<std::size_t>(k)];

@@ -10,6 +10,7 @@
 #include "kinematics/kernels/kernels.hpp"
 #include "kinematics/srs/polish_turned.hpp"
 #include "lattice/start.hpp"
+#include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -637,6 +638,12 @@ SrsLattice::Run SrsLattice::run_after(int layer, int a) const {
 SrsLattice::Run SrsLattice::run_before(int layer, int b) const {
   if (layer == 0 && start_) return in_window(0, start_->slot, b) ? Run{angle_of(start_->slot), 1} : Run{0, 0};
   return {wrapped_index(static_cast<long long>(angle_of(b)) - window_, angles_), std::min(2 * window_ + 1, angles_)};
+}
+
+LatticeInfo SrsLattice::describe() const {
+  LatticeInfo info = Lattice::describe();
+  info.grid = LatticeInfo::Grid{angles_, kBranches, windings_, window_};
+  return info;
 }
 
 }  // namespace swivel

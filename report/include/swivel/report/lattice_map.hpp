@@ -6,9 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "swivel/planner/plan/planner.hpp"
+#include "swivel/core/base/budget.hpp"
+#include "swivel/core/base/types.hpp"
+#include "swivel/planner/plan/plan_view.hpp"
 
 namespace swivel {
+
+class Lattice;
 
 /// What is known of a node of the (s, phi) lattice. The order is that of importance, least first: a drawn cell that stands for
 /// several nodes shows the last.
@@ -63,7 +67,7 @@ struct LatticeMap {
   [[nodiscard]] const char* letter(int panel) const;
   /// What it means that a cell has no node.
   [[nodiscard]] const char* emptiness() const;
-  [[nodiscard]] int sheets() const { return kBranches * windings; }
+  [[nodiscard]] int sheets() const;
   [[nodiscard]] int panels() const { return sheets() + (turns ? 1 : 0); }
   [[nodiscard]] bool shows_rolls(int panel) const { return panel == sheets(); }
   [[nodiscard]] const std::vector<int>& path_in(int panel) const { return shows_rolls(panel) ? path_of_rolls : path; }

@@ -11,6 +11,8 @@
 
 namespace swivel {
 
+class PreparedRobot;
+
 /// What ended the paths of a placement.
 [[nodiscard]] std::string ended_by(const PlacementRow& row);
 

@@ -3,33 +3,31 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/kinematics/chain/arm.hpp"
-#include "swivel/core/kinematics/equations/pose_shift.hpp"
+#include "swivel/core/lattice/body_pose_classes.hpp"
+#include "swivel/core/lattice/lattice_description.hpp"
 #include "swivel/core/problem/problem.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
 
+struct TrajectoryRow;
+
 inline constexpr double kLimitTolerance = 1e-9;  // rad: joint limits are inclusive within this
 
-/// Why a node does not exist, before collision is asked.
-enum class NodeStatus : std::uint8_t { kValid, kNoIk, kSingular, kLimit };
-
 /// Layers of nodes along a tool path, and the joint-linear moves that may join neighbouring layers: all that searches, verdicts and
-/// diagnosis know of an arm. How a layer's nodes come about is the business of the classes derived from it (srs_lattice.hpp: a
-/// grid of arm angles; explicit_lattice.hpp: a list of nodes). docs/model.md.
+/// diagnosis know of an arm. This class is nodes and edges, which searches need; its bases are what collision questions
+/// (BodyPoseClasses) and descriptions (LatticeDescription) need besides. How a layer's nodes come about is the business of the
+/// classes derived from it (srs_lattice.hpp: a grid of arm angles; explicit_lattice.hpp: a list of nodes). docs/model.md.
 /// A slot numbers a layer's nodes in the order that settles ties; a slot may stand for no node. Immutable once made, so safe to
 /// share between threads; the same node has the same bits however asked.
-class Lattice {
+class Lattice : public BodyPoseClasses, public LatticeDescription {
  public:
-  virtual ~Lattice() = default;
-  Lattice& operator=(const Lattice&) = delete;
-
   [[nodiscard]] const Chain& chain() const { return *chain_; }
   [[nodiscard]] const ToolPath& path() const { return *path_; }
   [[nodiscard]] const Limits& limits() const { return limits_; }
@@ -71,24 +69,6 @@ class Lattice {
   /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and row().
   [[nodiscard]] bool manipulable(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
-  /// Why a node, or its row, is missing: what it fails first, and for limits which joints.
-  struct NodeFault {
-    NodeStatus status = NodeStatus::kValid;
-    std::uint8_t joints = 0;    ///< bit k: joint k is outside its limits
-    Config q = Config::Zero();  ///< of kLimit: the row as it would be, each joint outside on the side that it is nearer to
-  };
-  [[nodiscard]] virtual NodeFault fault(int layer, int slot) const = 0;
-  /// How far from the base's end of the arm a layer's pose is, where the arm cannot be so long or so short whatever its joints.
-  struct Reach {
-    double distance = 0, limit = 0;  ///< m
-  };
-  [[nodiscard]] virtual std::optional<Reach> out_of_reach(int) const { return std::nullopt; }
-  /// True where it is proved that no joints within their limits reach the layer's pose, whatever the redundancy coordinate.
-  [[nodiscard]] virtual bool proved_unreachable(int) const { return false; }
-  /// The redundancy coordinate of a node, rad: the carried arm angle of S-R-S arms.
-  [[nodiscard]] virtual double phi(int layer, int slot) const = 0;
-  /// Signs that name the node's solution, for reports: 0..7.
-  [[nodiscard]] virtual int branch(int layer, int slot) const = 0;
 
   // --- layers of the tool's path that lie between two of the lattice
   /// Whether there are any: of lattices that choose a node every so many layers of the path (roll_lattice.hpp). What nodes and
@@ -96,6 +76,8 @@ class Lattice {
   [[nodiscard]] virtual bool has_layers_between() const { return false; }
   /// The path whose layers are the rows of a trajectory: path(), and where has_layers_between() the one with those as well.
   [[nodiscard]] virtual const ToolPath& path_of_rows() const { return *path_; }
+  /// The layer of path_of_rows() that is a layer of the lattice.
+  [[nodiscard]] virtual int layer_of_rows(int layer) const { return layer; }
   /// How far a move turns the tool about its z axis, and what limits.roll_slope allows over its travel.
   struct RollStep {
     double change = 0, most = 0;  ///< rad
@@ -124,6 +106,31 @@ class Lattice {
   };
   [[nodiscard]] virtual Between between(int layer, int a, const Config& qa, int b, const Config& qb) const;
 
+  // --- paths: one slot in each layer, from the first on
+  /// The joints of the rows of a path: continuous joints go on without jumps. Empty where the lattice takes bounded joints of more
+  /// than a turn as circles and their values leave the limits along this path.
+  [[nodiscard]] virtual std::vector<Config> path_joints(const std::vector<int>& slots) const;
+  /// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that
+  /// lie between those of the lattice.
+  [[nodiscard]] virtual std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const;
+  using Joints = std::array<bool, kDof>;
+  /// The joints that the lattice takes as circles and that leave their limits along a path where their first row is turned nearest
+  /// to the middle of their range, whether another turn keeps the limits or not. The best path of a lattice on which there is none
+  /// is the answer.
+  [[nodiscard]] virtual Joints off_nearest(const std::vector<int>& slots) const {
+    static_cast<void>(slots);
+    return {};
+  }
+  /// The same nodes with each value of these joints that lies within the limits as a node of its own: they are circles no more.
+  /// Null for lattices that take no bounded joint as a circle.
+  [[nodiscard]] virtual std::unique_ptr<Lattice> with_windings(const Joints& joints) const;
+  /// What with_windings() was called with, from the lattice without on.
+  [[nodiscard]] virtual std::vector<Joints> joints_with_windings() const { return {}; }
+
+  // --- description, see LatticeDescription
+  [[nodiscard]] LatticeInfo describe() const override;
+  [[nodiscard]] int next_on_arc(int layer, int slot) const override { return beside(layer, slot, 1); }
+
   // --- nodes near a node
   /// The slot before (by -1) or after (+1) it along the redundancy coordinate; -1 where there is none.
   [[nodiscard]] virtual int beside(int layer, int slot, int by) const = 0;
@@ -134,33 +141,6 @@ class Lattice {
   }
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
   [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
-  /// The bit of `groups` below for bodies on followers of the chain, whose poses no two nodes are sure to share.
-  static constexpr unsigned kFollowers = 1u << (kDof + 1);
-  /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
-  /// 1..7, or kFollowers. Rows of such nodes: up to rows_apart() of every group.
-  [[nodiscard]] virtual bool stand_alike(unsigned groups) const = 0;
-  /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
-  virtual void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
-  /// Groups such that rows of nodes at which their bodies stand alike have the same manipulability, but for rounding and for how
-  /// far rows are from their nodes; 0 where there are none.
-  [[nodiscard]] virtual unsigned alike_in_manipulability() const { return 0; }
-  /// Whether the row of a node with joints q has too little manipulability, and that of every node alike in it, where they have
-  /// one: true only where that is sure.
-  [[nodiscard]] virtual bool all_unmanipulable(int layer, const Config& q) const {
-    static_cast<void>(layer), static_cast<void>(q);
-    return false;
-  }
-  /// How far the row of a node, where it has one, may place the bodies that move with joint `group` of 1..7 from where the joints
-  /// of a node place them, itself or one at which they stand alike. `q`: the joints of either node.
-  [[nodiscard]] virtual PoseShift row_shift(int layer, int group, const Config& q) const {
-    static_cast<void>(layer), static_cast<void>(group), static_cast<void>(q);
-    return {};
-  }
-  /// How far two rows of nodes at which those bodies stand alike may place them apart. `q`: the joints of either node.
-  [[nodiscard]] virtual PoseShift rows_apart(int layer, int group, const Config& q) const {
-    static_cast<void>(layer), static_cast<void>(group), static_cast<void>(q);
-    return {};
-  }
 
   // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them, where not said otherwise
   /// Slots first ... last - 1.

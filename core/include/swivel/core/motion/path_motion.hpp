@@ -2,21 +2,14 @@
 #pragma once
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
 
 namespace swivel {
-
-/// Where no posture follows from the rows of a trajectory.
-struct NoMotion {
-  double s = 0;  ///< m along the path
-  std::string reason;
-  bool too_near = false;  ///< bodies come too near: other joints might do
-};
 
 /// Joints at a travel of the tool, m, between two rows of a trajectory.
 struct BetweenRow {

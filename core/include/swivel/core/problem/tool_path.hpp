@@ -9,10 +9,11 @@
 
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/base/types.hpp"
-#include "swivel/core/problem/cubic_spline.hpp"
 #include "swivel/core/problem/problem.hpp"
 
 namespace swivel {
+
+class CubicSpline;
 
 /// One layer of the lattice: a tool pose on the path, and the straight step from it to the next layer.
 struct PathLayer {
@@ -90,7 +91,7 @@ class ToolPath {
   /// PathLayer::window at a travel.
   [[nodiscard]] Roll window_at(double travel) const;
   /// By how much the tool stands turned, rad.
-  [[nodiscard]] double roll_at(double travel) const { return unturned_ ? roll_->at(travel) : 0; }
+  [[nodiscard]] double roll_at(double travel) const;
   /// In the order of the path.
   [[nodiscard]] const std::vector<Corner>& corners() const { return corners_; }
   /// The step on which a travel lies: its layer; the first or last one for what is beyond the ends.

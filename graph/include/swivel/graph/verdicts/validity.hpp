@@ -8,9 +8,6 @@
 
 namespace swivel {
 
-/// What is known of a node or edge beyond the closed form.
-enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };  // zeros are kUnknown
-
 /// What a node fails by, numbered as the Validity likes: a hint for questions about nodes nearby, which often fail by the same.
 using FailureId = std::int64_t;
 inline constexpr FailureId kNoFailure = -1;

@@ -8,9 +8,11 @@
 
 #include "swivel/core/base/zeroed_array.hpp"
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/verdicts/validity.hpp"
 
 namespace swivel {
+
+/// What is known of a node or edge beyond the closed form.
+enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };  // zeros are kUnknown
 
 /// What the validity has said of the nodes and edges of a lattice: which of them are removed, and what nodes cost themselves.
 /// Memory: a byte a node, and 9 where a cost is known in its layer.

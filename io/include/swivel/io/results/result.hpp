@@ -10,7 +10,7 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/base/timeline.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 
 namespace swivel::io {
 

@@ -7,10 +7,11 @@
 #include "swivel/core/answer/cut.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 
+class PreparedRobot;
+struct Problem;
 struct PlanView;
 
 /// Why a planner's problem has no path, as a certificate that check_cut() verifies: the fewest layers, as near to the path's end

@@ -5,9 +5,10 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
+
+class PreparedRobot;
 
 /// What plan() says of its own trajectory, of any: exact clearances, tool-path error, manipulability, distance from the joints'
 /// limits, tool speed. `rows`: one at each layer of the problem's path, in order, valid or not (check_trajectory() judges). Throws

@@ -8,8 +8,6 @@
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/graph/eager/eager.hpp"
-#include "swivel/parallel/executor.hpp"
 
 namespace swivel {
 

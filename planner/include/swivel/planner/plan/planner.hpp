@@ -4,27 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "swivel/collision/world/world.hpp"
 #include "swivel/core/answer/plan.hpp"
-#include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/graph/verdicts/verdicts.hpp"
 #include "swivel/planner/plan/plan_options.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
 
-/// What the last plan of a planner came to know, for those who draw or measure it. Valid until the planner plans again, changes or
-/// ends.
-struct PlanView {
-  const PreparedRobot& robot;
-  const Problem& problem;
-  const Lattice& lattice;
-  const World& world;
-  const Verdicts* verdicts;  ///< null where the planner was eager: it asked about every node
-  /// One slot in each layer: the answer; where there is none, a valid path to the furthest layer, where one was found.
-  const std::vector<int>& path;
-};
+class PreparedRobot;
+struct PlanView;
 
 /// An arm that plans again and again. It holds its scene and its task, which may change between plans, and re-uses what did not
 /// change: trees of meshes, the kinematics of the path with its bounds and its obstacle-free cost-to-go, and the clearances found
@@ -66,7 +53,7 @@ class Planner {
   /// a status, not an exception.
   [[nodiscard]] PlanResult plan(const PlanOptions& options = {});
 
-  /// Throws InvalidArgument where no plan has come as far as a verdict since the last change.
+  /// See plan_view.hpp. Throws InvalidArgument where no plan has come as far as a verdict since the last change.
   [[nodiscard]] PlanView view() const;
 
  private:

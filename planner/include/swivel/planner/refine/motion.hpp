@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "swivel/core/answer/refined.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/motion_defaults.hpp"
 

@@ -4,10 +4,13 @@
 #include <vector>
 
 #include "swivel/core/answer/refined.hpp"
+#include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/hooks.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
+
+class PreparedRobot;
+struct Problem;
 
 struct RefineOptions {
   /// Try as well from a path of a lattice that is coarse along the path and fine in the arm angle, and keep the cheaper.

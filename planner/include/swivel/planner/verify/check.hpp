@@ -8,11 +8,12 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/time_path.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 #include "swivel/core/problem/problem.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
+
+class PreparedRobot;
 
 /// What an independent look at a trajectory found. Knows the problem, the exact chain and FCL; nothing of planners or their search.
 struct CheckResult {

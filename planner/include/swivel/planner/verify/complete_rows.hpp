@@ -4,10 +4,12 @@
 
 #include "swivel/core/answer/stated.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/motion/time_path.hpp"
-#include "swivel/planner/robot/prepared_robot.hpp"
+#include "swivel/core/motion/timed_path.hpp"
 
 namespace swivel {
+
+class PreparedRobot;
+struct Problem;
 
 /// Works out what a trajectory's file does not state of its rows from their joints and the problem, so that check_trajectory() can
 /// be asked about them: s, arm angle, branch, the roll of the tool.

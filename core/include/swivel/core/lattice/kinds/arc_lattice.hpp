@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -34,25 +35,23 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] int branch(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
 
-  /// The slot after a node on its arc of self-motion, -1: none. That of beside(), which nodes of a lattice with_windings() lack.
-  [[nodiscard]] int next_on_arc(int layer, int slot) const;
+  /// That of beside(), which nodes of a lattice with_windings() lack.
+  [[nodiscard]] int next_on_arc(int layer, int slot) const override;
+  [[nodiscard]] LatticeInfo describe() const override;
   /// Arcs of all layers.
   [[nodiscard]] std::int64_t arcs() const { return layers_.arcs; }
   /// Joints taken as circles although they are bounded.
   [[nodiscard]] const std::array<bool, kDof>& circles() const { return layers_.circles; }
 
   using Rows = std::vector<Config>;
-  using Joints = std::array<bool, kDof>;
   /// The rows of a path: each circle turned as a whole so that all rows are inside its limits, the first one as near to the middle
   /// of its range as can be, the lower of two as near. Or the joints of which no turn keeps the limits.
   [[nodiscard]] std::variant<Rows, Joints> unwrap(const std::vector<int>& slots) const;
-  /// The circles that leave their limits along a path where their first row is turned nearest to the middle of their range, whether
-  /// another turn keeps the limits or not.
-  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const;
-  /// The same nodes with each value of these joints that lies within the limits as a node of its own: they are circles no more.
-  [[nodiscard]] ArcLattice with_windings(const Joints& joints) const;
-  /// What with_windings() was called with, from the lattice without on.
-  [[nodiscard]] const std::vector<Joints>& windings() const { return layers_.windings; }
+  /// What unwrap() finds.
+  [[nodiscard]] std::vector<Config> path_joints(const std::vector<int>& slots) const override;
+  [[nodiscard]] Joints off_nearest(const std::vector<int>& slots) const override;
+  [[nodiscard]] std::unique_ptr<Lattice> with_windings(const Joints& joints) const override;
+  [[nodiscard]] std::vector<Joints> joints_with_windings() const override { return layers_.windings; }
 
  private:
   struct Layers {

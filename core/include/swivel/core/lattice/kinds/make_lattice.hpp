@@ -6,10 +6,11 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/budget.hpp"
-#include "swivel/core/kinematics/closed_form/arm_class.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 
 namespace swivel {
+
+struct ArmClass;
 
 /// The lattice of a problem's path for an arm of this class: a grid of arm angles (SrsLattice), of rolls and arm angles where the
 /// tool may turn (RollLattice), or arcs of self-motion (ArcLattice).
@@ -28,25 +29,9 @@ namespace swivel {
 [[nodiscard]] std::unique_ptr<Lattice> make_coaxial_lattice(const Chain& chain, const ArmClass& arm, const ToolPath& path,
                                                             const Problem& problem, const Budget& budget = {});
 
-/// The joints of the rows of a path, one slot in each layer from the first on: continuous joints go on without jumps. Empty where
-/// the lattice takes bounded joints of more than a turn as circles and their values leave the limits along this path.
-[[nodiscard]] std::vector<Config> path_joints(const Lattice& lattice, const std::vector<int>& slots);
-
-/// Whether the joints of a path keep their limits where each joint that the lattice takes as a circle begins in the turn nearest to
-/// the middle of its range. Such a path, where it is the best of the lattice, is the answer.
-[[nodiscard]] bool keeps_nearest_turns(const Lattice& lattice, const std::vector<int>& slots);
-
-/// What path_joints() returns, with what a trajectory says of each row; and with the rows at the layers of the tool's path that lie
-/// between those of the lattice (Lattice::has_layers_between).
-[[nodiscard]] std::vector<TrajectoryRow> path_rows(const Lattice& lattice, const std::vector<int>& slots);
-
 /// By how much the tool stands turned at a row, rad.
 [[nodiscard]] inline double roll_of(const Chain& chain, const TrajectoryRow& row) {
   return chain.roll ? row.q[kDof - 1] : row.roll;
 }
-
-/// Where not keeps_nearest_turns(): the same nodes with the values of those joints told apart, so that each value is a node within
-/// the limits.
-[[nodiscard]] std::unique_ptr<Lattice> with_windings_for(const Lattice& lattice, const std::vector<int>& slots);
 
 }  // namespace swivel

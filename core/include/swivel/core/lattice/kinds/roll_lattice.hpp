@@ -65,8 +65,14 @@ class RollLattice final : public Lattice {
   [[nodiscard]] const ToolPath& path_of_rows() const override { return *whole_; }
   /// Of the whole path: those that are layers of the lattice.
   [[nodiscard]] const std::vector<int>& knots() const { return knots_; }
+  [[nodiscard]] int layer_of_rows(int layer) const override { return knots_[static_cast<std::size_t>(layer)]; }
   /// The rows at all layers of the whole path, along a path of the lattice: from layer 0 on, as far as it goes.
-  [[nodiscard]] std::vector<TrajectoryRow> rows(const std::vector<int>& slots) const;
+  [[nodiscard]] std::vector<TrajectoryRow> path_rows(const std::vector<int>& slots) const override;
+
+  [[nodiscard]] LatticeInfo describe() const override;
+  [[nodiscard]] GridPlace grid_place(int layer, int slot) const override {
+    return {inner(layer, slot), rank_of(layer, slot), roll(layer, slot)};
+  }
 
   [[nodiscard]] int slots(int layer) const override { return layer == 0 && start_ ? 1 : rolls() * width_; }
   [[nodiscard]] std::int64_t nodes() const override;

@@ -106,6 +106,7 @@ class SrsLattice final : public Lattice {
   /// Slot that stands for the given start in layer 0 (its sheet, the grid angle nearest to its own).
   [[nodiscard]] int start_slot() const { return start_->slot; }
 
+  [[nodiscard]] LatticeInfo describe() const override;
   [[nodiscard]] int slots(int) const override { return width(); }
   [[nodiscard]] std::int64_t nodes() const override { return static_cast<std::int64_t>(layers()) * width(); }
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override;
