@@ -12,7 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Which timeline a thread's buffer belongs to: an address could be used again.
+/// Numbers timelines, so that a thread knows whether its buffer belongs to the living one: two
+/// timelines may live at the same address one after the other.
 std::atomic<std::int64_t> born{0};
 
 }  // namespace
@@ -20,8 +21,9 @@ std::atomic<std::int64_t> born{0};
 struct Timeline::Impl {
   Clock::time_point start = Clock::now();
   std::int64_t number = ++born;
-  std::mutex mutex;                        // of `threads`, not of what they hold
-  std::deque<std::vector<Event>> threads;  // each written by its own thread alone; does not move
+  std::mutex mutex;  // guards `threads`, not the events in them
+  // a thread writes to its own vector alone; a deque does not move them
+  std::deque<std::vector<Event>> threads;
 };
 
 Timeline::Timeline() : impl_(std::make_unique<Impl>()) {

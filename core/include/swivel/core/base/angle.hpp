@@ -6,8 +6,9 @@
 
 namespace swivel {
 
-/// The angle less its nearest number of whole turns, in [-pi, pi]; half turns round away from zero, as the vector sweep computes
-/// it.
+/// Returns the angle, rad, less its nearest whole number of turns: a value in [-pi, pi]. An odd
+/// multiple of pi rounds away from zero (pi gives -pi), as in the vector kernels, so that both
+/// agree bit for bit.
 [[nodiscard]] inline double wrap_angle(double angle) {
   const double turns = angle / kTwoPi;
   return angle - kTwoPi * std::copysign(std::floor(std::abs(turns) + 0.5), turns);

@@ -3,11 +3,14 @@
 
 namespace swivel {
 
-/// Vector units that kernels are compiled for. kScalar is the build's baseline (SSE2 on x86-64, NEON on arm64).
+/// Instruction sets that vector kernels are compiled for. kScalar is the build's baseline (SSE2 on
+/// x86-64, NEON on arm64).
 enum class Isa { kScalar, kAvx2, kAvx512 };
-/// The best unit of this processor, or the one that SWIVEL_FORCE_ISA=scalar|avx2|avx512 asks for (ignored where the processor lacks
-/// it).
+/// Returns the instruction set that kernels run with: the widest that this processor has, or the
+/// one that the environment variable SWIVEL_FORCE_ISA names (scalar, avx2 or avx512; ignored where
+/// the processor lacks it). It is decided at the first call.
 [[nodiscard]] Isa active_isa();
+/// Returns "scalar", "avx2" or "avx512".
 [[nodiscard]] const char* to_string(Isa isa);
 
 }  // namespace swivel

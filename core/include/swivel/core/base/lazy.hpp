@@ -6,11 +6,12 @@
 
 namespace swivel {
 
-/// What is made when it is first asked for, once, by whichever thread comes first.
+/// A value that is made at its first use, once, by whichever thread asks first. Thread-safe.
 template <class T>
 class Lazy {
  public:
-  /// make(): a std::unique_ptr to it.
+  /// Returns the value. The first call makes it by make(), which returns a std::unique_ptr<T>;
+  /// other threads wait for that. If make() throws, the next call tries again.
   template <class Make>
   const T& get(const Make& make) const {
     if (!made_.load(std::memory_order_acquire))
@@ -20,11 +21,12 @@ class Lazy {
       });
     return *value_;
   }
+  /// Returns true if the value has been made.
   [[nodiscard]] bool is_made() const { return made_.load(std::memory_order_acquire); }
 
  private:
   mutable std::once_flag once_;
-  mutable std::atomic<bool> made_{false};  // looking at the flag costs more
+  mutable std::atomic<bool> made_{false};  // asked first, since entering call_once costs more
   mutable std::unique_ptr<const T> value_;
 };
 

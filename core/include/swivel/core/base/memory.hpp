@@ -3,9 +3,10 @@
 
 namespace swivel {
 
-/// Physical memory of this machine, bytes.
+/// Returns the physical memory of this machine, in bytes.
 [[nodiscard]] double machine_memory();
-/// Whether as many bytes leave the machine room to live: a plan that needs more would be killed rather than refused.
+/// Returns true if `bytes` are at most 80 % of the physical memory. A plan that needs more is
+/// refused, since the system would kill it.
 [[nodiscard]] bool fits_in_memory(double bytes);
 
 }  // namespace swivel

@@ -4,13 +4,15 @@
 
 namespace swivel {
 
-/// Rz(yaw) Ry(pitch) Rx(roll) of the angles (roll, pitch, yaw), rad.
+/// Returns the rotation Rz(yaw) Ry(pitch) Rx(roll) for angles (roll, pitch, yaw), rad: roll, pitch
+/// and yaw about fixed axes, as in a URDF.
 [[nodiscard]] inline Quaterniond from_rpy(const Vector3d& rpy) {
   return Eigen::AngleAxisd(rpy.z(), Vector3d::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3d::UnitY()) *
          Eigen::AngleAxisd(rpy.x(), Vector3d::UnitX());
 }
 
-/// The rotation that a problem file has which says these angles.
+/// Returns the rotation matrix that loading a problem file with these angles (roll, pitch, yaw),
+/// rad, gives, bit for bit: the quaternion of from_rpy(), normalised.
 [[nodiscard]] inline Matrix3d rotation_from_rpy(const Vector3d& rpy) {
   return from_rpy(rpy).normalized().toRotationMatrix();
 }

@@ -7,27 +7,33 @@
 
 namespace swivel {
 
-/// What ran when on which thread, recorded by Spans while it lives. One at a time in a process: it is for looking at one plan.
+/// Records which spans of work (TraceSpan) ran when and on which thread, while it lives. At most
+/// one timeline lives in a process: it is meant for looking at one plan.
 class Timeline {
  public:
+  /// One span of work that has ended.
   struct Event {
-    const char* name = nullptr;             ///< of the span; a literal
-    std::int64_t begin_ns = 0, end_ns = 0;  ///< since the timeline began
-    int thread = 0;                         ///< 0, 1, ... in the order in which threads came
-    const char* count_name = nullptr;       ///< null: nothing was counted
+    const char* name = nullptr;             ///< name of the span, a string literal
+    std::int64_t begin_ns = 0, end_ns = 0;  ///< in ns since the timeline began
+    int thread = 0;                         ///< 0, 1, ... in the order in which threads ended their first span
+    /// Name of `count`, a string literal; null: no count was given.
+    const char* count_name = nullptr;
+    /// a number that belongs to the span, see TraceSpan::count().
     std::int64_t count = 0;
   };
 
-  /// Throws std::logic_error where another one lives.
+  /// Begins to record. Throws std::logic_error if another timeline lives.
   Timeline();
+  /// Ends the recording.
   ~Timeline();
   Timeline(const Timeline&) = delete;
   Timeline& operator=(const Timeline&) = delete;
 
-  /// By thread, then in the order in which the spans ended. Not while other threads have open spans.
+  /// Returns the events by thread, each thread's in the order in which its spans ended. No other
+  /// thread may have an open span meanwhile.
   [[nodiscard]] std::vector<Event> events() const;
 
-  /// The one that lives, or null.
+  /// Returns the timeline that lives, or null.
   [[nodiscard]] static Timeline* active() { return active_.load(std::memory_order_relaxed); }
 
  private:
@@ -40,9 +46,11 @@ class Timeline {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A stretch of work, from construction to destruction. Costs one predicted branch at either end where no timeline lives.
+/// Records the time from its construction to its destruction as an event of the living timeline.
+/// Where no timeline lives it costs one predicted branch at either end.
 class TraceSpan {
  public:
+  /// Begins a span; `name` must be a string literal.
   explicit TraceSpan(const char* name) {
     if (Timeline::active() != nullptr) [[unlikely]]
       begin(name);
@@ -53,7 +61,7 @@ class TraceSpan {
   }
   TraceSpan(const TraceSpan&) = delete;
   TraceSpan& operator=(const TraceSpan&) = delete;
-  /// A number to show with it; `name` is a literal.
+  /// Attaches a number to the span, shown beside it as `name`, a string literal.
   void count(const char* name, std::int64_t n) {
     event_.count_name = name;
     event_.count = n;

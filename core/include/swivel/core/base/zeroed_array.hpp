@@ -8,15 +8,16 @@
 
 namespace swivel {
 
-/// A fixed number of zeros. The system hands out their pages when they are first written to, so that megabytes of which little is
-/// used cost as little: a page takes 0.3 to 2.5 us.
+/// An array of a fixed size whose elements begin as zero bytes. The system supplies a page when it
+/// is first written to (0.3 to 2.5 us each), so that an array of many megabytes of which little is
+/// used costs little.
 template <class T>
 class ZeroedArray {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
 
  public:
   ZeroedArray() = default;
-  /// Throws std::bad_alloc.
+  /// Allocates `size` zeros. Throws std::bad_alloc.
   explicit ZeroedArray(std::size_t size) : data_(static_cast<T*>(std::calloc(size ? size : 1, sizeof(T)))), size_(size) {
     if (!data_) throw std::bad_alloc();
   }
