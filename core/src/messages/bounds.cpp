@@ -9,8 +9,9 @@ namespace swivel {
 
 namespace {
 
-/// Characters that show nothing and change what is shown around them: those that turn the direction of writing (a name could end
-/// with the letters that it seems to begin with), breaks of lines and paragraphs, marks of byte order, annotations and tags.
+/// Returns true if a code point shows nothing and changes what is shown around it: those that turn
+/// the direction of writing (a name could end with the letters that it seems to begin with), line
+/// and paragraph separators, byte order marks, annotations and tags.
 bool is_invisible_control(unsigned code) {
   constexpr std::array<std::pair<unsigned, unsigned>, 8> kRanges{{{0x61c, 0x61c},
                                                                   {0x200e, 0x200f},
@@ -24,7 +25,8 @@ bool is_invisible_control(unsigned code) {
                      [&](const auto& range) { return code >= range.first && code <= range.second; });
 }
 
-/// Bytes of the printable UTF-8 character that `text` begins with; 0 where it begins with none.
+/// Returns how many bytes the printable UTF-8 character at the begin of `text` has, 0 if there is
+/// none. Not for an empty text.
 std::size_t character(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned>(static_cast<unsigned char>(text[k])); };
   const unsigned first = byte(0);

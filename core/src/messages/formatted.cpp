@@ -9,7 +9,7 @@ namespace swivel {
 
 namespace {
 
-/// The calling thread has the locale "C" while this lives.
+/// Gives the calling thread the locale "C" while it lives.
 class ClassicLocale {
  public:
   ClassicLocale() : before_(uselocale(classic())) {}

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a problem may hold, whether it comes from files or from a program.
+// Bounds on what a problem may hold, whether it comes from files or from a program.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace swivel {
 
-/// Sizes and coordinates, m. Beyond it distances between bodies are no longer right to 0.05 mm.
+/// The largest size or coordinate, m. Beyond it distances between bodies are not accurate to 0.05
+/// mm.
 inline constexpr double kMostMetres = 1000;
-inline constexpr double kMostStartTolerance = 0.1;  ///< m and rad
+/// The largest Task::start_tolerance, m and rad.
+inline constexpr double kMostStartTolerance = 0.1;
 
-/// Names of links, joints, bodies and frames stand in messages, JSON, SVG, pages and on terminals: UTF-8 that XML can hold, without
-/// control characters (C0, DEL, C1, and what turns the direction of writing or breaks lines), and not empty.
+/// Returns true if a text may name a link, joint, body or frame: it is UTF-8 that XML can hold, not
+/// empty, and without control characters (C0, DEL, C1, and invisible ones that turn the direction
+/// of writing or break lines). Names stand in messages, JSON, SVG, pages and on terminals.
 [[nodiscard]] bool is_valid_name(std::string_view name);
-/// Completes "allowed is ...".
+/// Says what is_valid_name() allows, to complete a message "allowed is ...".
 inline constexpr const char* kValidName = "a name in UTF-8 without control characters";
 
-/// The text with '?' for every byte that is not part of a valid name: for messages about it.
+/// Returns the text with '?' in place of every byte that no valid name may hold: for messages that
+/// quote an invalid one.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace swivel

@@ -5,9 +5,11 @@
 
 namespace swivel {
 
-/// What std::printf prints of it where the locale is "C": numbers have a decimal point in every program, and none are grouped. The
-/// format is a literal of ours, never a user's text.
+/// Returns what std::printf would print in the locale "C", whatever the program's locale is:
+/// numbers have a decimal point, and no digits are grouped. `format` must be a literal of the
+/// program, never a user's text.
 [[nodiscard, gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+/// Formats like formatted(), from a list of arguments.
 [[nodiscard, gnu::format(printf, 1, 0)]] std::string formatted_list(const char* format, std::va_list arguments);
 
 }  // namespace swivel

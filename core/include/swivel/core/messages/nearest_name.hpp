@@ -8,7 +8,8 @@
 
 namespace swivel {
 
-/// Levenshtein distance: how many letters must be put in, taken out or replaced.
+/// Returns the Levenshtein distance between two texts: the fewest bytes to insert, delete or
+/// replace.
 inline std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -24,7 +25,8 @@ inline std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-/// The known name that was probably meant, for messages; the first among equals. There must be one.
+/// Returns the known name with the least edit distance from a wrong one, the first of several: the
+/// one that was probably meant, for messages. `known` must not be empty.
 inline const std::string& nearest_name(const std::string& wrong, const std::vector<std::string>& known) {
   return *std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
     return edit_distance(wrong, a) < edit_distance(wrong, b);
