@@ -13,7 +13,7 @@ std::string position_of(const HeldJoint& joint) {
   return formatted(joint.slides ? "%.6g m" : "%.6g rad", joint.position);
 }
 
-/// `of` makes the words of one joint.
+/// Joins the words that of(joint) gives of the first five joints, and says how many more there are.
 template <class Of>
 std::string list(const std::vector<HeldJoint>& held, const Of& of) {
   constexpr std::size_t kMost = 5;

@@ -11,13 +11,14 @@
 namespace swivel {
 
 std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
-  // A table of places with room for twice as many; one that is taken by another vertex leads to the next.
+  // An open-addressing hash table, at most half full: a place taken by another vertex leads to the
+  // next place.
   const std::size_t places = std::bit_ceil(2 * mesh.vertices.size() + 1);
-  std::vector<int> first(places, -1);  // vertex there
+  std::vector<int> first(places, -1);  // vertex at the place; -1: none
   const auto place_of = [places](const Vector3d& p) {
     std::uint64_t hash = 0;
     for (const double x : p) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15;  // one of 0 and -0, which are equal
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 0x9e3779b97f4a7c15;
       hash ^= hash >> 32;
     }
     return hash & (places - 1);
@@ -40,7 +41,7 @@ std::vector<int> vertex_numbers(const TriangleMesh& mesh) {
 
 bool is_closed(const TriangleMesh& mesh) {
   const std::vector<int> number = vertex_numbers(mesh);
-  std::vector<std::uint64_t> edges;  // both ends, the lesser one first, and whether it is walked from there
+  std::vector<std::uint64_t> edges;  // ends, the lesser first, and whether it is walked from there
   edges.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles) {
     std::array<std::uint64_t, 3> v{};
@@ -51,7 +52,7 @@ bool is_closed(const TriangleMesh& mesh) {
       edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | static_cast<std::uint64_t>(from < to));
     }
   }
-  // Each is walked once either way.
+  // A closed surface walks each edge once from either end.
   std::sort(edges.begin(), edges.end());
   bool closed = !edges.empty() && edges.size() % 2 == 0;
   for (std::size_t k = 0; closed && k < edges.size(); k += 2) closed = edges[k] % 2 == 0 && edges[k + 1] == edges[k] + 1;

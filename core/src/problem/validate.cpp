@@ -14,7 +14,8 @@ namespace swivel {
 
 namespace {
 
-/// Where a value stands: scene[2].pose. Text is made only where something is wrong, so that a valid problem costs no allocation.
+/// The path of a value within a problem, such as scene[2].pose. Its text is made only for a
+/// message, so that validating a valid problem allocates nothing.
 struct Field {
   const Field* parent = nullptr;
   const char* name = "";
@@ -60,7 +61,7 @@ void pose(const Field& field, const Pose& pose) {
   constexpr double kTolerance = 1e-6;
   const Matrix3d R = pose.linear();
   if (!pose.matrix().allFinite()) fail(field, "has numbers that are not finite", "a rotation and a finite translation");
-  // Twice as far as files say, since objects of a campaign are moved.
+  // The bound is twice that of files, since campaigns move objects.
   if (!(pose.translation().array().abs() <= 2 * kMostMetres).all()) fail(field, "is too far away", "a translation within 2000 m");
   if (!((R.transpose() * R - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= kTolerance && R.determinant() > 0 &&
         pose.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1)))
@@ -70,7 +71,7 @@ void pose(const Field& field, const Pose& pose) {
 void mesh(const Field& field, const MeshPtr& mesh) {
   if (!mesh) fail(field, "is a null mesh", "a mesh");
   for (const Vector3d& vertex : mesh->vertices)
-    if (!(vertex.array().abs() <= kMostMetres).all())  // NaN is not
+    if (!(vertex.array().abs() <= kMostMetres).all())  // NaN fails this too
       fail(field, "has a vertex that is not finite or too far away", "vertices within 1000 m");
   const auto count = static_cast<int>(mesh->vertices.size());
   for (const auto& triangle : mesh->triangles)
@@ -90,7 +91,7 @@ void shape(const Field& field, const Shape& shape) {
   if (const auto* triangles = std::get_if<MeshPtr>(&shape)) mesh(field, *triangles);
 }
 
-/// Every item has a name of its own.
+/// Throws unless every item of a list has a valid name that no other item has.
 template <class Item>
 void names(const Field& parent, const char* list, const std::vector<Item>& items) {
   std::vector<std::pair<std::string_view, std::size_t>> sorted;
@@ -161,7 +162,7 @@ void validate_scene(const Field& root, const Problem& problem) {
   }
 }
 
-/// No point lies deeper beneath the surface than this, m.
+/// Returns a bound on how deep a point can lie beneath the shape's surface, m.
 double most_beneath(const Shape& shape) {
   struct Visitor {
     double operator()(const Sphere& s) const { return s.radius; }
@@ -353,7 +354,7 @@ void validate(const RobotModel& robot) {
       pose(field("collision", i)("pose"), link.collision[i].pose);
     }
   }
-  // Every way up ends: what was walked in an earlier round need not be walked again.
+  // Follow each link up to the root; links seen in an earlier round are known to lead there.
   std::vector<std::size_t> seen(robot.links.size(), 0);
   for (std::size_t first = 0; first < robot.links.size(); ++first)
     for (std::size_t link = first; seen[link] == 0 || seen[link] == first + 1;) {

@@ -5,20 +5,25 @@
 
 namespace swivel {
 
-/// A joint between base and tip that moves but is not planned: it stands still.
+/// A joint between base and tip that could move but is not planned: it stands still.
 struct HeldJoint {
   std::string name;
-  double position = 0;  ///< rad; m where it slides
+  double position = 0;  ///< rad, or m for a prismatic joint
   bool slides = false;  ///< a prismatic joint
-  bool given = false;   ///< `hold` says where it stands; else it is at 0, or at the limit nearest to 0
-  std::string leader;   ///< the joint that it mimics, whose position `hold` gives; empty where it mimics none
+  /// true: Robot::hold gives its position; else it is 0, or the limit nearest to 0.
+  bool given = false;
+  /// Name of the joint that it mimics, whose position Robot::hold gives; empty: none.
+  std::string leader;
 };
 
-/// "rail_joint at 0 m", "b at 0.4 rad (as a)"; at most five joints by name. Empty where none is held.
+/// Returns where joints are held, at most five by name: "rail_joint at 0 m, b at 0.4 rad (as a)".
+/// Empty where none is held.
 [[nodiscard]] std::string words(const std::vector<HeldJoint>& held);
-/// " with rail_joint held at 0 m", to be added to what is claimed of an arm; empty where none is held.
+/// Returns " with rail_joint held at 0 m", to be appended to a statement about an arm; empty where
+/// no joint is held.
 [[nodiscard]] std::string with_held(const std::vector<HeldJoint>& held);
-/// A line for every joint whose position `hold` does not give: where it stands, and how to say so.
+/// Returns a line for every joint whose position Robot::hold does not give: where it is held, and
+/// how to state another position. Joints that mimic one leader give one line.
 [[nodiscard]] std::vector<std::string> held_warnings(const std::vector<HeldJoint>& held);
 
 }  // namespace swivel

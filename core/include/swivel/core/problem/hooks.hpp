@@ -9,8 +9,9 @@
 
 namespace swivel {
 
-/// What a program adds to the problem as code of its own. Answers must depend on the states alone: the same at every call, in any
-/// order and any batches. What a hook throws leaves plan() as it is; nothing else is lost.
+/// Code of a user's program that takes part in planning. Its answers must depend on the states
+/// alone: the same at every call, in any order and in any batches. An exception that it throws
+/// leaves plan() as it is, and the planner stays usable.
 class Hook {
  public:
   Hook() = default;
@@ -18,46 +19,52 @@ class Hook {
   Hook& operator=(const Hook&) = delete;
   virtual ~Hook() = default;
 
-  /// Names it in verdicts and messages.
+  /// Returns the name that stands in verdicts and messages.
   [[nodiscard]] virtual std::string name() const = 0;
-  /// Whether plans in several threads may call it at the same time. Else they take turns. One plan calls it from the thread of
-  /// plan() alone, one call after the other.
+  /// Returns true if plans on several threads may call the hook at the same time; else they take
+  /// turns. One plan calls it from the thread of plan() alone, one call after the other.
   [[nodiscard]] virtual bool concurrent() const { return false; }
-  /// Held by the plan whose turn it is.
+  /// Returns the mutex that a plan holds while it calls a hook that is not concurrent().
   [[nodiscard]] std::timed_mutex& turn() { return turn_; }
 
  private:
   std::timed_mutex turn_;
 };
 
-/// A rule of the user's on joints, besides limits, manipulability and collision: what it refuses is no part of any path. It is
-/// asked only about what all other rules allow, in batches, and named as the cause "check <name>".
+/// A user's own rule on joint positions, besides limits, manipulability and collision: no path goes
+/// through what it refuses. It is asked in batches, only about states that all other rules allow,
+/// and named as the cause "check <name>".
 class StateCheck : public Hook {
  public:
-  /// allowed[k] = whether the arm may stand at states[k], rad, base to tip. Spans of equal size.
+  /// Sets allowed[k] to whether the arm may stand at states[k], joint positions in rad, base to
+  /// tip. Both spans have equal size.
   virtual void states(std::span<const Config> states, std::span<bool> allowed) = 0;
 
-  /// The joints move straight from `from` to `to`; a continuous joint's `to` is the image that it moves to.
+  /// A motion that is linear in joint space, rad. The `to` of a continuous joint is the image (with
+  /// its whole turns) that it moves to.
   struct Motion {
     Config from, to;
   };
-  /// Whether motions are checked as well, or states alone.
+  /// Returns true if motions() is to be asked too, not states() alone.
   [[nodiscard]] virtual bool checks_motions() const { return false; }
-  /// The same of motions, whose ends are allowed.
+  /// Sets allowed[k] to whether the arm may move along motions[k], whose ends states() has allowed.
+  /// Both spans have equal size. Called only where checks_motions().
   virtual void motions(std::span<const Motion>, std::span<bool>) {}
 };
 
-/// A cost of the user's: what the states of all layers cost, the first and the last included, is added to the cost of the path's
-/// steps.
+/// A user's own cost of states: the cost of a path is that of its steps plus that of the states of
+/// all its layers, the first and the last included.
 class StateCost : public Hook {
  public:
-  /// costs[k] = what states[k] costs, from 0 to 1000 times Lattice::cost_unit (1 for weights of 1); it counts in multiples of 2^-40
-  /// units. States are within the limits, but may be in collision. Spans of equal size.
+  /// Sets costs[k] to the cost of states[k], from 0 to 1000 times Lattice::cost_unit (1 where all
+  /// weights are 1); the planner rounds it to multiples of 2^-40 units. States (rad, base to tip)
+  /// are within the joint limits, but may be in collision. Both spans have equal size.
   virtual void costs(std::span<const Config> states, std::span<double> costs) = 0;
 };
 
+/// A program's hooks; null: none.
 struct Hooks {
-  std::shared_ptr<StateCheck> check;  // shared: by plans and their caller
+  std::shared_ptr<StateCheck> check;  // shared by plans and their caller
   std::shared_ptr<StateCost> cost;
 };
 

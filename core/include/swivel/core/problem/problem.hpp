@@ -14,34 +14,41 @@
 
 namespace swivel {
 
-/// How far the tool may stand turned about its own z axis from where the waypoints have it, rad: rotations about the axis of a
-/// torch or a milling cutter change nothing for the work. A range of a turn or more is a circle.
+/// A range of the roll: the angle, rad, by which the tool may be turned about its own z axis from
+/// the waypoint's orientation, since turning a torch or a milling cutter about its axis changes
+/// nothing for the work. A range of a turn or more is a circle: every angle.
 struct Roll {
   double lower = -kPi, upper = kPi;
+  /// Returns true if the range is a turn or more (to 1e-9 rad).
   [[nodiscard]] bool circle() const { return upper - lower >= kTwoPi - 1e-9; }
   bool operator==(const Roll&) const = default;
 };
 
-/// One pose of the tool path: tool frame in the path's frame.
+/// One pose of the tool path: the tool frame in Task::path_frame.
 struct Waypoint {
+  /// m.
   Vector3d position = Vector3d::Zero();
   Quaterniond orientation = Quaterniond::Identity();  ///< need not be exactly unit: | |q| - 1 | <= 1e-3
-  /// Of paths with Robot::roll, within which it must lie: at all waypoints or at none. Between two waypoints its ends are linear.
+  /// The range in which the roll must lie here, inside Robot::roll, which must be given and be less
+  /// than a turn. Either all waypoints have one or none. Between two waypoints its ends change
+  /// linearly.
   std::optional<Roll> roll = {};
   bool operator==(const Waypoint&) const = default;
 };
 
-/// A robot link or an attached body that may touch a scene object.
+/// A robot link or an attached body that may touch a scene object. It converts from a name alone.
 struct Allowed {
   Allowed() = default;
-  Allowed(const char* name) : body(name) {}  // implicit, like the next: most are names alone
+  Allowed(const char* name) : body(name) {}  // implicit, like the next one: most are names alone
   Allowed(std::string name, std::optional<double> most = {}) : body(std::move(name)), depth(most) {}
+  /// Name of the link or attached body.
   std::string body;
-  std::optional<double> depth;  ///< how deep the two may be in each other, m (docs/model.md, "Contact"); unset: however deep
+  /// Most penetration depth of the two bodies, m (docs/model.md, "Contact"); unset: any depth.
+  std::optional<double> depth;
   bool operator==(const Allowed&) const = default;
 };
 
-/// A body fixed in the base frame. One shape each.
+/// A body fixed in the base frame, of one shape.
 struct SceneObject {
   std::string name;
   Shape shape;
@@ -49,7 +56,7 @@ struct SceneObject {
   std::vector<Allowed> allow;    ///< what may touch it
 };
 
-/// A tool or held part, rigid in `link`.
+/// A tool or held part, of one shape, fixed to the robot link `link`.
 struct AttachedBody {
   std::string name;
   Shape shape;
@@ -57,10 +64,14 @@ struct AttachedBody {
   std::string link;
 };
 
+/// What clearance is asked of: the motions between layers as well as nodes, or nodes alone.
 enum class EdgeMode { kContinuous, kNodes };
+/// How a step's joint moves become a cost: their weighted Euclidean norm, the largest weighted one,
+/// or the time that the slowest joint needs.
 enum class CostMetric { kL2, kMax, kTime };
 
-/// How far the curve that the tool follows may leave the polyline of the waypoints, so that corners are rounded. Zero: not at all.
+/// How far the curve that the tool follows may leave the polyline through the waypoints, so that
+/// corners are rounded. Zero: corners stay sharp.
 struct PathSmoothing {
   double position = 0.1e-3;  ///< m
   double angle = 1e-3;       ///< rad
@@ -69,105 +80,136 @@ struct PathSmoothing {
 
 /// What refinement keeps besides the limits, and how it weighs smoothness against cost.
 struct Refinement {
-  double smoothing = 0.01;  ///< m: the length over which a change of direction of the joints costs as much as a way of its size
-  double joint_margin = 0;  ///< rad, kept from the limits in addition to Limits::joint_margin
-  double singular_margin = 0.02;  ///< rad, kept from singular angles of shoulder, elbow and wrist, as far as the path refined does
+  /// The length of path over which a change of joint direction costs as much as a move of its size,
+  /// m; 0: cost alone.
+  double smoothing = 0.01;
+  double joint_margin = 0;  ///< rad, kept from joint limits in addition to Limits::joint_margin
+  /// rad, kept from singular angles of shoulder, elbow and wrist, or as much as the path before
+  /// refinement keeps, if that is less.
+  double singular_margin = 0.02;
   bool operator==(const Refinement&) const = default;
 };
 
-/// docs/model.md. Unset optionals mean "no such limit".
+/// What a path must keep (docs/model.md). An unset optional means "no such limit", unless a default
+/// is stated.
 struct Limits {
-  double clearance = 0.005;                       ///< d_safe, m
-  std::optional<double> self_clearance;           ///< the same between the robot's own bodies, m; default clearance
-  double manipulability = 0.0;                    ///< least sqrt(det(J J^T))
-  double joint_margin = 0.0;                      ///< rad, kept from both ends of every bounded joint
-  double joint_step = 0.5;                        ///< rad, largest move of any joint between neighbouring layers
-  double arm_slope = 20.0;                        ///< rad/m, arm-angle change allowed per metre of path
-  double roll_slope = 20.0;                       ///< rad/m, the same of the roll
-  std::optional<double> step_error;               ///< rad, second-order estimate
-  std::optional<double> tool_path_error = 0.001;  ///< m
-  std::optional<double> tool_angle_error;         ///< rad
-  std::optional<double> tool_speed;               ///< m/s
-  std::optional<double> tool_turn_speed;          ///< rad/s
+  double clearance = 0.005;  ///< d_safe: least distance between bodies at nodes, m
+  /// Least distance between the robot's own bodies, m; unset: `clearance`.
+  std::optional<double> self_clearance;
+  double manipulability = 0.0;  ///< least Yoshikawa manipulability, sqrt(det(J J^T)), m^3
+  double joint_margin = 0.0;    ///< rad, kept from both limits of every bounded joint
+  double joint_step = 0.5;      ///< rad, largest move of any joint between neighbouring layers
+  double arm_slope = 20.0;      ///< rad/m, largest change of the arm angle per metre of path
+  double roll_slope = 20.0;     ///< rad/m, largest change of the roll per metre of travel
+  /// Largest second-order estimate of the error of a joint-space step, rad (docs/model.md).
+  std::optional<double> step_error;
+  /// Largest distance of the tool from its path between layers, m.
+  std::optional<double> tool_path_error = 0.001;
+  /// Largest angle of the tool from its path between layers, rad.
+  std::optional<double> tool_angle_error;
+  /// Speed of the tool at which every step must be possible, m/s.
+  std::optional<double> tool_speed;
+  /// Speed at which the tool must be able to turn on every step, rad/s.
+  std::optional<double> tool_turn_speed;
   EdgeMode edges = EdgeMode::kContinuous;
-  std::optional<double> edge_clearance;  ///< d_edge, m; default clearance / 2
-  double edge_tolerance = 0.0005;        ///< h, m
-  // What motions in time keep, instead of what the robot model states: rad/s, rad/s^2, rad/s^3, base to tip.
+  /// d_edge: least distance on motions, m; unset: half of the nodes'.
+  std::optional<double> edge_clearance;
+  /// h: how finely clearance of motions is proved, m (docs/model.md).
+  double edge_tolerance = 0.0005;
+  // Joint rates that motions in time keep, instead of those of the robot model: rad/s, rad/s^2,
+  // rad/s^3, base to tip.
   std::optional<std::array<double, kDof>> joint_speed, joint_acceleration, joint_jerk;
+  /// Returns the least distance of the robot from the scene on motions, m.
   [[nodiscard]] double d_edge() const { return edge_clearance.value_or(clearance / 2); }
+  /// Returns the least distance between the robot's own bodies at nodes, m.
   [[nodiscard]] double d_self() const { return self_clearance.value_or(clearance); }
+  /// Returns the least distance between the robot's own bodies on motions, m.
   [[nodiscard]] double d_self_edge() const { return edge_clearance.value_or(d_self() / 2); }
   bool operator==(const Limits&) const = default;
 };
 
+/// How fine the lattice is.
 struct Resolution {
-  double ds = 0.005;    ///< m
-  double dphi = 0.05;   ///< rad
-  double dalpha = 0.1;  ///< rad of tool rotation
-  double arc = 0.175;   ///< rad of self-motion between nodes, of arms that have no arm angle
-  bool arcs = false;    ///< of S-R-S arms: nodes on arcs of arm angles that lie between those of the grid
-  double droll = 0.1;   ///< rad, of the roll, of seven-joint arms
-  double knot = 0.025;  ///< m between layers at which the roll and the arm angle of seven-joint arms are chosen together
+  double ds = 0.005;    ///< largest distance between layers, m
+  double dphi = 0.05;   ///< largest step of the arm angle, rad
+  double dalpha = 0.1;  ///< largest tool rotation between layers, rad
+  double arc = 0.175;   ///< self-motion between nodes, rad, for arms without an arm angle
+  /// For S-R-S arms: adds nodes on the arcs of allowed arm angles that lie between grid angles.
+  bool arcs = false;
+  double droll = 0.1;  ///< largest step of the roll of seven-joint arms, rad
+  /// Length of path between the layers at which roll and arm angle of seven-joint arms are chosen
+  /// together, m.
+  double knot = 0.025;
   bool operator==(const Resolution&) const = default;
 };
 
+/// What a path costs.
 struct Cost {
   CostMetric metric = CostMetric::kL2;
-  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};  ///< 0, or 1e-6 to 1e6
-  double roll = 0;  ///< per metre of path and rad that the roll is off the waypoints' own; 0, or 1e-6 to 1e6
+  /// Of the joints, base to tip: 0, or 1e-6 to 1e6.
+  std::array<double, kDof> weights{1, 1, 1, 1, 1, 1, 1};
+  double roll = 0;  ///< per metre of path and rad of roll: 0, or 1e-6 to 1e6
   bool operator==(const Cost&) const = default;
 };
 
-/// Uniform offsets of one scene object for campaign episodes, half-widths. docs/formats.md.
+/// Random offsets of one scene object in the episodes of a campaign: each is uniform within plus or
+/// minus these half-widths, m and rad. docs/formats.md.
 struct Variation {
   std::string object;
   Vector3d xyz = Vector3d::Zero();
   Vector3d rpy = Vector3d::Zero();
 };
 
-/// The arm that plans: a chain of a model, and what it carries.
+/// The arm that is planned for: a chain of a robot model, and what it carries.
 struct Robot {
-  std::shared_ptr<const RobotModel> model;  // shared: every episode and planner reads the same one
+  std::shared_ptr<const RobotModel> model;  // shared: every episode and planner reads it
   std::string base_link, tip_link;
-  Pose tool = Pose::Identity();        ///< tool frame in tip_link
-  std::map<std::string, double> hold;  ///< joint name -> position of joints of the model that the chain leaves out
+  Pose tool = Pose::Identity();  ///< tool frame in tip_link
+  /// By name: positions, rad or m, of joints of the model outside the chain.
+  std::map<std::string, double> hold;
   std::vector<AttachedBody> attached;
-  /// Of arms of six joints, which need one more to choose: the roll is the seventh, last in every list of joints, without a speed
-  /// of its own. `Cost::weights` has its weight too; 0 where turning the tool costs nothing. Of S-R-S arms of seven joints the roll
-  /// is chosen besides the arm angle (roll_lattice.hpp).
+  /// The allowed range of the roll, where the tool may turn about its z axis. To an arm of six
+  /// joints the roll is the seventh joint, last in every list of joints, without a speed of its
+  /// own, and its weight in Cost::weights is 0 where turning the tool costs nothing. For an S-R-S
+  /// arm of seven joints the roll is chosen besides the arm angle (roll_lattice.hpp).
   std::optional<Roll> roll;
 };
 
-/// What the tool is to do, and within which limits.
+/// What the tool must do, and within which limits.
 struct Task {
-  std::string path_frame;               ///< base_link (also empty) or the name of a scene object
+  /// Frame of the waypoints: base_link (or empty) or a scene object's name.
+  std::string path_frame;
   std::vector<Waypoint> waypoints;      ///< in path_frame
-  std::optional<PathSmoothing> smooth;  ///< unset: the polyline as it is
+  std::optional<PathSmoothing> smooth;  ///< unset: the tool follows the polyline
   Resolution resolution;
   Limits limits;
-  /// Of seven joints whose tool may stand turned: by how much it does at each layer, rad, once that has been chosen; empty: it is
-  /// still to be.
+  /// For a seven-joint arm with a roll: the roll at each layer, rad, once it has been chosen;
+  /// empty: it has yet to be chosen.
   std::vector<double> rolls;
-  std::optional<Config> start;  ///< joints to begin with, rad
-  /// Where on the path the start stands, m along the whole of it: layers begin there. Only with `start`; default: its beginning.
+  std::optional<Config> start;  ///< joint positions at which the path must begin, rad
+  /// Arc length, m from the first waypoint, at which `start` stands: layers begin there. Only with
+  /// `start`; unset: the begin of the path.
   std::optional<double> start_at;
-  /// How far the tool may stand from the path at the start, m and rad. A start further than 1e-6 from it is taken as it is: the
-  /// first layer has the pose that it has, and the first step leads from there to the path's next layer.
+  /// How far the tool at `start` may be from the path, m and rad. A start within 1e-6 of the path
+  /// counts as on it; else the first layer takes the tool pose of the start, and the first step
+  /// leads from there to the path's next layer.
   double start_tolerance = 1e-6;
   Cost cost;
   Refinement refinement;
   bool operator==(const Task&) const = default;
 };
 
-/// Everything that a problem file says, files loaded. Poses in base_link unless said. Source: io::load_problem.
+/// Everything that a problem file says, with the files it names loaded. Poses are in base_link
+/// unless said otherwise. Source: io::load_problem.
 struct Problem : Robot, Task {
   std::string source;  ///< problem file, for messages
   std::vector<SceneObject> scene;
   std::vector<Variation> vary;
 };
 
-/// Waypoints in base_link (path_frame applied, quaternions normalised).
-/// Throws InputError for fewer than two distinct waypoints, NaN, or a quaternion off unit by more than 1e-3.
+/// Returns the waypoints in base_link: path_frame applied, quaternions normalised. Throws
+/// InputError for an unknown path_frame, fewer than two waypoints, a number that is not finite, or
+/// a quaternion whose length is off 1 by more than 1e-3.
 [[nodiscard]] std::vector<Waypoint> waypoints_in_base(const Problem& problem);
 
 }  // namespace swivel

@@ -4,24 +4,32 @@
 
 namespace swivel {
 
-/// Throws InvalidArgument for a value that makes no sense in any problem: NaN and infinity anywhere, sizes that are not positive,
-/// rotations that are none (1e-6), limits below 0, weights other than 0 and 1e-6 to 1e6, names that are empty, taken or unknown, a
-/// robot or mesh that is null. Called by everything that takes a problem; what the robot, the path and the lattice then find wrong
-/// together is InputError. The model of the robot is not looked into: it does not change once it is loaded.
+/// Throws InvalidArgument for a value that makes no sense in any problem: numbers that are NaN or
+/// infinite, sizes that are not positive, rotations off by more than 1e-6, limits below 0, weights
+/// other than 0 and 1e-6 to 1e6, names that are empty, taken or unknown, a robot or mesh that is
+/// null. Every function that takes a problem calls it. What is wrong only together with the robot,
+/// the path or the lattice throws InputError later. The robot model itself is validated where it is
+/// loaded, not here.
 void validate(const Problem& problem);
-/// The same of a robot model: indices, one parent a link, no loops, unit axes, limits, shapes.
+/// Throws InvalidArgument for a robot model whose names, indices, rotations, axes, limits or shapes
+/// make no sense, or whose links form no tree.
 void validate(const RobotModel& robot);
-/// The same of an object's pose.
+/// Throws InvalidArgument, which names the object, for a pose that is not finite, further than 2 km
+/// away, or no rigid transform (to 1e-6).
 void validate(const Pose& pose, const std::string& object);
 
-/// Why one of the scene object's Allowed::depth cannot be kept apart from others, and what can be asked for; none where it can.
+/// Says why the depth of an Allowed entry cannot be kept.
 struct DepthFault {
-  std::string what, allowed;  ///< "...: <what>: allowed is <allowed>"
+  std::string what, allowed;  ///< in a message: "...: <what>: allowed is <allowed>"
 };
+/// Returns why the depth of `allowed`, an entry of the object's SceneObject::allow, cannot be kept:
+/// a body without a collision shape, a mesh that is not closed, two meshes, or a depth that the two
+/// cannot exceed. Returns none where it can be kept, or where no depth is given.
 [[nodiscard]] std::optional<DepthFault> depth_fault(const Robot& robot, const SceneObject& object, const Allowed& allowed);
 
-/// 0 (the joint moves at no cost), or 1e-6 to 1e6.
+/// Returns true if a cost weight is allowed: 0 (moving costs nothing), or 1e-6 to 1e6.
 [[nodiscard]] bool weight_allowed(double weight);
+/// Says what weight_allowed() allows, to complete a message "allowed is ...".
 inline constexpr const char* kAllowedWeights = "0, or a number from 1e-6 to 1e6";
 
 }  // namespace swivel

@@ -6,7 +6,8 @@
 
 namespace swivel {
 
-/// By vertex: a number from 0 on that is the same where positions are equal. STL stores every corner anew.
+/// Returns a number for each vertex, from 0 on in order of first appearance, equal for vertices at
+/// equal positions. STL files store every corner of every triangle anew.
 [[nodiscard]] std::vector<int> vertex_numbers(const TriangleMesh& mesh);
 
 }  // namespace swivel
