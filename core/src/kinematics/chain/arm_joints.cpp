@@ -7,8 +7,8 @@ namespace swivel {
 
 namespace {
 
-/// Calls visit(joint of the model, its limit in the chain) for every joint of the arm that a file describes or a program made; a
-/// roll, which is no joint of the robot, is passed over.
+/// Calls visit(joint of the model, its limit in the chain) for every joint of the arm that the
+/// model has. The roll is no joint of the robot and is left out.
 template <class Visit>
 void for_each_joint(const RobotModel& robot, const Chain& chain, const Visit& visit) {
   for (std::size_t j = 0; j < kDof - (chain.roll ? 1 : 0); ++j)
@@ -28,7 +28,7 @@ std::string place(const RobotModel& robot, const Joint& joint) {
   return joint.line > 0 ? robot.source + ":" + std::to_string(joint.line) : robot.source;
 }
 
-/// Joints of one fault, in a sentence.
+/// Collects the joints that share one fault, and names them in one sentence.
 struct Joints {
   std::string names;
   int count = 0;

@@ -17,13 +17,13 @@ namespace {
 constexpr double kMissTolerance = 1e-3;    // m
 constexpr double kAngleTolerance = 10e-3;  // rad
 constexpr double kExact = 1e-11;           // m, rad: below this the fitted chain is the chain, to rounding
-constexpr double kSnap = 1e-5;             // m, rad: common normals shorter and twists smaller than this are none
-constexpr double kResidual = 1e-9;         // m, rad: of every solution
-constexpr double kGoal = 1e-11;            // m, rad: where Newton rests
+constexpr double kSnap = 1e-5;             // m, rad: shorter normals, smaller twists are zero
+constexpr double kResidual = 1e-9;         // m, rad: pose error of every solution, at most
+constexpr double kGoal = 1e-11;            // m, rad: where Newton ends
 constexpr double kSame = 1e-7;             // rad: two solutions nearer than this are one
 constexpr double kAligned = 1e-7;          // sine below which two axes are aligned
-constexpr double kNearlyAligned = 1e-4;    // and below which they may be, so near a double root
-constexpr double kFarthest = 0.5;          // rad: how far beside a fold its other solution is looked for
+constexpr double kNearlyAligned = 1e-4;    // below it they may be aligned, so near a double root
+constexpr double kFarthest = 0.5;          // rad: farthest from a fold for its other solution
 
 using Candidate = std::array<Angle, kSix>;
 struct Candidates {
@@ -43,7 +43,7 @@ Matrix3d rotation(const Vector3d& a, const Angle& x) {
   return R;
 }
 
-/// v turned about the unit axis a.
+/// Returns v turned about the unit axis a.
 Vector3d turned(const Vector3d& a, const Angle& x, const Vector3d& v) {
   return x.cosine * v + x.sine * a.cross(v) + ((1 - x.cosine) * a.dot(v)) * a;
 }
@@ -52,7 +52,8 @@ Vector3d across_part(const Vector3d& a, const Vector3d& v) {
   return v - a.dot(v) * a;
 }
 
-/// The turn about a that brings `from` onto `to`, as far as a turn can; 0 where either is along a.
+/// Returns the turn about the unit axis a that brings `from` as near to `to` as such a turn can; 0
+/// where either is along a.
 Angle turn_between(const Vector3d& a, const Vector3d& from, const Vector3d& to) {
   return Angle::of(across_part(a, from).dot(to), a.dot(from.cross(to)));
 }
@@ -63,7 +64,7 @@ Vector3d some_perpendicular(const Vector3d& a) {
   return across_part(a, Vector3d::Unit(least)).normalized();
 }
 
-/// Displacement exp([S] x) applied after G: G <- G exp([S] x).
+/// Replaces G by G exp([S] x), the turn by x about a line.
 void append(Pose& G, const Vector3d& axis, const Vector3d& point, const Angle& x) {
   const Matrix3d R = G.linear() * rotation(axis, x);
   G.translation() += G.linear() * point - R * point;
@@ -102,8 +103,8 @@ CommonNormal common_normal(const Vector3d& p, const Vector3d& a, const Vector3d&
   return normal;
 }
 
-/// f1(q) = distance y1, f2(q) = sine y2 and y1^2 + y2^2 = radius2, for the numbers of a common normal. `scale2` is the square of
-/// the size that the y can have.
+/// Solves f1(q) = distance y1, f2(q) = sine y2, y1^2 + y2^2 = radius2 for q, y1 and y2, with the
+/// distance and sine of a common normal. `scale2` is the square of the size of the y.
 struct Meeting {
   Angle q;
   double y1, y2;
@@ -116,7 +117,8 @@ Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double
   Meetings result;
   const double d = normal.distance, s = normal.sine;
   const auto add = [&](const Angle& q, double y1, double y2) { result.at[static_cast<std::size_t>(result.count++)] = {q, y1, y2}; };
-  // The other coordinate from one: two signs, also where its square is negative by no more than the slack.
+  // The other coordinate, up to its sign, also where its square is negative by up to the slack; -1
+  // where there is none.
   const auto other = [&](double y) {
     const double square = radius2 - y * y;
     return square >= -slack * scale2 ? std::sqrt(std::abs(square)) : -1.0;
@@ -145,7 +147,7 @@ Meetings meet(const CommonNormal& normal, const Wave& f1, const Wave& f2, double
   return result;
 }
 
-/// The ways to turn the triple so that it makes the rotation R.
+/// Adds the candidates whose joints 4-6 make the rotation R, given joints 1-3.
 void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candidate, double slack, double aligned,
                Candidates& result) {
   const Vector3d& a = wrist.axis[3];
@@ -171,7 +173,7 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
     if (apart > kAligned) add(turn_between(a, turned(b, candidate[4], c), target));
     if (result.ways == ClosedForm::Ways::kOne) break;
   }
-  // Axes 4 and 6 are one line, or may be on the exact chain: joint 4 stands anywhere.
+  // Axes 4 and 6 are one line, or may be on the exact chain, so joint 4 may have any angle.
   if (apart <= std::max(kAligned, aligned)) {
     candidate[4] = Angle::of(P * K, Q * K);
     add({1, 0});
@@ -187,7 +189,7 @@ void solve(const SphericalWrist& wrist, const Pose& D, double slack, double alig
   const CommonNormal& normal = wrist.normal;
   const Vector3d& a = wrist.axis[0];
   const Vector3d& b = wrist.axis[1];
-  // Where W must come to, about axis 1.
+  // Where W must come to, in the frame of axis 1.
   const Vector3d v = D * wrist.centre - normal.first;
   const double height = a.dot(v), vn = normal.n.dot(v), vm = normal.m.dot(v), radius2 = vn * vn + vm * vm;
   Wave f1 = wrist.reach, f2 = wrist.height;
@@ -231,8 +233,9 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
     append(left, a1, arm.point[0], -candidate[0]);
     left = product(left, D);
     const Vector3d to = turned(a5, -candidate[4], z), from = left.linear().transpose() * z;
-    const Vector3d wrist = normal.first + turned(a5, -candidate[4], arm.point[3] - normal.first);  // of axis 4, undone by joint 5
-    // Of the planar arm with joint 6 at an angle.
+    // axis 4, with joint 5 undone
+    const Vector3d wrist = normal.first + turned(a5, -candidate[4], arm.point[3] - normal.first);
+    // Adds the solutions of the planar arm for one angle of joint 6.
     const auto add_planar = [&](const Angle& q6) {
       candidate[5] = q6;
       Pose planar = left;
@@ -269,8 +272,8 @@ double miss_of(const Pose& reached, const Pose& tool) {
   return std::max((reached.translation() - tool.translation()).norm(), turn);
 }
 
-/// Newton on the exact chain; damped where it is singular, and no joint by more than kLargest at once. False where it does not
-/// reach the pose.
+/// Runs Newton on the exact chain from q, damped where it is singular, moving no joint by more than
+/// kLargest in a step. Returns false where it does not reach the pose.
 bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
   constexpr int kSteps = 30;
   constexpr double kLargest = 0.1;
@@ -280,7 +283,8 @@ bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
     const Pose reached = chain.tool(q, J);
     const double miss = miss_of(reached, tool);
     if (!(miss > kGoal)) return true;
-    if (step > 0 && miss <= kResidual && miss > 0.5 * last) return true;  // as near as rounding lets it
+    // as near as rounding allows
+    if (step > 0 && miss <= kResidual && miss > 0.5 * last) return true;
     if (step == kSteps || !std::isfinite(miss)) return miss <= kResidual;
     last = miss;
     Config6 error;
@@ -294,7 +298,7 @@ bool newton(const SixChain& chain, const Pose& tool, Config6& q) {
   }
 }
 
-/// Into (-pi, pi].
+/// Brings every angle into (-pi, pi].
 void wrap(Config6& q) {
   for (double& angle : q) angle = std::remainder(angle, kTwoPi) > -kPi ? std::remainder(angle, kTwoPi) : kPi;
 }
@@ -309,11 +313,12 @@ void add_distinct(const Config6& q, ClosedForm::Solutions& result) {
   if (!known && result.count < ClosedForm::kMaxSolutions) result.q[static_cast<std::size_t>(result.count++)] = q;
 }
 
-/// Of a chain that is fitted nearly: the solutions beside q that Newton did not reach from the starts of the fitted chain. Near a
-/// fold the two solutions that meet there may have drawn both starts to one; where two axes are nearly aligned, the exact chain has
-/// isolated solutions where the fitted one has a family. Both lie along the right singular vector v of the least singular value s.
-/// The further the chain is from the fitted one, the larger |det J| still is where that happens: measured, up to a third of `fold`,
-/// the deviation in m or rad.
+/// Adds solutions beside q that Newton did not reach from the starts of a nearly fitted chain. Near
+/// a fold the two solutions that meet there may have drawn both starts to one; where two axes are
+/// nearly aligned, the exact chain has isolated solutions where the fitted one has infinitely many.
+/// Both lie along the right singular vector v of the least singular value s. The further the chain
+/// is from the fitted one, the larger |det J| still is where that happens: up to a third of `fold`,
+/// the deviation in m or rad, was measured.
 void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, double fold, ClosedForm::Solutions& result) {
   const Matrix6 J = chain.jacobian(q);
   if (std::abs(J.determinant()) > fold) return;
@@ -336,7 +341,8 @@ void add_beside_fold(const SixChain& chain, const Pose& tool, const Config6 q, d
   }
 }
 
-/// The point nearest to three lines, and how far the farthest is; NaN where they are parallel.
+/// Returns the point nearest to three lines, and its largest distance from one; NaN where they are
+/// parallel.
 std::pair<Vector3d, double> centre_of(const SixChain& chain, std::size_t first) {
   Matrix3d A = Matrix3d::Zero();
   Vector3d b = Vector3d::Zero();
@@ -351,7 +357,7 @@ std::pair<Vector3d, double> centre_of(const SixChain& chain, std::size_t first) 
   return {centre, miss};
 }
 
-/// Joints in the opposite order, with their axes turned round: the chain of the inverse displacement.
+/// Returns the chain of the inverse displacement: joints in the opposite order, axes turned round.
 SixChain reversed(const SixChain& chain) {
   SixChain result;
   for (std::size_t k = 0; k < kSix; ++k) {
@@ -567,7 +573,8 @@ ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack, Ways wa
 LockMethod lock_method(const Chain& chain) {
   // What holds at three values of the lock holds at all but a few.
   constexpr std::array<double, 3> kValues = {0.7, 1.9, -1.1};
-  // The mean of |det| without a joint: its share of self-motion. Below this much of the largest a joint hardly moves.
+  // A joint's share of self-motion is the mean of |det J| without its column; below this part of
+  // the largest share it hardly moves.
   constexpr double kLeastShare = 1e-3;
   constexpr int kSamples = 64;
   LockMethod result;

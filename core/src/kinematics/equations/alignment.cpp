@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kMeets = 1e-4;  // m, rad: axes this near a common point or direction make a triple
 
-/// Values of the middle joint of a triple at which the axes on both sides of it are one line, or one direction where three
-/// parallel axes go before.
+/// Adds the values of a triple's middle joint at which the axes on both sides of it are parallel.
 void add_alignments(const Chain& chain, int first, std::vector<Alignment>& out) {
   const auto f = static_cast<std::size_t>(first);
   const Vector3d &a = chain.axis[f], &b = chain.axis[f + 1], &c = chain.axis[f + 2];

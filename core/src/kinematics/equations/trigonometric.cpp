@@ -9,8 +9,8 @@ namespace swivel {
 
 namespace {
 
-/// Largest real root of w^3 + p w + q, where q <= 0 or three roots are real: Newton from a bound above it, where the cubic is
-/// convex.
+/// Returns the largest real root of w^3 + p w + q, where q <= 0 or three roots are real: Newton
+/// from a bound above it, where the cubic is convex.
 double greatest_root(double p, double q) {
   double w = std::sqrt(std::max(0.0, -p));
   if (q < 0) {  // plus a power of two above the cube root of -q
@@ -28,7 +28,7 @@ double greatest_root(double p, double q) {
   return w;
 }
 
-/// Largest real root of z^3 + a z^2 + b z + c, known not to be negative.
+/// Returns the largest real root of z^3 + a z^2 + b z + c, known not to be negative.
 double resolvent_root(double a, double b, double c) {
   const double shift = -a / 3, p = b - a * a / 3, q = ((shift + a) * shift + b) * shift + c;
   const double turning = std::sqrt(std::max(0.0, -p / 3));  // where the local minimum is
@@ -40,7 +40,7 @@ struct Monic {
   double a, b, c, d;  // t^4 + a t^3 + b t^2 + c t + d
 };
 
-/// Two steps of Newton, each only where it lessens the value.
+/// Improves a root by up to two Newton steps, each taken only where it lessens the value.
 double polished(const Monic& f, double t) {
   double value = (((t + f.a) * t + f.b) * t + f.c) * t + f.d;
   for (int step = 0; step < 2; ++step) {
@@ -55,7 +55,7 @@ double polished(const Monic& f, double t) {
   return t;
 }
 
-/// Real or nearly real roots of t^2 + p t + q, which divides f.
+/// Appends the real or nearly real roots of t^2 + p t + q, a factor of f.
 void quadratic(double p, double q, const Monic& f, double slack, std::array<double, 4>& root, int& count) {
   const auto at = [&] { return static_cast<std::size_t>(count++); };
   const double middle = -p / 2, discriminant = middle * middle - q;
@@ -73,7 +73,7 @@ void quadratic(double p, double q, const Monic& f, double slack, std::array<doub
   root[at()] = middle + half;
 }
 
-/// Grows with the angle from -pi to pi.
+/// Returns a number that grows with the angle from -pi to pi.
 double order(const Angle& x) {
   return std::copysign(1 - x.cosine, x.sine);
 }
@@ -142,7 +142,8 @@ Roots roots(const Wave2& wave, double slack) {
   const double p = f.b - 6 * a2, q = f.c - 2 * f.b * quarter + 8 * a2 * quarter, r = f.d - f.c * quarter + f.b * a2 - 3 * a2 * a2;
   const double u2 = resolvent_root(2 * p, p * p - 4 * r, -q * q), u = std::sqrt(u2);
   const double sum = p + u2, square = sum * sum - 4 * r;
-  // Two ways to w - v, of which one cancels where u is small and the other where v and w are near each other.
+  // w - v can be computed in two ways: one cancels where u is small, the other where v and w are
+  // nearly equal.
   const double difference =
       square > 0.01 * (sum * sum + 4 * std::abs(r)) || u == 0 ? std::copysign(std::sqrt(std::max(0.0, square)), q) : q / u;
   std::array<double, 4> t{};

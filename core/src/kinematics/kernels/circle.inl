@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled once per vector unit, inside namespace SWIVEL_ISA. Only raw pointers and arithmetic here: an inline function shared with
-// other files could be emitted with this file's instruction set. No contraction, so every unit gives the same bits.
+// Compiled once for each instruction set, inside namespace SWIVEL_ISA. Only raw pointers and
+// arithmetic here: the linker could keep this file's copy of an inline function shared with other
+// files, with instructions that the processor lacks. No contraction, so that all give the same
+// bits.
 
 namespace swivel::SWIVEL_ISA {
 namespace {
 
-/// atan2 to about 1 ulp. t = min/max, reduced to |t| <= tan(pi/8); degree-11 polynomial in t^2 (interpolated at Chebyshev nodes,
-/// truncation error 1.3e-18).
+/// Returns atan2(y, x) to about 1 ulp. t = min/max, reduced to |t| <= tan(pi/8); polynomial of
+/// degree 11 in t^2 (interpolated at Chebyshev nodes, truncation error 1.3e-18).
 inline double atan2_poly(double y, double x) {
   const double ax = x < 0 ? -x : x, ay = y < 0 ? -y : y;
   const double big = ax > ay ? ax : ay, small = ax > ay ? ay : ax;
@@ -36,7 +38,7 @@ inline double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-/// The image of angle q that lies in [base, base + 2 pi).
+/// Returns angle q plus the whole turns that bring it into [base, base + 2 pi).
 inline double image_from(double q, double base) {
   const double x = (base - q) * 0.15915494309189535;
   const double r = (x + 6755399441055744.0) - 6755399441055744.0;  // nearest integer

@@ -3,13 +3,14 @@
 
 namespace swivel {
 
-/// One triple of joints over a run of arm angles: both signs of the middle angle. Arrays of n.
+/// The input and output of one triple of joints over a run of n arm angles, for both signs of the
+/// middle angle.
 struct TripleTask {
   double m[5][3];     ///< TripleCircle: rows m02, m12, m22, m20, m21; columns sin, cos, 1
-  double shift;       ///< subtracted from the middle angle
-  double base[3];     ///< each joint's image is taken in [base, base + 2 pi)
-  double upper[3];    ///< and exists up to here
-  double least_sine;  ///< below: singular
+  double shift;       ///< subtracted from the middle angle, rad
+  double base[3];     ///< each joint is given in [base, base + 2 pi), rad
+  double upper[3];    ///< upper limit of each joint, rad
+  double least_sine;  ///< a node with a smaller sine of the middle angle is singular
   int n;
   const double* sin_phi;
   const double* cos_phi;
@@ -17,12 +18,14 @@ struct TripleTask {
   double* mask[2];  ///< [sign]: 0 where the triple is solved within its limits and not singular, else infinity
 };
 
+/// Inverse kinematics of joint triples compiled for one instruction set.
 struct CircleKernels {
   const char* name;
   void (*solve_triple)(const TripleTask&);
 };
 
-/// The kernels of the best vector unit this processor has; SWIVEL_FORCE_ISA=scalar|avx2|avx512 picks one. All give the same bits.
+/// Returns the kernels for active_isa(): the best instruction set of this processor, or the one
+/// that SWIVEL_FORCE_ISA=scalar|avx2|avx512 picks. All give the same bits.
 const CircleKernels& circle_kernels();
 
 const CircleKernels& scalar_circle_kernels();

@@ -3,45 +3,48 @@
 
 namespace swivel {
 
-/// A chain of seven joints as frames along common normals, and where its tool is to stand. m, rad. Columns of matrices one after
-/// the other.
+/// A chain of seven joints as frames along common normals. m, rad; matrices column by column.
 struct NewtonChain {
   double first[4][3];  ///< axes x, y, z of the frame of joint 1 in base, and its origin
-  struct Link {        ///< to the frame of the next joint: Rz(q + turn) Tz(height) Tx(width) Rx(twist)
+  /// Transform to the next joint's frame: Rz(q + turn) Tz(height) Tx(width) Rx(twist).
+  struct Link {
     double turn, height, width, twist_cosine, twist_sine;
-  } link[7];          ///< the last has a turn only
+  } link[7];          ///< the last one has only a turn
   double last[4][3];  ///< axes and origin of the tool in the frame of joint 7
 };
 
-/// How a point is moved onto the curve of self-motion.
+/// How Newton moves a point onto the self-motion curve.
 enum class NewtonMove {
-  kNone,     ///< not at all
+  kNone,     ///< not at all: it computes the first-order moves
   kNearest,  ///< by steps of least norm, sum (scale_j dq_j)^2
-  kLocked    ///< with one joint at a value
+  kLocked    ///< with one joint held at a value
 };
 
-/// Newton's method for n points at once. Arrays of n, or n * 7.
+/// The input and output of Newton's method for n points at once; arrays have n or 7 n numbers.
 struct NewtonTask {
   const NewtonChain* chain;
-  double tool[4][3];  ///< axes and origin in base
+  double tool[4][3];  ///< axes and origin of the goal in base
   NewtonMove move;
-  int steps;                ///< at most
-  double longest, settled;  ///< rad: a longer step fails; after so short a one the error is its square
-  double scale2[7];         ///< of kNearest
-  int joint;                ///< of kLocked
-  const double* value;      ///< of kLocked, one for each point
+  int steps;  ///< most Newton steps
+  /// rad: a longer step fails; after a shorter step than `settled` the error is its square.
+  double longest, settled;
+  double scale2[7];     ///< for kNearest
+  int joint;            ///< for kLocked, 0-based
+  const double* value;  ///< for kLocked, one for each point
   int n;
   const double* start;
   double* q;
-  double* particular;  ///< of kNone: q + particular + lambda null closes the error to first order
-  double* null;        ///< of kNone as it comes out, else the unit tangent
+  double* particular;  ///< for kNone: q + particular + lambda null closes the error to first order
+  double* null;        ///< for kNone of any length, else the unit tangent
   unsigned char* found;
 };
 
+/// Newton's method compiled for one instruction set.
 struct NewtonKernels {
-  int lanes;  ///< points for the price of one
+  int lanes;  ///< points computed at once
   void (*solve)(const NewtonTask&);
 };
+/// Returns the kernels for active_isa(). All give the same bits.
 const NewtonKernels& newton_kernels();
 const NewtonKernels& scalar_newton_kernels();
 #ifdef SWIVEL_X86_KERNELS

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled once per vector unit, inside namespace SWIVEL_ISA; see circle.inl for why nothing shared appears here. A lane is a
-// point: every lane's operations stand in one order, so a point's bits depend on neither its neighbours nor the unit.
+// Compiled once for each instruction set, inside namespace SWIVEL_ISA; circle.inl says why nothing
+// shared with other files appears here. A lane is a point: every lane's operations have one order,
+// so a point's bits depend on neither its neighbours nor the instruction set.
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -8,10 +9,11 @@
 namespace swivel::SWIVEL_ISA {
 namespace {
 
-constexpr double kRank = 1e-9;       // pivot below which the Jacobian has lost rank
+constexpr double kRank = 1e-9;       // a smaller pivot means that the Jacobian has lost rank
 constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
 
-// What plain C++ cannot say of a vector of lanes: the widest of this unit, and the same of one number.
+// Operations that plain C++ lacks for a vector of lanes: the widest vector of this instruction set,
+// and one number.
 using Widest =
 #if defined(__AVX512F__)
     __m512d;
@@ -53,7 +55,7 @@ inline bool any_above(__m256d a, __m256d b) {
 }
 #endif
 
-/// A column of seven, each lane its own.
+/// One of seven columns, chosen by each lane for itself.
 template <class V>
 struct Column {
   V number;
@@ -96,12 +98,13 @@ inline V dot(const V* a, const V* b) {
   return (((a[0] * b[0]) + (a[2] * b[2] + a[4] * b[4])) + ((a[1] * b[1]) + (a[3] * b[3] + a[5] * b[5]))) + a[6] * b[6];
 }
 
-/// Sine and cosine of an angle of some turns, to about 1 ulp. Reduction to an eighth of a turn in two parts (Cody & Waite 1980),
-/// polynomials of fdlibm's k_sin and k_cos.
+/// Computes sine and cosine of an angle of a few turns, to about 1 ulp. Source: reduction to an
+/// eighth of a turn in two parts (Cody & Waite 1980), polynomials of fdlibm's k_sin and k_cos.
 template <class V>
 inline void sine_cosine(V x, V& sine, V& cosine) {
   constexpr double kHigh = 0x1.921fb544p0,
-                   kLow = 0x1.0b4611a626331p-34;  // of half pi; times a small integer the high part is exact
+                   // two parts of pi/2; the product of the high part with a small integer is exact
+      kLow = 0x1.0b4611a626331p-34;
   const V quarters = (x * (2 / 3.14159265358979323846) + kRound) - kRound;
   const V r = (x - quarters * kHigh) - quarters * kLow, z = r * r;
   const V s =
@@ -124,7 +127,7 @@ inline void sine_cosine(V x, V& sine, V& cosine) {
   cosine = m > 0.0 ? -b : back;
 }
 
-/// Where the joints' axes stand, and what is missing to the pose.
+/// Axes of the joints, the tool's origin, and the pose error: `miss` (m) and `turn` (rad).
 template <class V>
 struct Stand {
   Vec3<V> axis[7], point[7], tool, miss, turn;
@@ -158,14 +161,15 @@ inline void stand_at(const NewtonTask& task, const V* sine, const V* cosine, Sta
       0.5 * ((cross(tx, constant<V>(task.tool[0])) + cross(ty, constant<V>(task.tool[1]))) + cross(tz, constant<V>(task.tool[2])));
 }
 
-/// Every move  particular + lambda null  closes the error to first order. Returns 0 in lanes whose Jacobian has lost rank, else 1.
+/// Computes the moves particular + lambda null that close the pose error to first order. Returns 0
+/// in lanes whose Jacobian has lost rank, else 1.
 template <class V>
 inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   Stand<V> stand;
   V sine[7], cosine[7];
   for (int k = 0; k < 7; ++k) sine_cosine(V(q[k] + task.chain->link[k].turn), sine[k], cosine[k]);
   stand_at(task, sine, cosine, stand);
-  V A[6][8];  // the Jacobian and what is missing
+  V A[6][8];  // the Jacobian and the pose error
   for (int k = 0; k < 7; ++k) {
     const Vec3<V> v = cross(stand.axis[k], stand.tool - stand.point[k]);
     A[0][k] = v.x;
@@ -182,7 +186,7 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   A[4][7] = stand.turn.y;
   A[5][7] = stand.turn.z;
 
-  // Gauss; each row takes the largest column that is left.
+  // Gaussian elimination; each row takes the largest column left as its pivot.
   Column<V> pivot[6];
   V left[7], whole = V{} + 1.0, taken = V{};
   for (int c = 0; c < 7; ++c) left[c] = V{} + 1.0;
@@ -230,10 +234,10 @@ inline V linear(const NewtonTask& task, const V* q, V* particular, V* null) {
   return whole;
 }
 
-/// The same of one point: vectors along the rows.
+/// Computes linear() for one point, with vectors along the rows of the matrix.
 template <>
 inline double linear<double>(const NewtonTask& task, const double* q, double* particular, double* null) {
-  double angle[8], sine[8], cosine[8], A[6][8];  // seven joints, and what is missing
+  double angle[8], sine[8], cosine[8], A[6][8];  // seven joints, and the pose error
   for (int k = 0; k < 7; ++k) angle[k] = q[k] + task.chain->link[k].turn;
   angle[7] = 0;
   for (int k = 0; k < 8; ++k) sine_cosine(angle[k], sine[k], cosine[k]);
@@ -294,7 +298,7 @@ inline double linear<double>(const NewtonTask& task, const double* q, double* pa
   return 1;
 }
 
-/// As many points as V has lanes, from `at` on; where there are fewer, the last one again.
+/// Solves as many points as V has lanes, from `at` on; lanes beyond the last point repeat it.
 template <class V>
 void solve_lanes(const NewtonTask& task, int at) {
   constexpr int kOwn = sizeof(V) / sizeof(double);

@@ -10,9 +10,9 @@ namespace swivel {
 
 namespace {
 
-constexpr double kSettled = 4e-6;   // rad: after so small a step the error is its square
+constexpr double kSettled = 4e-6;   // rad: after so small a step the remaining error is its square
 constexpr double kParallel = 1e-9;  // sine below which neighbouring axes have no common normal of their own
-constexpr double kLongest = 1;      // rad, of one step
+constexpr double kLongest = 1;      // rad: longest step
 constexpr int kLockedSteps = 8;
 
 void put(const Vector3d& v, double (&to)[3]) {

@@ -9,50 +9,63 @@
 
 namespace swivel {
 
-/// Newton's method for the six equations "the tool stands at a pose" in seven joints, made for very many small calls: the chain as
-/// frames along common normals (Denavit & Hartenberg 1955), one elimination for the step and the null vector, a vector's lanes for
-/// points.
+/// Newton's method for the six equations "the tool stands at a pose" in seven joints, made for very
+/// many small calls. It writes the chain as frames along common normals (Denavit & Hartenberg
+/// 1955), finds the step and the null vector by one elimination, and computes one point in each
+/// lane of a vector.
 class PoseNewton {
  public:
   explicit PoseNewton(const Chain& chain);
 
-  /// To first order, every move  particular + lambda null  closes the error.
+  /// The moves that close the pose error to first order: particular + lambda null, for every
+  /// lambda.
   struct Linear {
     Config particular, null;
   };
-  /// False where the Jacobian has lost rank.
+  /// Computes the moves from q (rad) that bring the tool to the pose `tool` to first order. Returns
+  /// false where the Jacobian has lost rank.
   [[nodiscard]] bool linear(const Config& q, const Pose& tool, Linear& out) const;
 
-  /// A point of a self-motion curve and its unit tangent, of either sign.
+  /// A point of a self-motion curve and its unit tangent, of either sign, rad.
   struct Point {
     Config q, tangent;
   };
-  /// The point near q at which Newton steps of least norm, sum (scale_j dq_j)^2, end; `scale2` has the squares. Within 1e-10 of the
-  /// pose. None after `steps` steps, or where a step would be longer than 1 rad.
+  /// Returns the point within 1e-10 of the pose `tool` to which Newton steps of least norm, sum
+  /// (scale_j dq_j)^2, lead from q; `scale2` has the squares of the scales. Returns none after
+  /// `steps` steps, or where a step would be longer than 1 rad or the Jacobian loses rank.
   [[nodiscard]] std::optional<Point> nearest(const Config& q, const Pose& tool, const Config& scale2, int steps) const;
-  /// The same from far away: steps are cut to half a radian.
+  /// Returns the point of the pose `tool` to which Newton steps of least norm lead from a q that
+  /// may be far away, none if they do not arrive in `steps` steps. Each step is cut to half a
+  /// radian.
   [[nodiscard]] std::optional<Point> approach(const Config& q, const Pose& tool, int steps) const;
-  /// `nearest` with the joint at the value, bit for bit.
+  /// Returns the point of the pose `tool` near q at which a joint (0-based) has a value, bit for
+  /// bit, rad; none where Newton does not arrive in 8 steps.
   [[nodiscard]] std::optional<Point> with_joint_at(const Config& q, const Pose& tool, int joint, double value) const;
 
-  // --- of many points at once, in vector code: the bits are those of one after the other
-  /// False where that takes as long.
+  // Functions for many points at once, in vector code. They give the same bits as one call for each
+  // point.
+  /// Returns true if many points at once take less time than one after the other.
   [[nodiscard]] static bool sooner_at_once() { return newton_kernels().lanes > 1; }
+  /// The results for many points.
   struct Points {
     std::vector<Config> q, tangent;
-    std::vector<unsigned char> found;  // 0: none, and what stands in its place is no point
+    // 0: there is no such point, and q and tangent are meaningless.
+    std::vector<unsigned char> found;
+    /// Returns the k-th point, none where it was not found.
     [[nodiscard]] std::optional<Point> at(std::size_t k) const {
       if (found[k] == 0) return std::nullopt;
       return Point{q[k], tangent[k]};
     }
   };
-  /// Of points that reach the pose, as they are.
+  /// Computes the tangents at points that reach the pose already; the points stay as they are.
   void tangents(std::span<const Config> q, const Pose& tool, Points& out) const;
+  /// Computes for each start what nearest() for one start does.
   void nearest(std::span<const Config> starts, const Pose& tool, const Config& scale2, int steps, Points& out) const;
+  /// Computes for each start and value what with_joint_at() for one start does.
   void with_joint_at(std::span<const Config> starts, const Pose& tool, int joint, std::span<const double> values,
                      Points& out) const;
 
-  /// What the kernels are asked, without the points.
+  /// Returns the task for the vector kernels, without points.
   [[nodiscard]] NewtonTask task(const Pose& tool, NewtonMove move, int steps) const;
 
  private:

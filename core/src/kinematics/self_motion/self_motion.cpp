@@ -15,15 +15,16 @@ using namespace self_motion;
 
 namespace {
 
-constexpr int kSeeds = 32;             // lock values, evenly over a turn
+constexpr int kSeeds = 32;             // lock values, evenly spread over a turn
 constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
 constexpr double kLeastWeight = 1e-2;  // of the largest
-constexpr int kStarts = 96;            // of Newton, where there is no closed form
+constexpr int kStarts = 96;            // starts of Newton, where there is no closed form
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
-constexpr double kSymmetric = 1e-11;   // rad by which a limit may miss the other's twin
+constexpr double kSymmetric = 1e-11;   // rad by which a limit may miss the twin of the other
 constexpr double kMostDrift = 0.2;     // rad of self-motion by which an image may leave the nearest one
 
-/// That of the triple of all closed forms, where they are the chain's own.
+/// Returns the flip of the three axes that meet in every closed form, none where those are not the
+/// chain's own.
 Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignments,
              const std::vector<std::pair<double, ClosedForm>>& forms) {
   constexpr double kPerpendicular = 1e-12;  // cosine
@@ -43,7 +44,7 @@ Flip flip_of(const Chain& chain, int lock, const std::vector<Alignment>& alignme
   return at == alignments.end() ? Flip() : Flip(first, at->angle);
 }
 
-/// Whether the flip of what is within the limits is so, too.
+/// Returns true if the flip of every configuration within the limits is within them too.
 bool keeps_limits(const Chain& chain, const SelfMotionData& data) {
   const Flip& flip = data.flip;
   if (flip.none()) return false;
@@ -58,7 +59,7 @@ bool keeps_limits(const Chain& chain, const SelfMotionData& data) {
 
 SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double margin, const std::array<double, kDof>& weights) {
   auto data = std::make_unique<SelfMotionData>(chain);
-  // Without a lock any joint does: it settles where closed arcs begin.
+  // Without a lock any joint serves: it decides where closed arcs begin.
   data->lock = method.best >= 0 ? method.best : 2;
   data->other = data->lock == 0 ? 1 : 0;
   const double largest = *std::max_element(weights.begin(), weights.end());
@@ -138,7 +139,7 @@ Config SelfMotion::twin(Config q) const {
   for (std::size_t j = 0; j < kDof; ++j) {
     double& value = q[static_cast<Eigen::Index>(j)];
     value = data_->image(value, j);
-    // A limit's twin is one, but for rounding.
+    // The twin of a limit is a limit, but for rounding.
     const double limit = std::clamp(value, data_->lower[j], data_->upper[j]);
     if (!data_->circle[j] && std::abs(value - limit) < kSymmetric) value = limit;
   }
@@ -153,8 +154,9 @@ std::optional<Config> SelfMotion::image(const Config& q, const Pose& tool) const
 
 namespace {
 
-/// Of moves  move + x along  with |x| <= most, the x at which the largest weighted joint moves least; of several the one nearest 0.
-/// That is the largest of fourteen lines, which is convex: downhill from 0, from corner to corner.
+/// Returns the x, |x| <= most, at which the largest weighted joint of the move  move + x along  is
+/// least; of several the one nearest 0. That maximum of fourteen lines is convex: the search goes
+/// downhill from 0, from corner to corner.
 double least_largest(const Config& move, const Config& along, const Config& weight, double most) {
   std::array<double, 2 * kDof> value, slope;
   for (int j = 0; j < kDof; ++j)
@@ -165,7 +167,7 @@ double least_largest(const Config& move, const Config& along, const Config& weig
     }
   double top = *std::max_element(value.begin(), value.end());
   constexpr double kNone = -std::numeric_limits<double>::infinity();
-  double right = kNone, left = kNone;  // the steepest on top, to either side
+  double right = kNone, left = kNone;  // steepest of the topmost lines, to either side
   for (std::size_t k = 0; k < value.size(); ++k) {
     if (value[k] < top) continue;
     right = std::max(right, slope[k]);

@@ -15,7 +15,7 @@ namespace {
 
 using namespace self_motion;
 
-/// A joint comes to a limit.
+/// A place on a curve where a joint comes to a limit.
 struct Crossing {
   int chord;
   double u;
@@ -24,7 +24,7 @@ struct Crossing {
   [[nodiscard]] bool leaves() const { return at_upper == rising; }
 };
 
-/// Where start + cubic equals `value`, in [0, 1), appended with whether it rises there.
+/// Calls add(u, whether it rises) for every u in [0, 1) at which start + cubic equals `value`.
 template <class Add>
 void cubic_crossings(const Cubic& cubic, int j, double start, double value, const Add& add) {
   const double b = cubic.m0[j], c = 3 * cubic.d[j] - 2 * cubic.m0[j] - cubic.m1[j], d = cubic.m0[j] + cubic.m1[j] - 2 * cubic.d[j];
@@ -53,7 +53,7 @@ void cubic_crossings(const Cubic& cubic, int j, double start, double value, cons
   }
 }
 
-/// Cuts one curve at the limits.
+/// Cuts one curve at the joint limits.
 class Cutter {
  public:
   Cutter(const SelfMotionData& data, const Pose& tool, std::vector<SelfMotionArc>& out) : data_(data), tool_(tool), out_(out) {}
@@ -61,7 +61,9 @@ class Cutter {
 
  private:
   void find_crossings(const std::vector<Point>& points, int chords);
-  /// The point of a chord at which the crossing's joint stands on its limit, exactly; another joint's where that is passed first.
+  /// Finds the point of a chord at which the crossing's joint stands exactly on its limit, or
+  /// another joint on its own, `joint`, where that is passed first. Returns false where Newton
+  /// fails.
   bool solve_end(const std::vector<Point>& points, const Crossing& crossing, Point& end, int& joint) const;
   void finish(SelfMotionArc&& arc);
 
@@ -89,7 +91,7 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
       // A cubic leaves the range of its ends by 4/27 of the misfit of its tangents at most.
       const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
       const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
-      // Images by a turn of the limits lie beyond them.
+      // Limits plus or minus a turn lie beyond the range.
       if (least > data_.lower[at] && most < data_.upper[at]) continue;
       for (const bool upper : {true, false})
         for (const double turn : {-kTwoPi, 0.0, kTwoPi}) {
@@ -100,7 +102,8 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
     }
     const auto here = crossings_.begin() + static_cast<std::ptrdiff_t>(before);
     std::stable_sort(here, crossings_.end(), [](const Crossing& x, const Crossing& y) { return x.u < y.u; });
-    // Of a range of a whole turn both limits are met at once: out by one, then in by the other.
+    // A joint with a range of a whole turn meets both limits at once: it leaves by one, then enters
+    // by the other.
     for (auto next = here; next != crossings_.end() && next + 1 != crossings_.end(); ++next)
       if (next[0].joint == next[1].joint && next[1].u - next[0].u < 1e-9 && next[1].leaves() && !next[0].leaves())
         std::swap(next[0], next[1]);
@@ -203,7 +206,8 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
     finish(std::move(arc));
     return;
   }
-  // Between two crossings, one after the other; an open curve has a piece before the first and one after the last.
+  // Take the pieces between two neighbouring crossings; an open curve has one before the first and
+  // one after the last as well.
   const int count = static_cast<int>(crossings_.size());
   for (int k = closed ? 0 : -1; k < count; ++k) {
     const Crossing* from = k >= 0 ? &crossings_[static_cast<std::size_t>(k)] : nullptr;
@@ -232,7 +236,7 @@ void Cutter::cut(const std::vector<Point>& points, bool closed) {
       arc.tangent.push_back(p.tangent);
     }
     for (int n = first; n < end; ++n) {
-      // A point that its neighbour on the limit has come to is that neighbour.
+      // Leave out a point that coincides with the end on the limit.
       if (from != nullptr && n == first && difference(at(n).q, arc.q[0]).squaredNorm() < 1e-16) continue;
       arc.q.push_back(at(n).q);
       arc.tangent.push_back(at(n).tangent);

@@ -6,11 +6,13 @@
 
 namespace swivel {
 
-/// The arcs that the joint limits leave of a curve are added to `arcs`.
+/// Adds to `arcs` the arcs that the joint limits leave of a curve at the pose `tool`, given by its
+/// points in order.
 void cut_at_limits(const SelfMotionData& data, const Pose& tool, const std::vector<self_motion::Point>& points, bool closed,
                    std::vector<SelfMotionArc>& arcs);
 
-/// The order of arcs: by their first points, the first joint first.
+/// Returns true if a comes before b lexicographically, the first joint first: the order of arcs by
+/// their first points.
 [[nodiscard]] bool less(const Config& a, const Config& b);
 
 }  // namespace swivel

@@ -16,34 +16,37 @@ using namespace self_motion;
 constexpr double kStep = 0.2;        // rad, Euclidean: longest step of tracing
 constexpr double kLeastStep = 1e-7;  // rad: below this a curve is singular
 constexpr double kLongChord = 0.7;   // rad: joined directly; longer ones are traced
-constexpr double kNear = 0.02;       // rad from a chord: a seed there is known
+constexpr double kNear = 0.02;       // rad: a seed this near a chord is on a known curve
 constexpr double kSeed = 5e-3;       // rad: a start this near a seed is the seed
 constexpr double kFar = 1;           // rad: more than a chord and what is near it
 constexpr double kFarTriple = 0.25;  // relative discriminant of complex roots that give seeds: of a spherical triple,
 constexpr double kFarParallel = 1;   // and of three parallel axes
 constexpr int kMostPoints = 4000;    // of one curve
-constexpr int kFollowed = 64;        // of those that are followed ahead of time
-constexpr int kAround = 40;          // after as many, tracing may have come round to what is known
+constexpr int kFollowed = 64;        // most points of a curve that is followed ahead of time
+constexpr int kAround = 40;          // after so many it may have come round to a known curve
 constexpr int kApproachSteps = 30;   // of Newton, from a start far away
 constexpr int kCloseSteps = 4;       // and from a guess on a curve
-constexpr int kDepth = 3;            // as often a chord is halved
+constexpr int kDepth = 3;            // how often a chord may be halved
 
-/// False only where they are further apart than `within` in this joint alone: cheap, and true of few.
+/// Returns false only if a and b are further apart than `within` in this one joint: a cheap test
+/// that few pass.
 bool maybe_near(const Config& a, const Config& b, int joint, double within) {
   const double apart = std::abs(a[joint] - b[joint]);
   return apart < within || apart > kTwoPi - within;
 }
 
-/// The same of any joint.
+/// Returns false only if a and b are further apart than `within` in some joint.
 bool maybe_near(const Config& a, const Config& b, double within) {
   for (int j = 0; j < kDof; ++j)
     if (!maybe_near(a, b, j, within)) return false;
   return true;
 }
 
-/// Points of curves and their neighbours. Side 0 of a point lies behind it along its tangent, side 1 ahead.
+/// A point of a curve, with its neighbours. Side 0 of a point lies behind it along its tangent,
+/// side 1 ahead; "half" numbers below are 2 * point + side, the half-edge that leaves the point on
+/// that side.
 struct Vertex : Point {
-  int group = -1;                   // of the lock value, -1: traced
+  int group = -1;                   // number of its lock value; -1: it was traced
   std::array<int, 2> next{-1, -1};  // 2 * neighbour + the neighbour's side; -1: open
 };
 
@@ -56,7 +59,7 @@ class Curves {
  public:
   Curves(const SelfMotionData& data, const Pose& tool) : data_(data), tool_(tool) {}
   void find(std::span<const Config> known);
-  /// Visits curve by curve: the points in order, tangents along it.
+  /// Visits every curve: its points in order, tangents along it.
   void visit(const VisitCurve& visit) const;
 
  private:
@@ -80,7 +83,7 @@ class Curves {
     return static_cast<int>(vertices_.size()) - 1;
   }
   void add_end(int half) { open_.push_back({half, at(half).q}); }
-  /// Of the pairs that a flip makes one is sought.
+  /// Of the pairs that a flip makes one is computed.
   [[nodiscard]] ClosedForm::Ways ways() const { return data_.flip.none() ? ClosedForm::Ways::kBoth : ClosedForm::Ways::kOne; }
   [[nodiscard]] Config kept(Config q) const {
     if (!data_.flip.kept(q)) data_.flip.apply(q);
@@ -88,29 +91,32 @@ class Curves {
   }
   void add_seeds();
   void join_neighbours();
-  /// How badly a smooth curve fits the move from a half-edge to another; none where it does not.
+  /// Returns how badly a smooth curve fits the move from a half-edge to another, rad; none where it
+  /// does not fit.
   [[nodiscard]] std::optional<double> misfit(int half, int other) const;
   [[nodiscard]] bool straight(int half, int other, const Config& chord) const;
   [[nodiscard]] Config middle(int half, int other) const;
-  /// A way between two half-edges that is closed over the point to which Newton leads from `guess`.
+  /// A gap between two half-edges, to be closed over the point to which Newton leads from `guess`.
   struct Gap {
     int half, other;
     Config guess;
-    double within;  // rad: as far from the guess that point may lie
+    double within;  // rad: how far from the guess that point may lie
   };
-  /// A way that turns more than a chord may, as a fold does.
+  /// A gap over which the curve turns more than a chord may, as at a fold.
   struct Turn {
-    double miss;  // part of the chord by which it leaves the bisector of the tangents
+    double miss;  // part of the chord by which it is off the bisector of the tangents
     Gap gap;
   };
   [[nodiscard]] std::optional<Turn> turning(int half, int other) const;
-  /// Links two half-edges, or adds the gap between them; neither where no curve is seen to join them.
+  /// Links two half-edges, or adds the gap between them to `gaps`; does neither where no curve
+  /// seems to join them.
   void join(int half, int other, int depth, std::vector<Gap>& gaps);
-  /// Closes all gaps at once, then those that are left on either side of the points found.
+  /// Closes all gaps at once, then the gaps that are left on either side of the points found, and
+  /// so on.
   void close(std::vector<Gap> gaps);
   void bridge_ends();
 
-  /// A point on its way along a curve.
+  /// A point that moves along a curve.
   struct Walk {
     Point here;
     Config bend = Config::Zero();  // curvature from the point before
@@ -125,7 +131,7 @@ class Curves {
       here = next;
     }
   };
-  /// Points that tracing from an open half-edge comes to, and the steps that led there.
+  /// The points that tracing from an open half-edge comes to, and the steps that led there.
   struct Trail {
     int half;
     std::vector<Point> points{};
@@ -134,16 +140,19 @@ class Curves {
     bool ended = false;  // the curve cannot be followed further
   };
   [[nodiscard]] double first_step(const Point& p, double step) const;
-  /// `next` with its tangent turned along the curve; none where it is no good step from p.
+  /// Returns `next` with its tangent turned along the curve; none where it is no acceptable step
+  /// from p.
   [[nodiscard]] std::optional<Point> accepted(const Point& p, const Config& guess, double step, std::optional<Point> next) const;
   [[nodiscard]] std::optional<Point> advance(const Walk& walk, double& step) const;
-  /// The first open half-edge that a move from p passes, `count` points after the half-edge `from`; -1: none.
+  /// Returns the first open half-edge that a move from p passes, `count` points after the half-edge
+  /// `from`; -1: none.
   [[nodiscard]] int met(int from, int count, const Point& p, const Config& move) const;
   void trace(int half, const Trail* trail);
-  /// Follows all trails at once, links nothing.
+  /// Follows all trails at once, without linking points.
   void follow(std::vector<Trail>& trails) const;
   void trace_all();
-  /// Whether a chord that is linked runs by, no further off than `near` and a part of its length.
+  /// Returns true if a chord that is linked runs by q, no further off than `near` plus a part of
+  /// its length.
   [[nodiscard]] bool known(const Config& q, const Config& tangent, double near, double part) const;
   void add_hidden(std::vector<Config> points);
 
@@ -151,17 +160,17 @@ class Curves {
   const Pose& tool_;
   std::vector<Vertex> vertices_;
   std::vector<int> first_;  // vertex of each lock value, and the end
-  std::vector<char> few_;   // lock values with fewer solutions than there may be
+  std::vector<char> few_;   // lock values with fewer solutions than the arm has at most
   struct End {
     int half;
-    Config q;  // again, side by side
+    Config q;  // a copy, so that ends lie side by side in memory
   };
   std::vector<End> open_;  // half-edges that tracing may meet
 };
 
 void Curves::add_seeds() {
   vertices_.reserve(1024);
-  // Of a closed form that is the chain's own, solutions; else starts of Newton on the exact chain.
+  // An exact closed form gives solutions, another one starts of Newton on the exact chain.
   struct {
     std::vector<Config> q;
     std::vector<double> lock;
@@ -405,7 +414,8 @@ void Curves::trace(int half, const Trail* trail) {
       link(here, other);
       return;
     }
-    // Where curves nearly cross, a chord may have led from one to the other: the end that it left out has no continuation.
+    // Where curves nearly cross, a chord may have led from one to the other: the end that is left
+    // over then has no continuation.
     again = count >= kAround && known(next->q, next->tangent, 1e-3, 0.03) ? again + 1 : 0;
     if (again == 3) return;
     walk.go(*next);
@@ -458,9 +468,10 @@ void Curves::follow(std::vector<Trail>& trails) const {
 }
 
 void Curves::trace_all() {
-  // What is open ahead is met from behind by the next lock value's, or at a fold by another of its own. So a quarter of the ends is
-  // followed at once, then what was not met of the next. What is followed in vain changes nothing: curves are linked one after the
-  // other, in the order of the ends.
+  // An end that is open ahead is met from behind by one of the next lock value, or at a fold by
+  // another of its own. So a quarter of the ends is followed at once, then the ends of the next
+  // quarter that were not met, and so on. Following in vain changes nothing: curves are linked one
+  // after the other, in the order of the ends.
   std::array<std::vector<int>, 4> quarters;
   std::map<std::pair<int, int>, std::size_t> rank;
   for (const auto& [half, q] : open_) {

@@ -8,11 +8,11 @@
 
 namespace swivel {
 
-/// The points of a curve in order, tangents along it; they may be changed.
+/// Receives the points of a curve in order, tangents along it; it may change them.
 using VisitCurve = std::function<void(std::vector<self_motion::Point>& points, bool closed)>;
 
-/// Visits every curve of self-motion at a pose, limits ignored; of those that come in pairs (`data.flip`) one of two. SelfMotion
-/// says how they are found, and what `known` is.
+/// Visits every self-motion curve at a pose, joint limits ignored; of curves that come in pairs
+/// (`data.flip`) one of two. SelfMotion says how curves are found, and what `known` is.
 void find_curves(const SelfMotionData& data, const Pose& tool, std::span<const Config> known, const VisitCurve& visit);
 
 }  // namespace swivel

@@ -13,7 +13,7 @@
 
 namespace swivel {
 
-// What the curves of self-motion, the arcs that limits cut from them and the images of nodes have in common.
+// What self_motion.cpp, self_motion_curves.cpp and self_motion_arcs.cpp have in common.
 namespace self_motion {
 
 using Point = PoseNewton::Point;
@@ -21,6 +21,7 @@ using Point = PoseNewton::Point;
 constexpr double kSingular = 1e-6;  // rad from alignment of a triple
 inline const Config kPlain = Config::Ones();
 
+/// Returns a - b less its nearest whole number of turns, rad.
 inline double difference(double a, double b) {
   constexpr double kRound = 0x1.8p52;  // added and taken away again, it rounds to an integer
   const double d = a - b;
@@ -33,12 +34,13 @@ inline Config difference(const Config& a, const Config& b) {
   return d;
 }
 
-/// wrap_angle() without its division where there is nothing to wrap.
+/// Returns wrap_angle(angle), without its division where there is nothing to wrap.
 inline double wrapped(double angle) {
   return std::abs(angle) < 3 ? angle : wrap_angle(angle);
 }
 
-/// The cubic with the tangents of its ends, as long as its chord: relative to its first point, at + u (b + u (c + u d)).
+/// The cubic from a point to another with their tangents, scaled by its chord, relative to the
+/// first point.
 struct Cubic {
   Config d, m0, m1;  // chord, and tangents times its length
   Cubic(const Point& a, const Point& b, double sign_b) : d(difference(b.q, a.q)) {
@@ -52,8 +54,9 @@ struct Cubic {
   }
 };
 
-/// The other way to turn a rigid body as three axes do that meet in a point, each perpendicular to the next: a half turn about the
-/// first, the second on the other side of alignment, a half turn back about the third. All else may stand, so curves come in pairs.
+/// The other way to turn a rigid body by three axes that meet in a point, each perpendicular to the
+/// next: a half turn about the first, the second on the other side of alignment, a half turn back
+/// about the third. All other joints stay, so self-motion curves come in pairs.
 class Flip {
  public:
   Flip() = default;
@@ -61,7 +64,8 @@ class Flip {
   [[nodiscard]] bool none() const { return first_ < 0; }
   [[nodiscard]] int first() const { return first_; }
   [[nodiscard]] double aligned() const { return aligned_; }
-  /// Of a pair one is on this side; at the alignment, to rounding, both.
+  /// Returns true if q is on the side of a pair that is computed; at the alignment, to rounding,
+  /// both are.
   [[nodiscard]] bool kept(const Config& q) const { return none() || std::sin(q[first_ + 1] - aligned_) > -1e-9; }
   void apply(Config& q) const {
     q[first_] += kPi;
@@ -74,17 +78,17 @@ class Flip {
   }
 
  private:
-  int first_ = -1;  // joint, 0-based; -1: there is no such triple
+  int first_ = -1;  // first joint of the triple, 0-based; -1: none
   double aligned_ = 0;
 };
 
 }  // namespace self_motion
 
-/// What is known of a chain before any pose is.
+/// What SelfMotion knows of a chain before any pose is given.
 struct SelfMotionData {
   explicit SelfMotionData(const Chain& chain) : newton(chain) {}
   PoseNewton newton;
-  int lock = -1, other = 0;  // a joint that is not the lock
+  int lock = -1, other = 0;  // lock: the joint to lock; other: any joint but that
   std::array<double, kDof> lower{}, upper{};
   std::array<bool, kDof> circle{};
   Config scale, scale2;

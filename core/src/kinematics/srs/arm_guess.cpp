@@ -21,14 +21,15 @@ std::string lower_case(std::string name) {
   return name;
 }
 
-/// Whether a name is the word, or ends with it after a separator, as arm_left_link_tool0 does.
+/// Returns true if a name is the word, or ends with it after a separator, as arm_left_link_tool0
+/// does.
 bool ends_with_word(const std::string& name, const std::string& word) {
   const std::string lower = lower_case(name);
   if (!lower.ends_with(word)) return false;
   return lower.size() == word.size() || std::isalnum(static_cast<unsigned char>(lower[lower.size() - word.size() - 1])) == 0;
 }
 
-/// Whether a name has the word between separators, as left_hip_yaw has hip.
+/// Returns true if a name has the word between separators, as left_hip_yaw has hip.
 bool has_word(const std::string& name, const std::string& word) {
   const std::string lower = lower_case(name);
   const auto letter = [&](std::size_t at) { return at < lower.size() && std::isalpha(static_cast<unsigned char>(lower[at])) != 0; };
@@ -37,7 +38,7 @@ bool has_word(const std::string& name, const std::string& word) {
   return false;
 }
 
-/// A link from which makers measure an arm.
+/// Returns true if makers name the link like this from which they measure an arm.
 bool is_base_name(const std::string& name) {
   for (const char* const word : {"base_link", "base", "link_base", "link_0", "link0"})
     if (ends_with_word(name, word)) return true;
@@ -50,7 +51,7 @@ bool is_leg_name(const std::string& name) {
   return false;
 }
 
-/// A joint beyond the arm.
+/// Returns true if a joint is named like those of hands, beyond the arm.
 bool is_hand_name(const std::string& name) {
   const std::string lower = lower_case(name);
   for (const char* const word : {"finger", "gripper", "knuckle", "thumb", "claw", "jaw", "spindle"})
@@ -58,7 +59,7 @@ bool is_hand_name(const std::string& name) {
   return false;
 }
 
-/// What an arm carries, and may tilt.
+/// Returns true if a name is that of a sensor that an arm carries, and may tilt.
 bool is_sensor_name(const std::string& name) {
   const std::string lower = lower_case(name);
   for (const char* const word : {"camera", "gimbal", "lidar"})
@@ -66,7 +67,8 @@ bool is_sensor_name(const std::string& name) {
   return false;
 }
 
-constexpr int kLeast = static_cast<int>(kDof) - 1;  ///< joints of an arm, whose tool's roll makes seven
+/// Fewest joints of an arm: the tool's roll is then the seventh.
+constexpr int kLeast = static_cast<int>(kDof) - 1;
 
 class Guesser {
  public:
@@ -110,28 +112,28 @@ class Guesser {
   }
 
  private:
-  /// Links that the first, the second, ... of arm joints in a row move.
+  /// Links that the first, second, ... joint of a row of arm joints move.
   using Row = std::vector<int>;
 
   static bool moves_alone(const Joint& joint) { return joint.movable() && !joint.mimic; }
 
-  /// Joints from this one on that move on their own, in the longest chain.
+  /// Returns how many joints move on their own in the longest chain from this joint on.
   [[nodiscard]] int depth_below(const Joint& joint) const { return depth_[joint.child_link] + moves_alone(joint); }
 
-  /// Arm joints from this one on that follow each other, in the longest row.
+  /// Returns how many arm joints follow each other in the longest row from this joint on.
   [[nodiscard]] int row_from(const Joint& joint) const {
     if (joint.type == Joint::Type::kFixed || mimics_above(joint)) return row_below_[joint.child_link];
     return is_arm_joint(joint) ? row_below_[joint.child_link] + 1 : 0;
   }
 
-  /// Whether there is a joint above a link, and one that an arm may lead through.
+  /// Returns true if there is a joint above a link, and one that an arm may lead through.
   bool leads_up_from(int link) const {
     const int joint = robot_.links[link].parent_joint;
     return joint >= 0 && robot_.joints[joint].type != Joint::Type::kFree;
   }
 
-  /// Turns on its own, as the joints of an arm do. One that others mimic moves a linkage, where the arm goes on behind it, else a
-  /// hand.
+  /// Returns true if a joint turns on its own, as those of an arm do. A joint that others mimic
+  /// moves a linkage if the arm goes on behind it, else a hand.
   bool is_arm_joint(const Joint& joint) const {
     return (joint.type == Joint::Type::kRevolute || joint.type == Joint::Type::kContinuous) && !joint.mimic &&
            (depth_[joint.child_link] > 0 || !leaders_.contains(static_cast<int>(&joint - robot_.joints.data()))) &&
@@ -142,7 +144,8 @@ class Guesser {
     return is_sensor_name(joint.name) || is_sensor_name(robot_.links[joint.child_link].name);
   }
 
-  /// Mimics a joint that carries it. It ends no row: build_arm() says of an arm through it what is not supported.
+  /// Returns true if a joint mimics one that carries it. Such a joint ends no row: build_arm()
+  /// reports that an arm through it is not supported.
   bool mimics_above(const Joint& joint) const {
     if (!joint.movable() || !joint.mimic) return false;
     for (int above = robot_.links[joint.parent_link].parent_joint; above >= 0;
@@ -151,7 +154,8 @@ class Guesser {
     return false;
   }
 
-  /// Whether an arm begins at a link, whatever turns above it: its maker's base, or the torso of several arms.
+  /// Returns true if an arm begins at a link, whatever turns above it: at its maker's base, or at
+  /// the torso of several arms.
   bool begins_at(int link) const {
     if (row_below_[link] < kLeast) return false;
     if (is_base_name(robot_.links[link].name)) return true;
@@ -159,7 +163,7 @@ class Guesser {
     return std::count_if(below.begin(), below.end(), [&](const Joint* joint) { return row_from(*joint) >= kLeast; }) > 1;
   }
 
-  /// The link and those fixed to it, from the link outwards.
+  /// Returns the link and those fixed to it, from the link outwards.
   std::vector<int> fixed_to(int link) const {
     std::vector<int> fixed{link};
     for (std::size_t k = 0; k < fixed.size(); ++k)
@@ -168,7 +172,7 @@ class Guesser {
     return fixed;
   }
 
-  /// A link fixed to this one that is called as tools are.
+  /// Returns a link fixed to this one that is named like a tool, none if there is none.
   std::optional<int> tool_link(int link) const {
     const std::vector<int> fixed = fixed_to(link);
     for (const char* const word :
@@ -196,14 +200,14 @@ class Guesser {
       std::vector<const Joint*> moving;
       for (const Joint* joint : children_[visit.link])
         if (depth_below(*joint) > 0) moving.push_back(joint);
-      // Where an arm branches, its hand begins, and so behind a flange.
+      // A hand begins where an arm branches, and behind a flange.
       const bool hand = whole && (moving.size() > 1 || (visit.row.back() == visit.link && tool_link(visit.link)));
       if (moving.empty() || hand) {
         if (whole) rows_.push_back(visit.row);
         continue;
       }
       for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {  // the first in the file is visited first
-        constexpr int kFinger = 4;                                           // movable joints, at most; so have heads and wheels
+        constexpr int kFinger = 4;                                           // joints, at most
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
         Visit next{(*joint)->child_link, (*joint)->type == Joint::Type::kFree ? Row() : visit.row};
         if (mimics_above(**joint)) {
@@ -243,8 +247,9 @@ class Guesser {
     }
   }
 
-  /// The one joint that leads on from a link; none where there are several. Cameras are passed by, and beside other links one with
-  /// none behind it that stands where this one does: it holds shapes for checks of collision.
+  /// Returns the one joint that leads on from a link, null if there are none or several. Cameras
+  /// are ignored, and so is, beside other links, a leaf fixed at the link's own place: it holds
+  /// collision shapes.
   const Joint* only_onwards(int link) const {
     constexpr double kSame = 1e-9;
     const Joint* found = nullptr;
@@ -271,8 +276,9 @@ class Guesser {
     return robot_.links[tip].name;
   }
 
-  /// The nearest link above the arm that is called base_link or the like, else the root; of six joints below one more that turns,
-  /// with which they would be seven, the link that it turns.
+  /// Returns the nearest link above the arm that is named like a base, else the root. For six
+  /// joints below another one that turns, with which they would be seven, it is the link that this
+  /// one turns.
   std::string base_name(int last, int joints) const {
     int link = last;
     for (int count = 0; leads_up_from(link); link = robot_.joints[robot_.links[link].parent_joint].parent_link) {

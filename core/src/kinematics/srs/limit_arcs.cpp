@@ -8,17 +8,17 @@ namespace swivel {
 
 namespace {
 
-constexpr double kRounding = 1e-12;  // rad, that a turn may lack
-constexpr double kDoubtful = 1e-6;   // vectors shorter than this do not tell on which side they lie
+constexpr double kRounding = 1e-12;  // rad, by which a whole turn may fall short
+constexpr double kDoubtful = 1e-6;   // shorter vectors do not tell on which side they lie
 
-/// Grows with the angle from -pi to pi, and is as precise.
+/// Returns a number that grows with the angle from -pi to pi, and is as precise.
 double order(const Angle& x) {
   const double part = x.sine / (std::abs(x.cosine) + std::abs(x.sine));
   if (x.cosine >= 0) return part;
   return x.sine >= 0 ? 2 - part : -2 - part;
 }
 
-/// Half the way from a to b, counter-clockwise.
+/// Returns the angle half-way from a to b, counter-clockwise.
 Angle between(const Angle& a, const Angle& b) {
   const double cosine = a.cosine * b.cosine + a.sine * b.sine, sine = a.cosine * b.sine - a.sine * b.cosine;
   if (cosine < 0) return Angle::of(b.sine - a.sine, a.cosine - b.cosine);  // the sum vanishes at half a turn
@@ -64,10 +64,10 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
     double order;
     Angle phi;
   };
-  std::array<End, 12> ends;  // of ranges: three joints, two ends, two roots
+  std::array<End, 12> ends;  // three joints, two ends of ranges, two roots
   std::size_t count = 0;
   const auto add = [&](const Angle& phi) { ends[count++] = {order(phi), phi}; };
-  // Where (p, q) has the direction `end`, given as rows.
+  // Adds the arm angles at which the rows p and q have the direction `end`.
   const auto meet = [&](const std::array<double, 3>& p, double p_sign, const std::array<double, 3>& q, const Angle& end) {
     const double c = p_sign * end.sine, s = end.cosine;
     for (const Angle& phi : roots(Wave{c * p[2] - s * q[2], c * p[1] - s * q[1], c * p[0] - s * q[0]}, 0))
@@ -89,7 +89,7 @@ void TripleLimits::arcs(const TripleCircle& circle, bool negative, std::vector<A
   count =
       static_cast<std::size_t>(std::unique(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(count), same) - ends.begin());
 
-  // What lies between two ends of ranges is all within them, or not.
+  // All angles between two neighbouring ends are within the ranges, or none is.
   std::array<bool, 12> inside{};
   for (std::size_t k = 0; k < count; ++k) {
     const Angle& a = ends[k].phi;

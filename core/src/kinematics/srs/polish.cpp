@@ -15,12 +15,13 @@ namespace swivel {
 
 namespace {
 
-/// v turned about a unit axis by the angle of that cosine and sine (Rodrigues).
+/// Returns v turned about a unit axis by the angle with that cosine and sine (Rodrigues).
 Vector3d turned(const Vector3d& v, const Vector3d& axis, double cosine, double sine) {
   return cosine * v + sine * axis.cross(v) + (1 - cosine) * axis.dot(v) * axis;
 }
 
-/// The rotation vector of a rotation matrix, rad; to the third order in the angle below a quarter turn, where it is not long.
+/// Returns the rotation vector of a rotation matrix, rad: exact above a quarter turn; below it the
+/// axis times the sine of the angle, whose error is of the third order in the angle.
 Vector3d rotation_vector(const Matrix3d& R) {
   if (R.trace() < 1) {
     const Eigen::AngleAxisd turn(R);
@@ -108,7 +109,8 @@ Config measure_misfit(const Chain& chain, const SrsArm& arm) {
   constexpr int kPostures = 400;
   constexpr double kLeastSine = 0.1;
   std::mt19937_64 engine(1);
-  const auto uniform = [&](double low, double high) {  // the same with every standard library
+  // gives the same numbers with every standard library
+  const auto uniform = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1.0p-53);
   };
   Config misfit = Config::Zero();

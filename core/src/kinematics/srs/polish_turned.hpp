@@ -6,8 +6,9 @@
 
 namespace swivel {
 
-/// polish() for the tool turned about its z axis as the seed turns it. `plane` and `tool` are those of the tool that is not turned;
-/// phi counts from the plane carried to the turned one.
+/// Refines joints to the exact chain (polish()) for the tool turned about its z axis as the seed's
+/// joints turn it. `plane` and `tool` belong to the tool that is not turned; phi (rad) counts from
+/// the plane carried to the turned tool.
 [[nodiscard]] std::optional<Config> polish_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
                                                   double phi, const Config& seed);
 

@@ -32,12 +32,13 @@ RowShift::RowShift(const Chain& chain, const SrsArm& arm)
 PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const {
   const std::size_t part = part_of(group);
   const PoseShift unknown = PoseShift::unknown(about_[part]);
-  if (group == kDof) return {about_[part], 0, 0};  // stands where the layer puts it
+  if (group == kDof) return {about_[part], 0, 0};  // the tool stands where the layer puts it
   // With a smaller sine a row might have flipped the elbow: polish() moves no joint by more than kMostPolished.
   constexpr double kLeastSine = 0.05;
   static_assert(kLeastSine >= kMostPolished);
   const double wrist =
-      shift_[kWrist];  // from where the fitted arm, at the row's joints, has its wrist centre to where it should be
+      // Distance of the fitted arm's wrist centre at the row's joints from where it should be.
+      shift_[kWrist];
   if (!(wrist < reach)) return unknown;
   const auto cosine = [&](double d) { return (d * d - upper_ * upper_ - fore_ * fore_) / (2 * upper_ * fore_); };
   const double most = std::max(std::abs(cosine(reach - wrist)), std::abs(cosine(reach + wrist)));
@@ -46,7 +47,8 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
   const double plane = 2 * std::asin(wrist / reach);                              // the plane of shoulder, elbow and wrist turns
   const double upper = plane + wrist / (upper_ * sine);                           // the upper arm turns
   const double fore = upper + (reach + wrist) * wrist / (upper_ * fore_ * sine);  // the forearm turns
-  // Of a direction that turns by this, how far its azimuth about an axis turns whose angle to it has this sine.
+  // A direction turns by `turn`; the sine of `angle` is that of its angle to an axis: returns how
+  // far its azimuth about that axis turns at most.
   const auto azimuth = [](double turn, double angle) {
     const double ratio = std::sin(turn) / std::abs(std::sin(angle));
     return turn < kPi / 2 && ratio < 1 ? std::asin(ratio) : std::numeric_limits<double>::infinity();
@@ -70,7 +72,7 @@ PoseShift RowShift::from_node(int group, double reach, const Config& q) const {
 }
 
 double RowShift::jacobian_change(double reach, const Config& q) const {
-  const double tool = from_node(kDof, reach, q).of(hand_);  // from where the layer has it
+  const double tool = from_node(kDof, reach, q).of(hand_);  // m, from where the layer has it
   const std::array<double, 3> from_tool{reach + hand_ + tool, fore_ + hand_ + tool, hand_ + tool};
   double squares = 0;
   for (int joint = 1; joint <= kDof; ++joint) {  // an axis turns, and its point next to the centre moves

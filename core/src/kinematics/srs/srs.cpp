@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMissTolerance = 1e-3;    // m: real URDFs carry 0.4 mm
 constexpr double kAngleTolerance = 10e-3;  // rad: pi written as 3.14 gives 1.6 mrad a joint
-constexpr double kExact = 1e-11;           // below this the fitted arm is the chain, to rounding
+constexpr double kExact = 1e-11;           // m, rad: below it the fitted arm is exact
 
 struct Line {
   Vector3d p, a;
@@ -23,7 +23,7 @@ struct Line {
 
 struct Crossing {
   double miss = 0;     // distance between the lines
-  double along_b = 0;  // of the crossing, along the second line from its point
+  double along_b = 0;  // place of the crossing along the second line, from its point
   double right = 0;    // deviation from a right angle
   Vector3d middle = Vector3d::Zero();
   bool parallel = false;
@@ -47,7 +47,8 @@ Crossing cross(const Line& first, const Line& second) {
   return result;
 }
 
-/// Axes i, i+1, i+2 (0-based) through one point, neighbours perpendicular; appends what is wrong.
+/// Returns the common point of axes i, i+1, i+2 (0-based), neighbours perpendicular; appends to
+/// `problem` what is wrong.
 Vector3d fit_centre(const std::array<Line, kDof>& line, std::size_t i, const char* what, FitDeviation& deviation,
                     std::string& problem) {
   const std::string names[2] = {"axes " + std::to_string(i + 1) + " and " + std::to_string(i + 2),
@@ -92,7 +93,8 @@ EulerTriple fit_triple(const Vector3d& first, const Vector3d& second, const Vect
   return triple;
 }
 
-/// Rows of B^T M B Ry(shift) needed for z-y-z, for one of the three matrices of R(phi) = A sin + B cos + C.
+/// Returns the entries (TripleCircle) of B^T M B Ry(shift) needed for z-y-z, for one of the three
+/// matrices of R(phi) = A sin + B cos + C.
 std::array<double, 5> triple_entries(const EulerTriple& triple, const Matrix3d& M) {
   const Matrix3d N =
       triple.basis.transpose() * M * triple.basis * Eigen::AngleAxisd(triple.shift, Vector3d::UnitY()).toRotationMatrix();

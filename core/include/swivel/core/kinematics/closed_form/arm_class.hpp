@@ -8,26 +8,30 @@
 
 namespace swivel {
 
-/// How the self-motion of an arm is explored.
+/// How the self-motion of an arm is found and divided into nodes.
 enum class ArmKind {
   kSrs,      ///< spherical shoulder and wrist, revolute elbow: a grid of arm angles
-  kArcs,     ///< a closed form with one joint locked: arcs of self-motion
-  kSampled,  ///< neither: arcs found by restarts and continuation alone
+  kArcs,     ///< closed form with one joint locked: arcs of self-motion
+  kSampled,  ///< neither: arcs found by Newton restarts and continuation, maybe not all
 };
 
+/// The class of an arm: which inverse kinematics it has.
 struct ArmClass {
   ArmKind kind = ArmKind::kSampled;
-  std::optional<SrsArm> srs;  ///< of kSrs
-  LockMethod lock;            ///< of the others
-  std::string not_srs;        ///< why the arm is not S-R-S: which axes miss each other, and by how much
-  /// "closed form" or "sampled": whether all solutions of a pose are known, or only those that turned up.
+  std::optional<SrsArm> srs;  ///< set for kSrs
+  LockMethod lock;            ///< set for the other kinds
+  std::string not_srs;        ///< why the arm is not S-R-S: which axes miss each other, by how much
+  /// Returns true if all solutions of a pose are found, false if only those that sampling meets.
   [[nodiscard]] bool complete() const { return kind != ArmKind::kSampled; }
+  /// Returns "closed form" or "sampled", see complete().
   [[nodiscard]] const char* completeness() const { return complete() ? "closed form" : "sampled"; }
-  /// The method in a line, for people.
+  /// Returns the inverse kinematics of the arm in one line for people.
   [[nodiscard]] std::string method() const;
 };
 
-/// Of a chain of seven joints; of six joints and the turn of the tool about its own axis, that turn is the seventh.
+/// Returns the class of a chain: S-R-S where fit_srs() succeeds, else by lock_method(). The roll of
+/// the tool counts as the seventh joint of an arm of six, which is never S-R-S. `source` is the
+/// file for messages. Throws InputError for a seven-joint chain with a free roll that is not S-R-S.
 [[nodiscard]] ArmClass classify(const Chain& chain, const std::string& source);
 
 }  // namespace swivel

@@ -6,18 +6,20 @@
 
 namespace swivel {
 
-/// Where the outer axes of a triple are one line, so that they swing against each other while the middle one stands: a singular
-/// pose of a spherical shoulder or wrist.
+/// A joint angle at which the axes on both sides of the joint are one line (or, where three
+/// parallel axes follow or precede, have one direction), so that they swing against each other
+/// while this joint stands: a singular pose of a spherical shoulder or wrist, or of the elbow.
 struct Alignment {
-  int joint;     ///< the middle one, 0-based
-  double angle;  ///< rad, its value there
+  int joint;     ///< the joint between the two axes, 0-based
+  double angle;  ///< its angle there, rad
 
-  /// "shoulder", "elbow" or "wrist".
+  /// Returns which part of the arm it is: "shoulder", "elbow" or "wrist".
   [[nodiscard]] const char* where() const;
-  /// rad, of the joint from there.
+  /// Returns how far the joint is from the alignment in q, in [0, pi] rad.
   [[nodiscard]] double away(const Config& q) const;
 };
-/// Of three neighbouring axes that meet in a point, and of the three before or behind three parallel ones.
+/// Returns the alignments of every three neighbouring axes that meet in a point, and of the three
+/// axes before or behind three parallel ones.
 [[nodiscard]] std::vector<Alignment> alignments_of(const Chain& chain);
 
 }  // namespace swivel

@@ -7,8 +7,10 @@
 
 namespace swivel {
 
-/// The posture nearest to q, along its self-motion at the pose of its tool, that is allowed: tried on both sides, ever further, up
-/// to `farthest` (rad, Euclidean length in the joints). None where there is none, or where q is singular.
+/// Returns an allowed posture near q (rad) on the self-motion at its tool pose: q itself if it is
+/// allowed, else the first that is found on either side, in growing steps, until `farthest` (rad,
+/// Euclidean length in joint space) has been passed. Returns none if none is allowed or q is
+/// singular.
 [[nodiscard]] std::optional<Config> posture_beside(const Chain& chain, const Config& q, double farthest,
                                                    const std::function<bool(const Config&)>& allowed);
 

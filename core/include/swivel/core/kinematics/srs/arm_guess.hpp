@@ -8,23 +8,29 @@
 
 namespace swivel {
 
-/// An arm of a robot whose links have not been named.
+/// An arm found in a robot model, by the names of its links.
 struct ArmGuess {
   std::string base, tip;
-  int joints = kDof;  ///< 7, or 6: an arm for paths with a roll
+  int joints = kDof;  ///< 7, or 6 for an arm that needs a path with a roll
 };
 
+/// The arms found in a robot model.
 struct ArmGuesses {
   std::vector<ArmGuess> arms;
-  std::vector<std::string> longest_row;  ///< names of the joints of the longest row that there is, for messages
+  /// Names of the joints of the longest row of arm joints, for messages.
+  std::vector<std::string> longest_row;
 };
 
-/// Every arm of at least six joints that turn, one a chain, in the order of the file: S-R-S arms first, then others of seven
-/// joints, then those of six. Of a longer row the last seven joints are taken. A row begins anew at a link that is called as bases
-/// of arms are (base_link, link_0, ...) and where several arms part. It ends where links part (a hand), at a link called tool0,
-/// tcp, flange, ee or the like, and at joints that slide, mimic or are called as fingers and cameras are; joints of legs are none
-/// of an arm. Linkages beside the arm, whose joints mimic its own, are passed by. Tips are the links called as tools are that are
-/// fixed to the last link, else the last link before the hand.
+/// Returns every arm of a robot model that has at least six joints that turn, one for each tip:
+/// first S-R-S arms, then others of seven joints, then those of six, each in the order of the file.
+/// Of a longer row of joints the last seven count.
+///
+/// A row of joints begins anew at a link named like the base of an arm (base_link, link_0, ...) and
+/// where several arms part. It ends where links part (a hand), at a link named tool0, tcp, flange,
+/// ee or the like, and at joints that slide, mimic another or are named like fingers or cameras.
+/// Joints of legs do not count, and linkages beside the arm, whose joints mimic its own, are
+/// ignored. The tip is a link fixed to the last one that is named like a tool, else the last link
+/// before the hand.
 [[nodiscard]] ArmGuesses guess_arms(const RobotModel& robot);
 
 }  // namespace swivel
