@@ -33,7 +33,7 @@ ArcLengths::ArcLengths(const Chain& chain, const ToolPath& path, std::vector<Con
 
 ArcLengths::~ArcLengths() = default;
 
-/// Adds a point to the end of a side.
+/// Adds a point to the end of one side of a curve. Returns false where the curve ends.
 bool ArcLengths::follow(Curve& curve, std::size_t side, const Pose& tool) const {
   constexpr double kLongest = 0.1, kShortest = 1e-3;  // rad
   constexpr double kStraight = 0.97, kAside = 0.2;    // cosine of the turn of the tangent; of the step
@@ -45,7 +45,7 @@ bool ArcLengths::follow(Curve& curve, std::size_t side, const Pose& tool) const 
     if (!found || (found->q - guess).norm() > kAside * step) continue;
     const double turn = found->tangent.dot(last.tangent);
     if (std::abs(turn) < kStraight) continue;
-    // The length of the circle through both with these tangents.
+    // The length of the circle arc through both points with these tangents.
     const double half = std::acos(std::min(1.0, std::abs(turn))) / 2, chord = (found->q - last.q).norm();
     const double length = half > 1e-6 ? chord * half / std::sin(half) : chord;
     curve.side[side].push_back({found->q, turn < 0 ? Config(-found->tangent) : found->tangent, last.length + length});

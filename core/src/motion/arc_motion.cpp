@@ -10,7 +10,7 @@ namespace swivel {
 ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows,
                      double apart, double off_limits, const std::vector<BetweenRow>& between)
     : PathMotion(chain, path, rows, apart, between), lock_(lock), newton_(chain), alignments_(alignments_of(chain)) {
-  // The roll is aligned with nothing that would have to move fast.
+  // An alignment with the axis of the roll makes no joint of the arm move fast.
   if (chain.roll) std::erase_if(alignments_, [](const Alignment& a) { return a.joint + 2 == kDof; });
   move_off_limits(off_limits);
   for (Eigen::Index j = 0; j < kDof; ++j) {
@@ -22,7 +22,7 @@ ArcMotion::ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath&
 }
 
 void ArcMotion::move_off_limits(double by) {
-  constexpr double kFarthest = 0.1;  // rad, that other joints may move for it
+  constexpr double kFarthest = 0.1;  // rad: most that other joints may move
   for (std::size_t k = 1; k + 1 < rows_.size(); ++k)
     for (std::size_t j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_->limit[j];
@@ -48,12 +48,14 @@ std::optional<Config> ArcMotion::joints(double travel) const {
   for (std::size_t j = 0; j < kDof; ++j) q[static_cast<Eigen::Index>(j)] = spline_[j].at(travel);
   const auto near = newton_.nearest(q, tool, Config::Ones(), kSteps);
   if (!near) return std::nullopt;
-  // One step more, so that joints are as smooth as their digits go: jerks are differences over milliseconds.
+  // One more step makes joints as smooth as their digits allow: jerks are differences over
+  // milliseconds.
   const auto exact = newton_.nearest(near->q, tool, Config::Ones(), 1);
   return exact ? exact->q : near->q;
 }
 
-/// Whether joints go on from x0 to x1: halves that are no shorter than the whole, down to nothing, tell of a jump.
+/// Returns true if joints go on continuously from q0 at x0 to q1 at x1. Halves that are hardly
+/// shorter than the whole, down to nothing, show a jump.
 bool ArcMotion::leads_over(double x0, const Config& q0, double x1, const Config& q1) const {
   constexpr double kSmall = 1e-3, kUneven = 0.75;  // rad, and of the whole
   const double whole = (q1 - q0).norm();

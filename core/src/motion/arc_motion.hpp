@@ -7,7 +7,8 @@
 
 namespace swivel {
 
-/// Of arms without an arm angle (path_motion.hpp): a spline of the joints, moved onto the path.
+/// The motion of an arm without an arm angle (make_path_motion()): a spline of the joints, moved
+/// onto the path.
 class ArcMotion final : public PathMotion {
  public:
   ArcMotion(const Chain& chain, const LockMethod& lock, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,

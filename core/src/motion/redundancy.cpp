@@ -20,7 +20,8 @@ namespace swivel {
 
 namespace {
 
-/// Joints at an arm angle, of the row's branch and the images nearest to its joints.
+/// Returns the joints at an arm angle, with the row's branch and the whole turns nearest to its
+/// joints.
 std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
                                   const std::array<ElbowCircle, 2>& circles, const Pose& tool, double angle,
                                   const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
@@ -32,7 +33,8 @@ std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const A
   return q;
 }
 
-/// The arm angle of each layer, about the angle that it had; branches and joint images stay.
+/// Solves for the joints of each layer from its arm angle; branches and whole turns of joints stay
+/// those of the rows.
 class ArmAngles final : public LayerSolver {
  public:
   ArmAngles(const SrsLattice& lattice, const std::vector<TrajectoryRow>& rows) : lattice_(&lattice), rows_(&rows) {
@@ -105,10 +107,11 @@ class ArmAngleRedundancy final : public Redundancy {
   SrsLattice grid_;
 };
 
-/// The roll of each layer, about the one that it had; arm angles, branches and joint images stay.
+/// Solves for the joints of each layer from the roll; arm angles, branches and whole turns of
+/// joints stay those of the rows.
 class Rolls final : public LayerSolver {
  public:
-  /// `rows`: phi is the roll; `angles`: their arm angles.
+  /// Takes rows whose phi is the roll, and their arm angles.
   Rolls(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<ArmPlane>& planes,
         const std::vector<TrajectoryRow>& rows, std::vector<double> angles)
       : chain_(&chain), arm_(&arm), path_(&path), planes_(&planes), rows_(&rows), angles_(std::move(angles)) {}
@@ -135,7 +138,7 @@ class RollRedundancy final : public Redundancy {
  public:
   RollRedundancy(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget)
       : arm_(&arm),
-        // Without nodes, which refinement has no use for.
+        // The lattice has no nodes: refinement does not need them.
         lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
         planes_(carried_planes(arm, path, budget)),
         roll_slope_(problem.limits.roll_slope),
@@ -193,7 +196,7 @@ class ArcLengthRedundancy final : public Redundancy {
  public:
   ArcLengthRedundancy(const Chain& chain, const ArmClass& arm, const ToolPath& path, const Problem& problem)
       : arm_(&arm),
-        // Without nodes, which refinement has no use for.
+        // The lattice has no nodes: refinement does not need them.
         lattice_(chain, path, problem, std::vector<std::vector<ExplicitLattice::Point>>(static_cast<std::size_t>(path.size()))),
         alignments_(alignments_of(chain)) {}
   [[nodiscard]] const Lattice& lattice() const override { return lattice_; }

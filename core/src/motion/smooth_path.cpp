@@ -12,16 +12,16 @@ namespace swivel {
 
 namespace {
 
-constexpr double kChange = 1e3;      // weight of a coordinate that changes too much
+constexpr double kChange = 1e3;      // weight of too large a change of the coordinate
 constexpr double kLeastMove = 1e-9;  // rad; rounds off the tip of the norm
 constexpr double kLeastRoll = 1e-5;  // rad; rounds off the tip of the roll's cost, at which optima stand
 
-/// Joints of all layers at given coordinates, and their derivatives by them.
+/// Joints of all layers at given coordinates, and their first two derivatives by them.
 struct Layers {
   std::vector<Config> q, first, second;
 };
 
-/// Coefficients of the second divided difference, and the mean step.
+/// Coefficients of the second divided difference at a layer, and the mean step h.
 struct Bend {
   std::array<double, 3> c{};
   double h = 0;
@@ -68,7 +68,8 @@ class Objective {
     return sum;
   }
 
-  /// Fills gradient and the Hessian's diagonals 0, 1, 2 above; false where a derivative does not exist.
+  /// Computes the gradient g and the Hessian's diagonals 0, 1, 2 above the main one. Returns false
+  /// where a derivative does not exist.
   [[nodiscard]] bool derive(const std::vector<double>& x, Layers& l, std::vector<double>& g,
                             std::array<std::vector<double>, 3>& H) const {
     constexpr double kStep = 1e-4;
@@ -142,7 +143,7 @@ class Objective {
     n.way = n.spread.cwiseProduct(r / n.length);
     return n;
   }
-  /// Each to an even power, >= 0, by products alone.
+  /// Returns each entry of r to an even power >= 0, by products alone.
   static Config raised(const Config& r, int power) {
     Config result = Config::Ones(), square = r.cwiseAbs2();
     for (int left = power / 2; left > 0; left /= 2) {
@@ -163,7 +164,8 @@ class Objective {
   std::vector<Bend> bends_;
 };
 
-/// Solves (H + shift) p = -g over the free coordinates, where p is as given elsewhere, by L D L^T; false unless positive definite.
+/// Solves (H + shift) p = -g over the free coordinates, where p is as given for the others, by L D
+/// L^T. Returns false unless the matrix is positive definite.
 bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, const std::vector<bool>& free,
                  double shift, std::vector<double>& p) {
   const std::size_t n = g.size();
@@ -196,9 +198,10 @@ bool newton_step(const std::array<std::vector<double>, 3>& H, const std::vector<
   return true;
 }
 
-/// The same inside the boxes, by a primal-dual active set (Hintermueller, Ito and Kunisch 2002): coordinates that would leave their
-/// box end on the bound, and those whose bound holds them back no more are free again, all at once: one at a time would need as
-/// many steps as a path has layers on bounds. Where that does not settle, bounds are only added.
+/// Computes a newton_step() inside the boxes by a primal-dual active set (Hintermueller, Ito and
+/// Kunisch 2002). Coordinates that would leave their box end on the bound, and those whose bound no
+/// longer holds them back are free again, all at once: one at a time would need as many steps as a
+/// path has layers on bounds. Where that does not settle, bounds are only added.
 bool newton_step_inside(const std::array<std::vector<double>, 3>& H, const std::vector<double>& g, std::vector<bool> free,
                         double shift, const std::vector<double>& x, const std::vector<CoordinateBox>& boxes,
                         std::vector<double>& p) {
@@ -263,7 +266,7 @@ std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObject
     bool better = false;
     while (!better && shift <= kLastShift) {
       if (newton_step_inside(H, g, free, shift, x, boxes, p)) {
-        // A step of Newton's gains half of that.
+        // A Newton step gains half of g . p.
         done = shift == 0 && std::abs(std::inner_product(g.begin(), g.end(), p.begin(), 0.0)) < kGain * (1 + value);
         for (std::size_t i = 0; i < x.size(); ++i) next[i] = std::clamp(x[i] + p[i], boxes[i].low, boxes[i].high);
         if (f.solve(next, q)) {

@@ -12,7 +12,8 @@ namespace swivel {
 
 namespace {
 
-/// Of the directions to the corners, edges and faces of a cube the one that lies furthest from all u and -u.
+/// Returns the direction, of those to the corners, edges and faces of a cube, that is furthest from
+/// all u and -u.
 Vector3d clearest_direction(const std::vector<ArmPlane>& planes) {
   Vector3d best = Vector3d::UnitZ();
   double most = -1;

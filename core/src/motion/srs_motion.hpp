@@ -6,7 +6,7 @@
 
 namespace swivel {
 
-/// Of S-R-S arms (path_motion.hpp): a spline of the arm angle.
+/// The motion of an S-R-S arm (make_path_motion()): a spline of the arm angle.
 class SrsMotion final : public PathMotion {
  public:
   SrsMotion(const Chain& chain, const SrsArm& arm, const ToolPath& path, const std::vector<TrajectoryRow>& rows, double apart,
@@ -19,7 +19,7 @@ class SrsMotion final : public PathMotion {
   [[nodiscard]] ArmPlane still_plane(const Pose& tool) const;
 
   const SrsArm* arm_;
-  std::vector<ArmPlane> planes_;      // carried, of layers, for a tool that is not turned
+  std::vector<ArmPlane> planes_;      // carried from layer to layer, for a tool that is not turned
   Vector3d still_;                    // the direction that stands still
   std::optional<CubicSpline> angle_;  // from the direction that stands still
 };

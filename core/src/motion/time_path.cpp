@@ -16,19 +16,22 @@ namespace {
 
 bool roll_allowed(const Chain& chain, const ToolPath& path, double travel, const TrajectoryRow& row) {
   if (!chain.tool_may_turn()) return true;
-  const double roll = roll_of(chain, row), slack = std::max(0.9 * path.rounding(), 5e-7);  // rad; the check allows a little more
+  // rad; check allows a little more
+  const double roll = roll_of(chain, row), slack = std::max(0.9 * path.rounding(), 5e-7);
   const auto within = [&](const Roll& range) { return roll >= range.lower - slack && roll <= range.upper + slack; };
   return within(path.window_at(travel)) && (!chain.free_roll || chain.free_roll->circle() || within(*chain.free_roll));
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kTarget = 0.99;  // of the rates, by the analytic estimate; what is left covers interpolation
+// part of the rates, by the analytic estimate; the rest is for interpolation
+constexpr double kTarget = 0.99;
 
 double angle_between(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-/// Weights of values at five places for their first three derivatives at x: Fornberg 1988.
+/// Returns the weights of values at five places for the value and first three derivatives at x.
+/// Source: Fornberg 1988.
 Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
   Eigen::Matrix<double, 5, 4> c = Eigen::Matrix<double, 5, 4>::Zero();
   double c1 = 1, c4 = places[0] - x;
@@ -53,21 +56,23 @@ Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
   return c;
 }
 
-/// A motion's geometry at one place of its travel: derivatives of the joints by the travel, and the tool's speeds per m of it.
+/// A motion's geometry at one place of its travel: derivatives of the joints by the travel, and the
+/// tool's speeds per metre of it.
 struct Place {
   double x = 0;  // m of travel
   Config q, first, second, third;
   double along = 0, turning = 0;  // m/m and rad/m
-  double chord = 0;               // 1/m: over a straight move of the joints, so much of its travel squared is what the tool strays
+  // 1/m: over a straight move of the joints the tool strays by this times the square of the travel.
+  double chord = 0;
 };
 
-/// What slows a place down.
+/// The joint and rate that slow a place down.
 struct Brake {
   int joint = -1;  // -1: the speed asked for
   JointRate rate = JointRate::kSpeed;
 };
 
-/// From one rest to the next: where the motion is, and how fast, at which time.
+/// The motion from one rest to the next: its place and speed at each time.
 class Piece {
  public:
   Piece(const JointRates& rates, const TimingOptions& options, std::vector<Place> places)
@@ -100,7 +105,7 @@ class Piece {
         pull_[k] = std::min(pull_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
       }
       if (!std::isfinite(asked_[k])) asked_[k] = joint_speed;
-      // Nothing moves: any speed will do.
+      // Nothing moves: any speed serves.
       const double any = places_.back().x - places_.front().x;
       if (!std::isfinite(asked_[k])) asked_[k] = any;
       if (!std::isfinite(cap_[k])) cap_[k] = any;
@@ -109,19 +114,19 @@ class Piece {
   }
 
   [[nodiscard]] double duration() const { return stretch_ * (end_ + filter_); }
-  /// At the speed asked for throughout.
+  /// Returns the time at the speed asked for throughout, s.
   [[nodiscard]] double ideal() const {
     double time = 0;
     for (std::size_t k = 1; k < n_; ++k) time += (places_[k].x - places_[k - 1].x) * 0.5 * (1 / asked_[k] + 1 / asked_[k - 1]);
     return time;
   }
 
-  /// Travel and its first three derivatives by time, the same at both ends of the filter's window before it.
+  /// Travel and its first three derivatives by time.
   struct State {
     double x = 0, speed = 0, acceleration = 0, jerk = 0;
     double from = 0, to = 0;  // travel of the unfiltered motion, half a window before and after
   };
-  /// Walks through a piece in time: cheap for times that ascend.
+  /// Evaluates a piece at times, cheaply for times that ascend.
   class Walk {
    public:
     explicit Walk(const Piece& piece) : piece_(&piece) {}
@@ -148,7 +153,8 @@ class Piece {
     double along = 0, turning = 0, asked = 0;
     std::size_t node = 0;
   };
-  /// By the travel, linear between places; `node` hints where, and is where.
+  /// Returns derivatives by the travel, linear between places. `node` is a hint for the place, and
+  /// is set to it.
   [[nodiscard]] Derivatives derivatives(double x, std::size_t& node) const {
     seek(x, node);
     const Place &a = places_[node], &b = places_[node + 1];
@@ -158,7 +164,8 @@ class Piece {
             u < 0.5 ? node : node + 1};
   }
 
-  /// Plans the speeds; verifies them and slows down where a joint is too fast, until none is. Returns the rounds.
+  /// Plans the speeds, verifies them and slows down where a joint is too fast, until none is.
+  /// Returns the rounds.
   int plan(const Budget& budget) {
     constexpr int kRounds = 60;
     for (int round = 1;; ++round) {
@@ -172,8 +179,9 @@ class Piece {
       }
     }
   }
-  /// After plan(). Where the joints have room left, places are passed faster and accelerations along the path rise, as long as that
-  /// gains time: to slow down costs acceleration and jerk of its own, and the first answer pays for it with more slowing down than
+  /// Speeds up the motion after plan(), where the joints have room left: places are passed faster
+  /// and accelerations along the path rise, as long as that gains time. Slowing down costs
+  /// acceleration and jerk of its own, and the first answer pays for it with more slowing down than
   /// is needed. Returns the rounds.
   int speed_up(const Budget& budget) {
     constexpr double kNearIdeal = 1.02, kUse = 0.99;  // of the time at the speed asked for; of the room
@@ -211,9 +219,10 @@ class Piece {
     return rounds;
   }
 
-  /// Slower as a whole.
+  /// Slows down the whole piece by a factor.
   void stretch(double factor) { stretch_ *= factor; }
-  /// By factors of speeds and of accelerations along the path, one for each place; plan() again then.
+  /// Slows down by factors of speeds and of accelerations along the path, one for each place;
+  /// plan() must follow.
   void slow_down(const std::vector<double>& slower, const std::vector<double>& gentler) {
     for (std::size_t k = 0; k < n_; ++k) slower_[k] *= slower[k], gentler_[k] *= gentler[k];
   }
@@ -221,7 +230,8 @@ class Piece {
   [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 
  private:
-  static constexpr double kShare = 0.9;     // of a joint's acceleration, for speeding up and slowing down along the path
+  // part of a joint's acceleration for speeding up and slowing down
+  static constexpr double kShare = 0.9;
   static constexpr double kNothing = 1e-3;  // of the rates
   static constexpr double kStill = 1e-9;    // m/m: the path only turns
   struct Raw {
@@ -239,7 +249,8 @@ class Piece {
     while (node + 2 < n_ && places_[node + 1].x <= x) ++node;
   }
 
-  /// Unfiltered speeds: the caps, each kept for as long before and after as the filter looks, and what accelerations allow.
+  /// Computes the unfiltered speeds: the caps, each kept for as long before and after as the filter
+  /// looks, within what accelerations allow.
   void profile() {
     std::vector<double> cap(n_);
     for (std::size_t k = 0; k < n_; ++k) cap[k] = cap_[k] * slower_[k];
@@ -270,7 +281,7 @@ class Piece {
     end_ = time_.back();
   }
 
-  /// The unfiltered motion at a time, and the area under its travel.
+  /// Returns the unfiltered motion at a time, and the integral of its travel over time.
   [[nodiscard]] Raw raw(double t, std::size_t& node) const {
     if (t <= 0) return {t * places_.front().x, places_.front().x, 0, 0};
     if (t >= end_) return {area_.back() + (t - end_) * places_.back().x, places_.back().x, 0, 0};
@@ -281,9 +292,11 @@ class Piece {
     return {area_[node] + u * (x + u * (v / 2 + u * a / 6)), x + u * (v + u * a / 2), v + u * a, a};
   }
 
-  /// The factor by which the motion as a whole would have to be slower. Where a joint is beyond its rates, what lies within the
-  /// filter's window is slowed down: accelerations along the path, to what the path's own bends leave; where these take nearly all,
-  /// the speed as well. Both by the whole excess where that takes too many rounds.
+  /// Returns the factor by which the motion as a whole would have to be slower. Where a joint
+  /// exceeds its rates and `may_slow_down`, what lies within the filter's window is slowed down:
+  /// accelerations along the path, to what the path's own bends leave; where these take nearly all,
+  /// the speed as well. With `both`, for motions that take too many rounds, both by the whole
+  /// excess.
   double verify(bool both, bool may_slow_down) {
     constexpr double kLeast = 0.5, kPath = 0.9;  // kPath: share of a rate that bends may take
     std::vector<double> slower(n_, 1), gentler(n_, 1);
@@ -342,13 +355,15 @@ class Piece {
   std::vector<double> cap_, pull_;        // m/s and m/s^2: what the joints allow
   std::vector<double> slower_, gentler_;  // factors of both, from verifying
   std::vector<Brake> brake_;
-  std::vector<double> used_;                 // most that a joint uses of its rates near each place, as verified last
-  std::vector<double> speed_, time_, area_;  // of the unfiltered motion, which is of constant acceleration between places
+  std::vector<double> used_;  // largest part of its rates that a joint uses near each place
+  // of the unfiltered motion: constant acceleration between places
+  std::vector<double> speed_, time_, area_;
   double filter_ = 0, end_ = 0, stretch_ = 1;
 };
 
-/// Places from one rest to the next: at least four a step, eight over what a corner is rounded, and finer ones next to the rests,
-/// since a speed that rises from place to place rises the more slowly the farther the first one is.
+/// Returns places from one rest to the next: at least four a step, eight on either side of a
+/// rounded corner, and finer ones next to the rests, since a speed that rises from place to place
+/// rises more slowly the farther the first one is.
 std::vector<double> places_between(const PathMotion& motion, double from, double to) {
   const ToolPath& path = motion.path();
   std::vector<double> knots{from};  // of the arm angle
@@ -366,7 +381,7 @@ std::vector<double> places_between(const PathMotion& motion, double from, double
   double most = 0;
   for (std::size_t k = 1; k < knots.size(); ++k) most = std::max(most, knots[k] - knots[k - 1]);
   std::vector<double> places{from};
-  const double least = 1e-3 * most / 4;  // nearer ones spoil the differences
+  const double least = 1e-3 * most / 4;  // nearer places spoil the differences
   for (const double x : merged) {
     const double h = x - places.back();
     if (h < least) continue;
@@ -393,7 +408,8 @@ std::vector<double> places_between(const PathMotion& motion, double from, double
   return graded;
 }
 
-/// Joints and tool at the places, and their derivatives by the travel.
+/// Computes joints and tool at the places, and their derivatives by the travel. Returns where the
+/// arm has no solution, none where it has one everywhere.
 std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, bool chords, std::vector<Place>& places) {
   const std::size_t n = xs.size();
   places.resize(n);
@@ -425,7 +441,8 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
     const std::size_t a = k > 0 ? k - 1 : 0, b = std::min(k + 1, n - 1);
     place.turning = angle_between(tool[a], tool[b]) / (xs[b] - xs[a]);
     if (!chords) continue;
-    // Half way along a straight move over a travel of h the joints are off by q'' h^2 / 8. Along the path that is a matter of time.
+    // Half-way along a straight move over a travel of h the joints are off by q'' h^2 / 8. What is
+    // along the path only shifts the time.
     const double least = 1e-4 / std::max(1.0, place.second.norm());
     const auto moved = [&](double by) -> Vector3d { return motion.chain().tool(place.q + by * place.second).translation(); };
     Vector3d off = (moved(least) - moved(-least)) / (2 * least);
@@ -435,7 +452,7 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
   return std::nullopt;
 }
 
-/// Sampled motion, and what is measured on the samples.
+/// The sampled motion, and its measures.
 class Samples {
  public:
   Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, std::vector<Piece>& pieces,
@@ -520,11 +537,12 @@ class Samples {
     return worst;
   }
 
-  /// Slows down where differences between samples are beyond the rates, or beyond the speeds asked of the tool: at corners they are
-  /// more than the places tell.
+  /// Slows down where differences between samples exceed the rates, or the speeds asked of the
+  /// tool: at corners they are larger than at the places.
   void slow_down(const TimedPath& out) {
     constexpr double kLeast = 0.5;
-    constexpr double kTool = 1.2;  // times the excess of the tool's speed: the places beside are at fault as well
+    // times the excess of the tool's speed: neighbouring places contribute
+    constexpr double kTool = 1.2;
     const auto n = static_cast<long long>(out.rows.size());
     std::vector<std::vector<double>> slower, gentler;
     for (const Piece& piece : *pieces_) slower.emplace_back(piece.places().size(), 1), gentler.push_back(slower.back());
@@ -576,7 +594,7 @@ class Samples {
       const Pose tool = motion_->chain().tool((out.rows[k - 1].row.q + out.rows[k].row.q) / 2);
       const Pose there = path.at_travel(middle);
       Vector3d off = tool.translation() - there.translation();
-      // Not along the path: that is a matter of time.
+      // What is along the path only shifts the time.
       const Vector3d way = tool_[k].translation() - tool_[k - 1].translation();
       if (way.norm() > 1e-12) off -= off.dot(way) / way.squaredNorm() * way;
       strayed_[k] = off.norm();
@@ -585,7 +603,8 @@ class Samples {
     }
   }
 
-  /// Stretches below 99.5 % of the speed asked for, but for those that begin or end at rest.
+  /// Finds the stretches below 99.5 % of the speed asked for, except those that begin or end at
+  /// rest.
   void find_slow(TimedPath& out) const {
     const std::size_t n = out.rows.size();
     const auto slow = [&](std::size_t k) { return asked_[k].share < 0.995; };
@@ -605,11 +624,12 @@ class Samples {
 
  private:
   struct Asked {
-    double share = 0;  // of the speed asked for, as it was lowered for the tool
+    double share = 0;  // part of the speed asked for, as lowered for the tool
     std::size_t piece = 0, node = 0;
   };
 
-  /// The difference of some order that ends at sample k, at rest before the first and after the last, by what the joint can do.
+  /// Returns the difference of an order (0 speed, 1 acceleration, 2 jerk) that ends at sample k, as
+  /// a part of what joint j can do; the arm rests before the first and after the last sample.
   [[nodiscard]] double ratio_at(const TimedPath& out, long long k, int order, int j) const {
     const auto n = static_cast<long long>(out.rows.size());
     const double dt = 1 / options_->rate;
@@ -620,11 +640,13 @@ class Samples {
     if (order == 1) return std::abs((step - before) / (dt * dt)) / rates_->acceleration[j];
     return std::abs((step - 2 * before + (q(k - 2) - q(k - 3))) / (dt * dt * dt)) / rates_->jerk[j];
   }
-  /// By how much the move that ends at a sample would have to be slower for the tool to stay as near its path as asked.
+  /// Returns the factor by which the move that ends at a sample would have to be slower for the
+  /// tool to stay as near its path as asked.
   [[nodiscard]] double slower_for_chord(std::size_t k) const {
     return options_->chord && strayed_[k] > *options_->chord ? std::sqrt(strayed_[k] / *options_->chord) : 1;
   }
-  /// What slow_down() made of the speed asked for about a place, so that the tool is no faster.
+  /// Returns the factor by which slow_down() has lowered the speed about a place, so that the tool
+  /// is no faster than asked.
   [[nodiscard]] double slowed_for_tool(std::size_t piece, std::size_t node) const {
     const std::vector<double>& factors = for_tool_[piece];
     double least = factors[node];
@@ -632,14 +654,16 @@ class Samples {
     if (node + 1 < factors.size()) least = std::min(least, factors[node + 1]);
     return least;
   }
-  /// Speed of the tool over the move that ends at sample k, by the speed asked for: the larger of its speed along and its turning.
+  /// Returns the tool's speed over the move that ends at sample k as a part of the speed asked for:
+  /// the larger of its speed along the path and in turning.
   [[nodiscard]] double tool_share(std::size_t k) const {
     if (k == 0) return 0;
     const double along = (tool_[k].translation() - tool_[k - 1].translation()).norm() * options_->rate / options_->speed;
     if (!options_->turn_speed) return along;
     return std::max(along, angle_between(tool_[k - 1], tool_[k]) * options_->rate / *options_->turn_speed);
   }
-  /// By how much the move that ends at a sample would have to be slower for the tool to be no faster than asked.
+  /// Returns the factor by which the move that ends at a sample would have to be slower for the
+  /// tool to be no faster than asked.
   [[nodiscard]] double slower_for_tool(std::size_t k) const {
     constexpr double kRounding = 5e-7;
     const double share = tool_share(k);
@@ -647,7 +671,8 @@ class Samples {
   }
   static double slower_by(double ratio, int order) { return order == 0 ? ratio : order == 1 ? std::sqrt(ratio) : std::cbrt(ratio); }
 
-  /// Speeds and accelerations of a row by differences over a few milliseconds.
+  /// Computes speeds and accelerations of a row from differences over a few milliseconds. Returns
+  /// false where the arm has no solution.
   bool differ(const Piece& piece, Piece::Walk& walk, double t, TimedRow& row) const {
     constexpr double kStep = 1e-3, kLeast = 1e-4;  // s
     const double step = std::min({kStep, t, piece.duration() - t});
@@ -660,7 +685,8 @@ class Samples {
   }
 
   void report_slow(TimedPath& out, std::size_t k, std::size_t end, bool starts, bool stops) const {
-    // Of a stretch that starts or stops the tool only what lies behind the first fastest, before the last fastest moment.
+    // Of a stretch that starts or stops the tool only the part after its first and before its last
+    // fastest moment counts.
     const auto rises = [&](std::size_t i) { return asked_[i + 1].share > asked_[i].share; };
     std::size_t first = k, last = end - 1;
     if (starts)
@@ -673,7 +699,7 @@ class Samples {
       if (asked_[i].share < asked_[lowest].share) lowest = i;
     const Asked& at = asked_[lowest];
     const Piece& piece = (*pieces_)[at.piece];
-    // The reason nearest to the slowest moment.
+    // Find the reason nearest to the slowest moment.
     Brake brake = piece.brake(at.node);
     for (std::size_t off = 1; brake.joint < 0 && off < 200; ++off) {
       if (at.node + off < piece.places().size()) brake = piece.brake(at.node + off);
@@ -695,16 +721,17 @@ class Samples {
   const TimingOptions* options_;
   std::vector<Piece>* pieces_;
   const Budget* budget_;
-  bool near_;  // samples tell speeds and accelerations
+  bool near_;  // true: samples are dense enough to give speeds and accelerations
   std::vector<double> travel_;
   std::vector<Pose> tool_;                     // at the samples
   std::vector<std::vector<double>> for_tool_;  // of pieces and places: factors of speeds, from the tool's excess
   std::vector<Asked> asked_;
-  std::vector<double> strayed_;  // m, of the tool between each sample and the one before
+  // m: how far the tool strays between each sample and the one before
+  std::vector<double> strayed_;
 };
 
-/// Completes the warning of an assumed rate where the motion goes as far as it allows, and takes longer than at the speed asked
-/// for.
+/// Returns the end of the warning about an assumed rate, where the motion goes as far as it allows
+/// and takes longer than at the speed asked for; else "".
 std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion, const Chain& chain) {
   constexpr double kLonger = 1.02, kReached = 0.9;  // motions are planned up to 0.99 of a rate, and slowed down to a little less
   TimedPath::Peak most;
@@ -759,7 +786,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
   }
   Samples samples(motion, rates, options, pieces, budget);
   constexpr int kLocalRounds = 12, kRounds = 32;
-  constexpr double kJump = 100;  // so much slower is not slower, but jumps in the joints that were not seen
+  constexpr double kJump = 100;  // an excess so large is a jump of the joints that was not seen
   for (int round = 1;; ++round) {
     result.failure = samples.take(out);
     if (result.failure) return result;

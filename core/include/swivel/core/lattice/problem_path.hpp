@@ -7,8 +7,10 @@
 
 namespace swivel {
 
-/// The layers of a problem: of its whole path, or from its start on. Corners are rounded by `problem.smooth`, by `otherwise` where
-/// that is unset. Throws InputError as ToolPath does, and for a start_at beyond the path. Throws Stopped.
+/// Returns the tool path of a problem in layers: its whole path, or from its start on. Corners are
+/// rounded by `problem.smooth`, by `otherwise` where that is unset. Throws InputError as ToolPath
+/// does, and for a start_at beyond the path; InvalidArgument where there are Task::rolls, but not
+/// one for each layer; Stopped.
 [[nodiscard]] ToolPath problem_path(const Problem& problem, const Chain& chain, const Budget& budget = {},
                                     const std::optional<PathSmoothing>& otherwise = {});
 

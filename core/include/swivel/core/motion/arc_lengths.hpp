@@ -12,28 +12,31 @@ namespace swivel {
 
 class PoseNewton;
 
-/// The joints of each layer of a path along its curve of self-motion: the coordinate is the length of the curve from the joints
-/// given, rad, of either sign. Limits are not asked. Curves are followed as far as they are asked about, until the arm is singular;
-/// so not for several threads at once. Deterministic, and independent of what was asked before.
+/// The joints of each layer of a path as a function of the length along its self-motion curve from
+/// given joints, rad, of either sign. Joint limits are ignored. Curves are followed as far as they
+/// are asked about, until the arm is singular; therefore an object must not be used by several
+/// threads at once. Deterministic, and independent of what was asked before.
 class ArcLengths final : public LayerSolver {
  public:
-  /// `origins`: by layer, at the layer's pose or near it. The path must outlive it.
+  /// Takes for each layer the joints that length 0 belongs to, at the layer's pose or near it. The
+  /// path must outlive this object.
   ArcLengths(const Chain& chain, const ToolPath& path, std::vector<Config> origins);
   ~ArcLengths() override;
 
   [[nodiscard]] int layers() const override { return static_cast<int>(curves_.size()); }
   [[nodiscard]] double travel(int layer) const override { return path_->layer(layer).travel; }
   [[nodiscard]] std::optional<Config> joints(int layer, double length) const override;
-  /// Of the joints half-way: nearest on the curve.
+  /// Returns the length at which the layer's curve is nearest to joints interpolated between those
+  /// of the layers before and after; 0 where it is not found.
   [[nodiscard]] double between(int layer, int before, double x, int after, double y) const override;
 
  private:
   struct Point {
-    Config q, tangent;  // away from the origin
+    Config q, tangent;  // tangent: points away from the origin
     double length = 0;
   };
   struct Curve {
-    std::array<std::vector<Point>, 2> side;  // points ahead and behind; the first of both is the origin
+    std::array<std::vector<Point>, 2> side;  // points ahead and behind; both begin with the origin
     std::array<bool, 2> ended{};
   };
   [[nodiscard]] std::optional<Point> point(int layer, double length) const;

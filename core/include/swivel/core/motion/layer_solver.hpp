@@ -6,17 +6,20 @@
 
 namespace swivel {
 
-/// The joints of a path as a function of one coordinate in each layer: what smooth optimisation knows of an arm.
+/// The joints along a path as a function of one coordinate in each layer: the interface of an arm
+/// for smooth_minimum().
 class LayerSolver {
  public:
   virtual ~LayerSolver() = default;
-  /// Layers, numbered from 0.
+  /// Returns the number of layers; they are numbered from 0.
   [[nodiscard]] virtual int layers() const = 0;
-  /// Joints at a coordinate of a layer, continuous in it; none where there are none. rad.
+  /// Returns the joints at a coordinate of a layer, rad, continuous in the coordinate; none where
+  /// the arm has none there.
   [[nodiscard]] virtual std::optional<Config> joints(int layer, double coordinate) const = 0;
-  /// Of a layer, ascending; m.
+  /// Returns the travel of a layer, m; it ascends.
   [[nodiscard]] virtual double travel(int layer) const = 0;
-  /// A coordinate of a layer for joints in between those of a layer before it, at x, and of one after it, at y.
+  /// Returns a coordinate of a layer for joints in between those of a layer before it, at
+  /// coordinate x, and of one after it, at y. By default it is linear in the travel.
   [[nodiscard]] virtual double between(int layer, int before, double x, int after, double y) const {
     const double t = (travel(layer) - travel(before)) / (travel(after) - travel(before));
     return x + t * (y - x);

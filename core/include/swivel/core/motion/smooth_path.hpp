@@ -8,28 +8,34 @@
 
 namespace swivel {
 
-/// What is to be least: sum |W dq_i|_p + sum roll_i |rho_i| + bending sum h_i |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2,
-/// |r|_p = (sum |r_j|^p)^(1/p), rho_i the last joint or the coordinate in (-pi, pi], q'' the second divided difference of the
-/// joints over the travel, h the mean of the steps on both sides, x the coordinates.
+/// The objective of smooth_minimum(): sum |W dq_i|_p + sum roll_i |rho_i| + bending sum h_i
+/// |q''_i|^2 + 1e3 sum max(0, |dx_i| - most_change)^2, where |r|_p = (sum |r_j|^p)^(1/p), rho_i is
+/// the last joint or the coordinate in (-pi, pi], q'' the second divided difference of the joints
+/// over the travel, h the mean of the steps on both sides, x the coordinates.
 struct SmoothObjective {
+  /// the diagonal of W, by joint
   std::array<double, kDof> weights{};
-  int power = 2;           ///< p, even; a large one comes near the largest |r_j|
+  int power = 2;           ///< p, even; a large one approximates the largest |r_j|
   double bending = 0;      ///< m^3
-  double most_change = 0;  ///< rad, of the coordinate from a layer to the next
-  /// Layers from which the joints jump to the next: bends across that step do not count.
+  double most_change = 0;  ///< most change of the coordinate from a layer to the next, rad
+  /// Layers from which the joints jump to the next: bends across such a step do not count.
   std::vector<int> jumps = {};
-  std::vector<double> roll = {};  ///< per rad, by layer; empty: none
+  std::vector<double> roll = {};  ///< cost of the roll per rad, by layer; empty: none
+  /// true: the roll is the coordinate; false: it is the last joint
   bool roll_is_coordinate = false;
 };
-/// Infinite where a layer has no joints.
+/// Returns the objective at coordinates x, infinite where a layer has no joints.
 [[nodiscard]] double smooth_cost(const LayerSolver& solver, const SmoothObjective& objective, const std::vector<double>& x);
 
+/// The range of one layer's coordinate, rad.
 struct CoordinateBox {
   double low = 0, high = 0;
 };
-/// A local minimum inside the boxes, from x on; never worse than x. Newton's method with derivatives by central differences, a
-/// pentadiagonal Hessian, Levenberg's shift where it is not positive definite, bounds by a primal-dual active set (Hintermueller,
-/// Ito and Kunisch 2002). Deterministic. Throws Stopped.
+/// Returns coordinates, within their boxes, of a local minimum of the objective that is sought from
+/// x on; it is never worse than x, brought into the boxes. Newton's method with derivatives by
+/// central differences, a pentadiagonal Hessian, Levenberg's shift where it is not positive
+/// definite, and bounds by a primal-dual active set (Hintermueller, Ito and Kunisch 2002).
+/// Deterministic. Throws Stopped.
 [[nodiscard]] std::vector<double> smooth_minimum(const LayerSolver& solver, const SmoothObjective& objective,
                                                  const std::vector<CoordinateBox>& boxes, std::vector<double> x,
                                                  const Budget& budget = {});
