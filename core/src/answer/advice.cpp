@@ -14,7 +14,7 @@ struct Limit {
   const char* key;
   const char* phrase;
   const char* unit;
-  double scale;  // of the unit that is shown
+  double scale;  // how many of the unit shown make one of the limit's
 };
 constexpr double kDegrees = 180 / kPi;
 constexpr Limit kLimits[] = {
@@ -31,7 +31,8 @@ constexpr Limit kLimits[] = {
     {Advice::Change::kStepError, "step_error", "step error", "rad", 1},
 };
 
-/// "10 mm along +y"; of a slanted way its three parts; "up to 20 mm" where no way was better than another.
+/// Returns an offset in words: "10 mm along +y", three numbers for a slanted one, "up to 20 mm" for
+/// zero, where no way was better than another.
 std::string words(const Vector3d& offset) {
   if (offset.isZero(0)) return formatted("up to %.3g mm", 1e3 * Advice::kMostMove);
   Eigen::Index axis = 0;

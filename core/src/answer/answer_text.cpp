@@ -13,7 +13,7 @@ namespace swivel {
 
 namespace {
 
-/// "joint a4 (0.3 deg beyond 120.00 deg)".
+/// Returns the cause in words and figures: "joint a4 (0.3 deg beyond 120.00 deg)".
 std::string cause_text(const Cause& cause, std::optional<double> most = {}) {
   const std::string by = figures(cause, most);
   return words(cause) + (by.empty() ? "" : " (" + by + ")");
@@ -30,7 +30,8 @@ std::string line_of(const EmptyLayers& run) {
   return line + ": no valid node: " + cause_text(run.cause, run.most) + '\n';
 }
 
-/// What else would have to go, or what going without the cause is worth.
+/// Returns a line that says what else must be removed besides the cause, or how far paths go
+/// without the cause.
 std::string without_text(const PlanResult& result) {
   const Diagnosis& d = result.diagnosis;
   if (!d.together.empty()) {

@@ -11,10 +11,10 @@ namespace swivel {
 /// One change of a problem that has no path, and what planning the changed problem gave.
 struct Advice {
   enum class Change {
-    kFreeStart,       ///< no start given
-    kFreeRoll,        ///< path.roll without bounds: a tool that may stand turned about its axis as it likes
-    kFiner,           ///< half the steps of the lattice, and Resolution::arcs
-    kClearance,       ///< limits.clearance, and self_clearance where that is what bars
+    kFreeStart,  ///< no start is given
+    kFreeRoll,  ///< path.roll without bounds: the tool may be turned about its axis freely
+    kFiner,  ///< half the steps of the lattice, and Resolution::arcs
+    kClearance,  ///< limits.clearance, and self_clearance where that stands in the way
     kJointMargin,     ///< limits.joint_margin
     kManipulability,  ///< limits.manipulability
     kArmSlope,        ///< limits.arm_slope
@@ -25,10 +25,12 @@ struct Advice {
     kPathError,       ///< limits.tool_path_error
     kAngleError,      ///< limits.tool_angle_error
     kStepError,       ///< limits.step_error
-    kDepth,           ///< an object whose bodies that may touch it (SceneObject::allow) may be deeper in it
-    kMoveObject,      ///< an object elsewhere, and the path with it where the path is given in its frame
-    kWithoutObject,   ///< an object gone
+    /// A greater depth to which bodies that may touch an object (SceneObject::allow) may be in it.
+    kDepth,
+    kMoveObject,  ///< an object moved, and the path with it if it is given in its frame
+    kWithoutObject,  ///< an object removed
   };
+  /// What planning the changed problem gave.
   enum class Outcome {
     kSolved,
     kFurther,  ///< no path either, but one comes further
@@ -36,23 +38,25 @@ struct Advice {
     kUnknown,  ///< not decided in time, or not tried
   };
 
-  static constexpr double kMostMove = 0.02;  ///< m, of kMoveObject
+  static constexpr double kMostMove = 0.02;  ///< most that kMoveObject moves an object, m
 
   Change change = Change::kFreeStart;
-  std::string object;              ///< of the last three
-  std::optional<double> from, to;  ///< of limits and kDepth: what was asked, and what this is about, in their units
-  Vector3d offset{0, 0, 0};        ///< of kMoveObject, m, base frame; zero where none of the ways helps
+  std::string object;  ///< name of the object, for kDepth, kMoveObject and kWithoutObject
+  /// For limits and kDepth: the value of the problem, and the changed one, in the problem's units.
+  std::optional<double> from, to;
+  /// For kMoveObject: the move in the base frame, m; zero where none helps.
+  Vector3d offset{0, 0, 0};
   Outcome outcome = Outcome::kUnknown;
-  std::optional<double> cost;       ///< of kSolved
-  std::optional<double> reached_s;  ///< of those that have no path, m
+  std::optional<double> cost;  ///< for kSolved: cost of the path
+  std::optional<double> reached_s;  ///< if there is no path: how far one comes, m along it
 };
 
-/// The name in files: "free_start", "clearance", ...
+/// Returns the name of a change in files: "free_start", "clearance", ...
 [[nodiscard]] const char* to_string(Advice::Change change);
-/// "solved", "further", "no_help", "unknown".
+/// Returns "solved", "further", "no_help" or "unknown".
 [[nodiscard]] const char* to_string(Advice::Outcome outcome);
-/// The change in a phrase: "clearance of 3.75 mm instead of 5 mm", "'rail' moved by 10 mm along +y", "contact
-/// with 'plate' up to 3.5 mm deep instead of 3 mm".
+/// Returns the change in a phrase: "clearance of 3.75 mm instead of 5 mm", "'rail' moved by 10 mm
+/// along +y", "contact with 'plate' up to 3.5 mm deep instead of 3 mm".
 [[nodiscard]] std::string words(const Advice& advice);
 
 }  // namespace swivel

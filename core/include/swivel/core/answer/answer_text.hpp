@@ -9,16 +9,20 @@
 
 namespace swivel {
 
-/// The answer for people, in one line: whether there is a path, and what it comes near to, as far as that was asked for. Where
-/// there is none, what ends every path, and a line for every run of layers that are empty for one cause.
+/// Returns the answer of a plan for people, in one line: whether there is a path, and what it comes
+/// near to, as far as that was asked for. Where there is no path, it says what ends every path,
+/// with further lines for every run of layers that are empty for one cause.
 [[nodiscard]] std::string answer_text(const PlanResult& result);
 
-/// A line for each change that was tried, what helps first.
+/// Returns a line for each change that was tried, and one for those that were not, in the order
+/// given.
 [[nodiscard]] std::string advice_text(const std::vector<Advice>& advice);
 
-/// What a certificate holds: layers, and what is removed by what.
+/// Returns what an infeasibility certificate of a size in bytes holds: its layers, and which causes
+/// remove how many nodes and edges.
 [[nodiscard]] std::string cut_text(const Cut& cut, std::size_t bytes);
-/// The same without its size, for one that was verified.
+/// Returns what an infeasibility certificate holds, without its size: its layers, and which causes
+/// remove how many nodes and edges.
 [[nodiscard]] std::string removed_text(const Cut& cut);
 
 }  // namespace swivel

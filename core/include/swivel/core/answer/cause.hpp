@@ -6,64 +6,70 @@
 
 namespace swivel {
 
-/// One thing that removes nodes or edges of a lattice, as a value: docs/model.md "Nodes", "Edges". Words are made by words() and
-/// figures(), for people alone; nothing reads them back.
+/// A cause for which nodes or edges of a lattice are removed, as a value: docs/model.md "Nodes",
+/// "Edges". words() and figures() describe it for people; nothing reads these texts back.
 struct Cause {
   enum class Kind {
     kNone,            ///< not found
-    kReach,           ///< the pose is too far for the arm (Side::kUpper), or too near (Side::kLower)
-    kSingular,        ///< axes or centres in line
-    kLimit,           ///< a joint beyond its limit less the margin
-    kManipulability,  ///< of Yoshikawa
-    kPair,            ///< two bodies nearer than they must keep
-    kContact,         ///< two bodies that touch: no smaller clearance would help
-    kArmSlope,        ///< moves that exist change the arm angle by more than allowed
-    kRollSlope,       ///< they turn the tool about its z axis by more than limits.roll_slope allows
-    kJointStep,       ///< by more than limits.joint_step
-    kSpeed,           ///< faster than a joint can, at the tool speed asked
-    kPathError,       ///< limits.tool_path_error
-    kAngleError,      ///< limits.tool_angle_error
-    kStepError,       ///< limits.step_error
-    kCheck,           ///< a StateCheck of the caller's refuses it
+    kReach,  ///< the pose is too far for the arm (Side::kUpper) or too near (kLower)
+    kSingular,  ///< axes or joint centres are in line
+    kLimit,  ///< a joint is beyond its limit less the margin
+    kManipulability,  ///< the manipulability (Yoshikawa) is too small
+    kPair,  ///< two bodies are nearer than they must keep
+    kContact,  ///< two bodies touch: no smaller clearance would help
+    kArmSlope,  ///< the arm angle would change by more than limits.arm_slope allows
+    kRollSlope,  ///< the roll would change by more than limits.roll_slope allows
+    kJointStep,  ///< a joint would move by more than limits.joint_step
+    kSpeed,  ///< a joint would be too fast at the tool speed asked for
+    kPathError,  ///< the tool would leave its path by more than limits.tool_path_error
+    kAngleError,  ///< the tool would turn off its path by more than limits.tool_angle_error
+    kStepError,  ///< the step error would exceed limits.step_error
+    kCheck,  ///< a StateCheck of the caller refuses it
   };
   enum class Side { kNone, kLower, kUpper };
 
   Kind kind = Kind::kNone;
-  Side side = Side::kNone;    ///< of kReach and kLimit
-  std::string joint;          ///< of kLimit, kRollSlope, kJointStep and kSpeed
-  bool other_joints = false;  ///< of kLimit: every node has several joints beyond their limits; `joint` is the furthest
-  /// Set for kLimit where the joint stands within its range but the path goes on past its end: it would have to unwind by a turn.
+  Side side = Side::kNone;  ///< for kReach and kLimit
+  std::string joint;  ///< for kLimit, kRollSlope, kJointStep and kSpeed: name of the joint
+  /// For kLimit: every node has several joints beyond their limits; `joint` is the furthest.
+  bool other_joints = false;
+  /// For kLimit: the joint stands within its range, but the path goes on past its end, so that it
+  /// would have to unwind by a turn.
   bool unwinds = false;
-  std::array<std::string, 2> bodies;  ///< of kPair and kContact
-  bool between_layers = false;        ///< of those and of kCheck: on motions only
-  std::string object;  ///< of those: a scene object that several bodies come too near to; `bodies` is one pair of them
-  /// What it is at the node or edge that misses least, and what is allowed: rad for joints and angles, else m; of manipulability
-  /// without a unit. None where it was not measured.
+  std::array<std::string, 2> bodies;  ///< for kPair and kContact: names of the bodies
+  bool between_layers = false;  ///< for kPair, kContact, kCheck: on motions alone
+  /// For kPair and kContact: name of a scene object that several bodies come too near to; `bodies`
+  /// is one pair of them.
+  std::string object;
+  /// The value at the node or edge that misses least, and the limit: rad for joints and angles, m
+  /// for lengths, no unit for manipulability. None where it was not measured.
   std::optional<double> value, limit;
-  /// Of kRollSlope: the travel for which `limit` is allowed, m. Of kPair where a depth is allowed: that depth, m, of which `limit`
-  /// leaves a part to the motions between layers.
+  /// For kRollSlope: the travel for which `limit` is allowed, m. For kPair where a depth is
+  /// allowed: that depth, m; `limit` is less by what the motions between layers need.
   std::optional<double> over;
-  std::string check;  ///< of kCheck: its name
+  std::string check;  ///< for kCheck: name of the check
 
   bool operator==(const Cause&) const = default;
 
-  /// By how much; none where it was not measured.
+  /// Returns how far the value is from the limit, none where it was not measured.
   [[nodiscard]] std::optional<double> by() const;
-  /// The unit of value and limit: "m", "rad", or "".
+  /// Returns the unit of value and limit: "m", "rad", or "".
   [[nodiscard]] const char* unit() const;
-  /// The same thing, whatever its value.
+  /// Returns true if two causes are the same but for their values. Two that name the same object
+  /// may name different bodies.
   [[nodiscard]] bool same_thing(const Cause& other) const;
 };
 
-/// The name in files: "limit", "pair", ...; "none".
+/// Returns the name of a kind in files: "limit", "pair", ..., "none".
 [[nodiscard]] const char* to_string(Cause::Kind kind);
-/// "lower", "upper"; "" of none.
+/// Returns "lower", "upper", or "" for kNone.
 [[nodiscard]] const char* to_string(Cause::Side side);
-/// One phrase: "no IK", "singular", "joint <name>", "joint limits", "<body> - <body>", "joint step", ...; "not known: time was up"
-/// of none.
+/// Returns the cause in a phrase: "no IK", "singular", "joint <name>", "joint limits", "<body> -
+/// <body>", "joint step", ...; "not known: time was up" for kNone.
 [[nodiscard]] std::string words(const Cause& cause);
-/// By how much, for people: "out of reach by 3 mm", "0.4 deg beyond -117.00 deg"; "" where it was not measured. `most`: of several
-/// places, the most that it misses by; the least is the cause's own.
+/// Returns by how much the cause misses, for people: "out of reach by 3 mm", "0.4 deg beyond
+/// -117.00 deg"; "" where it was not measured. `most` is the most that it misses by at one of
+/// several places; the cause's own value is the least.
 [[nodiscard]] std::string figures(const Cause& cause, std::optional<double> most = {});
 
 }  // namespace swivel

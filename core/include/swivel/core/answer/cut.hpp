@@ -9,59 +9,66 @@
 
 namespace swivel {
 
-/// A certificate that a problem has no path at its resolution: nodes and edges of some neighbouring layers, each removed by a
-/// witness, without which nothing leads through these layers. check_cut() verifies it from the problem alone; docs/theory.md says
+/// An infeasibility certificate: it proves that a problem has no path at its resolution. It lists
+/// nodes and edges of some neighbouring layers, each removed by a cause, without which nothing
+/// leads through these layers. check_cut() verifies it from the problem alone; docs/theory.md says
 /// why that is a proof.
 ///
-/// Of each layer some nodes are said to be *reached*. In the first layer every node is reached or removed. Every edge from a
-/// reached node leads to a reached node, or is removed, or its head is. In the last layer no node is reached.
+/// In each layer some nodes are marked as *reached*. In the first layer every node is reached or
+/// removed. Every edge from a reached node leads to a reached node, or is removed, or its head is.
+/// In the last layer no node is reached.
 struct Cut {
-  /// Slots first ... last.
+  /// The slots first ... last.
   struct Range {
     int first = 0, last = 0;
     bool operator==(const Range&) const = default;
   };
-  /// Nodes that one thing removes.
+  /// Nodes that one cause removes.
   struct Nodes {
     Range slots;
-    int witness = 0;  ///< index into `witnesses`
+    int witness = 0;  ///< index of the cause in `witnesses`
     bool operator==(const Nodes&) const = default;
   };
-  /// Edges that one thing removes: all that are left from reached nodes among the tails, slots of the layer before, to heads that
-  /// are neither reached nor removed.
+  /// Edges that one cause removes: all that are left from reached nodes among the tails, slots of
+  /// the layer before, to heads that are neither reached nor removed.
   struct Edges {
     Range tails, heads;
     int witness = 0;
-    std::int64_t count = 0;  ///< how many these are
+    std::int64_t count = 0;  ///< how many edges these are
     bool operator==(const Edges&) const = default;
   };
+  /// What is known of the nodes of one layer and the edges that lead to it.
   struct Layer {
-    int slots = 0;               ///< of the lattice: as many nodes as there can be
-    std::vector<Range> reached;  ///< ascending, like all that follow
+    int slots = 0;  ///< number of slots that the lattice has here
+    /// Slots of reached nodes, ascending, as all that follow.
+    std::vector<Range> reached;
     std::vector<Nodes> removed;
-    std::vector<Edges> edges;  ///< that lead here; by heads, then tails
+    std::vector<Edges> edges;  ///< edges that lead here; by heads, then tails
     bool operator==(const Layer&) const = default;
   };
 
   Resolution resolution;
   EdgeMode edges = EdgeMode::kContinuous;
-  /// Where bounded joints of more than a turn are taken as circles: ArcLattice::windings().
+  /// For lattices where bounded joints of more than a turn count as circles:
+  /// ArcLattice::windings().
   std::vector<std::array<bool, kDof>> windings;
-  int layers = 0;  ///< of the whole lattice
+  int layers = 0;  ///< layers of the whole lattice
   int first_layer = 0;
-  std::vector<Layer> band;       ///< that layer and those after it
-  std::vector<Cause> witnesses;  ///< kind, joint and side, bodies, name of a check; without values
+  std::vector<Layer> band;  ///< layers from `first_layer` on
+  /// The causes: kind, joint and side, bodies, name of a check; without values.
+  std::vector<Cause> witnesses;
   bool operator==(const Cut&) const = default;
 };
 
-/// What a cut consists of.
+/// How many nodes and edges a certificate removes by each cause, and how many nodes it reaches.
 struct CutCounts {
   struct Removed {
     std::int64_t nodes = 0, edges = 0;
   };
   std::vector<Removed> by_witness;
-  std::int64_t reached = 0;  ///< nodes
+  std::int64_t reached = 0;  ///< reached nodes
 };
+/// Counts the nodes and edges of a certificate.
 [[nodiscard]] CutCounts count(const Cut& cut);
 
 }  // namespace swivel

@@ -8,14 +8,15 @@
 
 namespace swivel {
 
-/// A lattice's path and what became of it.
+/// A lattice's path, refined or not, and how it changed.
 struct Refined {
-  std::vector<TrajectoryRow> rows;  ///< refined, or those given
+  std::vector<TrajectoryRow> rows;  ///< the refined rows, or those given
   bool refined = false;
-  std::string reason;                ///< why they are those given
-  double cost_before = 0, cost = 0;  ///< by the problem's metric
-  double bend_before = 0, bend = 0;  ///< the largest second divided difference of the joints over the tool's travel, rad/m^2
-  int rounds = 0;                    ///< of optimising and asking
+  std::string reason;  ///< why the rows are those given
+  double cost_before = 0, cost = 0;  ///< by the problem's cost metric
+  /// The largest second divided difference of the joints over the tool's travel, rad/m^2.
+  double bend_before = 0, bend = 0;
+  int rounds = 0;  ///< rounds of optimising and asking
   std::int64_t nodes_asked = 0, edges_asked = 0;
   bool from_second_seed = false;
 };
