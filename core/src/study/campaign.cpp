@@ -13,7 +13,7 @@ namespace swivel {
 
 namespace {
 
-/// k: of kCoordinates.
+/// Returns true if the k-th of kCoordinates varies.
 bool varies(const Variation& vary, int k) {
   return (k < 3 ? vary.xyz[k] : vary.rpy[k - 3]) != 0;
 }

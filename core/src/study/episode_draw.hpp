@@ -8,7 +8,8 @@
 
 namespace swivel {
 
-/// Calls back with each variation and the offset (m) and turn (roll, pitch, yaw, rad) drawn for it.
+/// Calls each(variation, offset (m), (roll, pitch, yaw) (rad)) with what is drawn for each
+/// variation in an episode.
 template <class Each>
 void draw_episode(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode, const Each& each) {
   SplitMix64 random(seed, episode);

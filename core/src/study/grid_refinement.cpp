@@ -51,7 +51,7 @@ std::vector<std::uint64_t> GridRefinement::next() {
   }
 }
 
-/// Every stride_-th along each axis, and the last.
+/// Returns every stride_-th cell along each axis, and the last.
 std::vector<std::uint64_t> GridRefinement::coarse_cells() const {
   std::vector<std::vector<int>> found{std::vector<int>(grid_.axes().size(), 0)};
   for (const std::size_t a : varied_) {
@@ -122,7 +122,7 @@ std::vector<std::uint64_t> GridRefinement::along_the_border() const {
   return listed(cells);
 }
 
-/// So many of them, spread evenly; they count as planned.
+/// Returns at most so many of the cells, spread evenly, and counts them as planned.
 std::vector<std::uint64_t> GridRefinement::at_most(std::vector<std::uint64_t> cells, std::size_t most) {
   most = std::min(most, left_);
   if (cells.size() > most) {

@@ -15,7 +15,8 @@ namespace swivel {
 
 namespace {
 
-/// Without the digits that rounding leaves behind: 0.1 + 0.2 is 0.3. Never -0.
+/// Returns a value without the digits that rounding leaves behind, as 0.3 for 0.1 + 0.2, and never
+/// -0.
 double tidy(double value) {
   constexpr double kMost = 1e3;  // beyond it products lose the digits that are to stay
   return std::abs(value) > kMost ? value : std::round(value * 1e12) / 1e12 + 0.0;
@@ -65,9 +66,10 @@ bool in_base_frame(const Problem& problem) {
 
 Vector3d written_rpy(const Matrix3d& r) {
   const double pitch = tidy(std::atan2(-r(2, 0), std::hypot(r(0, 0), r(1, 0)))), level = std::cos(pitch);
-  // Upright, roll and yaw turn about the same axis.
+  // With a pitch of a quarter turn, roll and yaw turn about the same axis.
   if (level < 5e-13) return {0, pitch, tidy(std::atan2(-r(0, 1), r(1, 1)))};
-  // The more upright, the less the rotation says of yaw, and the less yaw says of it: roll makes up for what is rounded away.
+  // The nearer the pitch is to a quarter turn, the less the rotation says of yaw, and the less yaw
+  // says of it: roll makes up for what is rounded away.
   const double scale = std::min(1e12, std::pow(10, std::floor(std::log10(level * 1e14))));
   const double yaw = std::round(std::atan2(r(1, 0), r(0, 0)) * scale) / scale + 0.0;
   const double c = std::cos(yaw), s = std::sin(yaw);

@@ -6,17 +6,21 @@
 
 namespace swivel {
 
-/// Capsules, or spheres where these do as well, whose union contains a mesh, its inside too where it is closed.
+/// Capsules (spheres where these suffice) whose union contains a mesh, with its inside where it is
+/// closed.
 struct CapsuleFit {
   std::vector<PlacedShape> capsules;  ///< in the mesh's frame
-  double volume = 0;                  ///< m^3, the sum of theirs: what they share counts twice
-  double excess = 0;                  ///< m, by which their hull stands further out than the mesh's where it does so most
+  double volume = 0;  ///< sum of the capsules' volumes, m^3; what they share counts twice
+  /// The most by which the hull of the capsules stands out beyond that of the mesh, m.
+  double excess = 0;
 };
 
-/// At most `most` of them, fewer where one more takes away less than a twentieth of the volume. One capsule has the least volume of
-/// a search over directions of its axis; along it the points are seen in their least circle (Welzl 1991). More capsules take the
-/// parts that planes cut off, each with all corners of its cut: capsules are convex, so the section is in both of two neighbours.
-/// Ends and radii are multiples of 1e-6 m, radii rounded up: numbers that a file can say. Deterministic.
+/// Encloses a mesh in at most `most` capsules, fewer where one more takes away less than a
+/// twentieth of the volume. A single capsule has the least volume of a search over directions of
+/// its axis; along it the points are enclosed in their smallest circle (Welzl 1991). Of several,
+/// each encloses a part that planes cut off, with all corners of its cut: capsules are convex, so
+/// both neighbours contain the section. Ends and radii are multiples of 1e-6 m, radii rounded up,
+/// so that a file can state them exactly. Deterministic.
 [[nodiscard]] CapsuleFit fit_capsules(const TriangleMesh& mesh, int most);
 
 }  // namespace swivel

@@ -10,60 +10,71 @@
 
 namespace swivel {
 
-/// Every count-th episode of a campaign, or every count-th placement, from `index` on: the share of one process.
+/// The share of one process in a campaign or a placement study: every count-th episode or
+/// placement, from `index` on.
 struct Shard {
   std::uint64_t index = 0, count = 1;
-  /// How many of all episodes or placements are in this share.
+  /// Returns how many of all episodes or placements are in this share.
   [[nodiscard]] std::uint64_t size(std::uint64_t episodes) const {
     return index < episodes ? (episodes - 1 - index) / count + 1 : 0;
   }
-  /// The number of its k-th one.
+  /// Returns the number of the share's k-th episode or placement.
   [[nodiscard]] std::uint64_t episode(std::uint64_t k) const { return index + k * count; }
 };
 
-/// The problem of episode `k` under seed `s`: objects named in `vary` moved (SplitMix64 seeded by (s, k) alone; in the order of
-/// `vary`, x y z r p y; p' = p + d, R' = Rz Ry Rx R about the object's origin).
+/// Returns the problem of an episode under a seed: the objects named in `vary` are moved. Offsets d
+/// (m) and angles (rad) are drawn by SplitMix64 seeded by (seed, episode) alone, in the order of
+/// `vary`, x y z roll pitch yaw: p' = p + d, R' = Rz Ry Rx R, about the object's origin.
 [[nodiscard]] Problem episode_problem(const Problem& problem, std::uint64_t seed, std::uint64_t episode);
 
-/// The coordinates in which episodes differ, as "door.x", in the order of `vary` and x y z roll pitch yaw.
+/// Returns the names of the coordinates in which episodes differ, such as "door.x", in the order of
+/// `vary` and x y z roll pitch yaw.
 [[nodiscard]] std::vector<std::string> varied_coordinates(const std::vector<Variation>& vary);
-/// By how much episode_problem() moves objects along them, m and rad.
+/// Returns by how much episode_problem() moves objects along the varied_coordinates(), m and rad.
 [[nodiscard]] std::vector<double> episode_offsets(const std::vector<Variation>& vary, std::uint64_t seed, std::uint64_t episode);
 
-/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards, and, where
-/// the path stays, but what was asked.
+/// One line of RESULTS.csv, docs/formats.md. All but plan_ms is independent of threads and shards.
+/// Counts depend on what was planned before, the others do not.
 struct EpisodeRow {
   std::uint64_t episode = 0;
   PlanStatus status = PlanStatus::kInfeasible;
-  std::optional<double> cost;  ///< set when solved, like the tool-path error
+  std::optional<double> cost;  ///< set when solved, like the tool-path errors
   double plan_ms = 0;
   std::int64_t nodes_checked = 0, fcl_calls = 0;
   std::optional<double> tool_path_error_mm_mean, tool_path_error_mm_max;
   std::optional<double>
-      failed_s;                 ///< m; where every path has ended; unset when solved, and where not even the first layer has a node
-  std::string cause;            ///< to_string(Cause::Kind) of what ends them there; empty when solved
-  std::string by;               ///< subject_of() that cause
-  std::string reason;           ///< the cause in words, or the message of an internal error; empty when solved
+      /// Furthest that a valid path comes, m along the path; none when solved, and where not even
+      /// the first layer has a node.
+      failed_s;
+  std::string cause;  ///< to_string(Cause::Kind) of what ends paths there; empty when solved
+  std::string by;  ///< what that cause is about, see subject_of()
+  /// The cause in words, or the message of an internal error; empty when solved.
+  std::string reason;
   std::vector<double> offsets;  ///< of the varied_coordinates(), m and rad
 
   EpisodeRow() = default;
-  /// Evidence::tool_path_error must have been asked for. `problem`: any episode's.
+  /// Takes an episode's row from its result, for which Evidence::tool_path_error must have been
+  /// asked. `problem` may be that of any episode.
   EpisodeRow(std::uint64_t episode, const PlanResult& result, const Problem& problem);
-  /// An episode that ended with an internal error.
+  /// Makes the row of an episode that ended with an internal error.
   EpisodeRow(std::uint64_t episode, std::string error_message);
 };
 
-/// Median and the range that holds nine tenths; zeros without values.
+/// The median and the 5th and 95th percentile; zeros without values.
 struct Spread {
   double median = 0, p5 = 0, p95 = 0;
 };
 
+/// How the episodes of a campaign ended, and how their figures spread.
 struct CampaignSummary {
-  std::uint64_t episodes = 0;  ///< asked for; less were answered if the campaign was interrupted
+  /// Episodes asked for; fewer have rows if the campaign was interrupted.
+  std::uint64_t episodes = 0;
   std::uint64_t solved = 0, infeasible = 0, errors = 0;
   Spread plan_ms, nodes_checked, fcl_calls;
+  /// Returns how many episodes were solved or proved infeasible.
   [[nodiscard]] std::uint64_t answered() const { return solved + infeasible; }
 };
+/// Summarises the rows of a campaign of so many episodes.
 [[nodiscard]] CampaignSummary summarize(const std::vector<EpisodeRow>& rows, std::uint64_t episodes);
 
 }  // namespace swivel

@@ -9,15 +9,19 @@
 
 namespace swivel {
 
-/// Which cells of a grid are worth planning: a coarse grid first; then, with half the stride each time, the neighbours of the best
-/// placements until those have none left, and the cells along the border between placements with a path and placements without.
-/// At most a third of the cells in all.
+/// Decides which cells of a grid of placements are worth planning: first a coarse grid; then, with
+/// half the stride each time, the neighbours of the best placements until those have none left, and
+/// the cells along the border between placements with a path and placements without. In all it
+/// takes at most a third of the cells (and at least one).
 class GridRefinement {
  public:
+  /// Begins with a grid and the criteria by which placements are compared.
   GridRefinement(PlacementGrid grid, std::vector<PlacementCriterion> criteria);
 
-  /// The next cells, in ascending order; none when done. What was asked for before must have been learned.
+  /// Returns the next cells to plan, in ascending order; none when done. Everything returned before
+  /// must have been learned.
   [[nodiscard]] std::vector<std::uint64_t> next();
+  /// Takes the result of a cell that next() returned.
   void learn(PlacementRow row);
 
  private:
@@ -31,10 +35,10 @@ class GridRefinement {
   std::vector<std::size_t> varied_;  // axes
   std::size_t left_;                 // cells that may still be planned
   int stride_ = 1;
-  std::size_t for_border_ = 0;  // of them, those along the border at this stride
+  std::size_t for_border_ = 0;  // of these, cells that may go to the border at this stride
   bool begun_ = false;
   std::vector<PlacementRow> rows_;
-  std::map<std::uint64_t, std::size_t> known_;  // cells, with their place in rows_
+  std::map<std::uint64_t, std::size_t> known_;  // cells, with their index in rows_
 };
 
 }  // namespace swivel

@@ -17,7 +17,8 @@ inline constexpr int kBranches = 8;
 /// Three consecutive axes through one point, neighbours perpendicular, seen as z-y-z: with B = [x y
 /// z], z the first axis and y the second, and `shift` the turn about y that brings the first axis
 /// onto the third,
-///   Rot(first, q_a) Rot(second, q_b) Rot(third, q_c) = B Rz(q_a) Ry(q_b + shift) Rz(q_c) Ry(-shift) B^T.
+///   Rot(first, q_a) Rot(second, q_b) Rot(third, q_c)
+///     = B Rz(q_a) Ry(q_b + shift) Rz(q_c) Ry(-shift) B^T.
 /// So any orthogonal triple (z-y-z, x-y-z, ...) has one closed form, singular where sin(q_b +
 /// shift) = 0.
 struct EulerTriple {
