@@ -125,7 +125,8 @@ TEST(Lattice, NodesWithOneElbowAreAsManipulable) {
   EXPECT_LT(most, 1e-11);  // a tenth of what a shared verdict needs
 }
 
-/// Of arms that are not exact, rows are asked: a verdict that all alike fail holds for each of them.
+/// For an arm that is not exact, rows are asked: a verdict that all nodes alike fail holds for each
+/// row.
 TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
   Random random(seed("Lattice.Unmanipulable"));
   std::int64_t rows = 0, too_few = 0, shared = 0, rounded_too_few = 0, rounded_shared = 0;

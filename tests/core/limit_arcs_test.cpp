@@ -155,7 +155,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
       LayerNodes nodes, run;
       for (int layer = 0; layer < lattice.layers(); ++layer) {
         lattice.solve(layer, nodes);
-        // The same bits in any run, around the circle as well.
+        // Any run, around the circle as well, gives the same bits.
         const int first = random.below(n), count = 1 + random.below(2 * n);
         lattice.solve(layer, first, count, run);
         std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);

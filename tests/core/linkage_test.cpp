@@ -17,7 +17,7 @@ namespace {
 
 using namespace test;
 
-/// The same robot with its links and joints in another order.
+/// Returns the robot with its links and joints in another order.
 RobotModel shuffled(const RobotModel& model, Random& random) {
   const auto order = [&](std::size_t count) {
     std::vector<int> to(count);  // by old place

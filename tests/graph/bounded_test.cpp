@@ -237,7 +237,8 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
   EXPECT_GT(tightest, 0.99);
 }
 
-/// What a relaxation is: every pair in turn. Partners of node k: from k on, or the same of all nodes.
+/// Relaxes pair by pair, as the definition says. Partners of node k are those from k on, or with
+/// `all` the same ones for every node.
 std::vector<double> relaxed_plainly(const RelaxTask<double>& task, bool all = false) {
   std::vector<double> best(static_cast<std::size_t>(task.n), kUnreachable);
   for (int k = 0; k < task.n; ++k)

@@ -17,7 +17,7 @@ using Points = std::vector<Vector3d>;
 
 constexpr double kGrain = 1e-6;      // m, of what files say
 constexpr double kLeastGain = 0.05;  // of the volume, that one capsule more must take away
-/// How hard an axis is sought.
+/// How thoroughly the axis of a capsule is sought.
 struct Effort {
   int directions;  // that are looked at
   int refined;     // the best of these are refined
@@ -26,7 +26,7 @@ struct Effort {
 constexpr Effort kThorough{64, 4, 400}, kQuick{24, 0, 100};
 constexpr double kFinest = 1e-3;  // rad, of an axis
 
-/// Evenly over the sphere (Fibonacci's spiral).
+/// Returns directions spread evenly over the sphere (Fibonacci's spiral).
 Vector3d spiral(int k, int count) {
   const double z = 1 - (2 * k + 1.0) / count, turn = k * kPi * (3 - std::sqrt(5.0)), r = std::sqrt(1 - z * z);
   return {r * std::cos(turn), r * std::sin(turn), z};
@@ -72,7 +72,7 @@ Circle about(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return {a + off, off.norm()};
 }
 
-/// The least circle, points in any order (Welzl 1991, without recursion).
+/// Returns the smallest circle around points, in any order (Welzl 1991, without recursion).
 Circle least_circle(const std::vector<Vector2d>& points) {
   Circle circle{points[0], 0};
   for (std::size_t i = 1; i < points.size(); ++i) {
@@ -88,7 +88,8 @@ Circle least_circle(const std::vector<Vector2d>& points) {
   return circle;
 }
 
-/// The capsule of least volume along a direction, among some radii from the least one on: a thicker one may be shorter.
+/// Returns the capsule of least volume along a direction, of several radii from the least one on: a
+/// thicker one may be shorter.
 Bar bar_along(const Vector3d& direction, const Points& points) {
   const Vector3d x = direction.unitOrthogonal(), y = direction.cross(x);
   std::vector<Vector2d> seen;
@@ -115,7 +116,8 @@ Bar bar_along(const Vector3d& direction, const Points& points) {
   return best;
 }
 
-/// Those that reach farthest in some direction: few, and nearly all that a capsule about them is held by.
+/// Returns the points that reach farthest in some direction: few points, and nearly all that decide
+/// a capsule around them.
 Points outermost(const Points& points, int supports) {
   if (points.size() <= static_cast<std::size_t>(supports)) return points;
   std::vector<std::size_t> kept;
@@ -134,7 +136,7 @@ Points outermost(const Points& points, int supports) {
   return result;
 }
 
-/// Axes of the points' covariance.
+/// Returns the axes of the points' covariance.
 Matrix3d principal_axes(const Points& points) {
   Vector3d mean = Vector3d::Zero();
   for (const Vector3d& p : points) mean += p / static_cast<double>(points.size());
@@ -143,7 +145,7 @@ Matrix3d principal_axes(const Points& points) {
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(spread).eigenvectors();
 }
 
-/// About all points, whose numbers files can say.
+/// Returns a capsule around all points whose numbers a file can state exactly.
 Bar bar_about(const Points& all, const Effort& effort) {
   const Points points = outermost(all, effort.supports);
   struct Tried {
@@ -182,7 +184,7 @@ Bar bar_about(const Points& all, const Effort& effort) {
   return bar;
 }
 
-/// A part of the mesh: convex polygons.
+/// A part of the mesh, as convex polygons.
 using Part = std::vector<Points>;
 
 Points corners_of(const Part& part) {
@@ -191,7 +193,7 @@ Points corners_of(const Part& part) {
   return corners;
 }
 
-/// What of the part lies where normal . p <= height; the cut belongs to both sides.
+/// Returns what lies of the part where normal . p <= height; the cut belongs to both sides.
 Part below(const Part& part, const Vector3d& normal, double height) {
   Part kept;
   for (const Points& polygon : part) {
@@ -212,13 +214,14 @@ struct Piece {
   Bar bar;
 };
 
-/// The two pieces of least volume that one of some planes makes of a piece; none where it cannot be cut.
+/// Returns the two pieces of least volume into which one of some planes cuts a piece; none where it
+/// cannot be cut.
 std::optional<std::array<Piece, 2>> cut_in_two(const Piece& piece) {
   const Points corners = outermost(corners_of(piece.part), kThorough.supports);
   const Matrix3d axes = principal_axes(corners);
   std::array<Vector3d, 4> normals{axes.col(2), axes.col(1), axes.col(0), piece.bar.b - piece.bar.a};
   if (normals[3].norm() > 0) normals[3].normalize();
-  // All cuts are fitted quickly, the best again.
+  // Fit all cuts quickly, then the best again.
   double least = std::numeric_limits<double>::infinity(), best_height = 0;
   Vector3d best_normal;
   for (const Vector3d& normal : normals) {

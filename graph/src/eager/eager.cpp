@@ -17,16 +17,17 @@ namespace {
 struct EdgeCost {
   double cost = 0;
 };
-/// Edges point from the goal towards the start, so that a search from the goal yields every node's cost-to-go and ties can be
-/// settled from layer 0 on. Vertex 0 is the goal, joined to every node of the last layer. What a node costs itself counts on the
-/// edges that lead to it.
+/// The explicit graph. Edges point from the goal towards the start, so that a search from the goal
+/// yields every node's cost-to-go and ties can be settled from layer 0 on. Vertex 0 is the goal,
+/// joined to every node of the last layer. The edges that lead to a node include what it costs
+/// itself.
 using Graph = boost::compressed_sparse_row_graph<boost::bidirectionalS, boost::no_property, EdgeCost>;
 using Vertex = boost::graph_traits<Graph>::vertex_descriptor;
 
 struct Built {
   Graph graph;
   std::vector<std::size_t> first;    // [layer] vertex of the layer's first node
-  std::vector<double> least_before;  // [layer] a lower bound on the cost from layer 0: the heuristic of A*
+  std::vector<double> least_before;  // [layer] a lower bound on the cost from layer 0
   [[nodiscard]] std::size_t layer_of(Vertex v) const {
     return static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), v) - first.begin()) - 1;
   }
@@ -90,13 +91,14 @@ Built build(const Lattice& lattice, const ValidNodes& valid, Validity& validity,
     }
     built.least_before[i + 1] = built.least_before[i] + (least == kUnreachable ? 0.0 : least);
   }
-  const PollingEdges polled{&budget};  // Boost reads the edges several times over, which takes seconds where there are many
+  // reading the edges, which Boost does several times, takes seconds
+  const PollingEdges polled{&budget};
   built.graph = Graph(boost::edges_are_unsorted_multi_pass, boost::make_transform_iterator(ends.begin(), polled),
                       boost::make_transform_iterator(ends.end(), polled), costs.begin(), vertices);
   return built;
 }
 
-/// Polls as a search goes.
+/// Polls the budget during a search.
 struct PollingVisitor : boost::default_dijkstra_visitor {
   const Budget* budget;
   mutable int count = 0;
@@ -119,7 +121,8 @@ std::vector<double> costs_to_go(const Graph& graph, const Budget& budget, EagerO
   return distance;
 }
 
-/// From the node that the answer begins at, smallest slots first among equal costs: vertices of a layer are numbered in slot order.
+/// Returns the best path from the node at which the answer begins, the smallest slots first among
+/// equal costs: vertices of a layer are numbered in slot order.
 SlotPath extract(const Lattice& lattice, const Built& built, const ValidNodes& valid, const std::vector<double>& distance,
                  double& cost) {
   cost = kUnreachable;

@@ -86,7 +86,7 @@ void eager_dp(const Lattice& lattice, Validity& validity, const Budget& budget, 
   if (at < 0) {
     try {
       outcome.deepest = deepest_layer(lattice, valid, validity, budget, outcome.edges);
-    } catch (const Stopped&) {  // that there is no path stays known
+    } catch (const Stopped&) {  // the fact that there is no path stays known
       outcome.deepest.reset();
     }
     return;

@@ -7,23 +7,30 @@
 
 namespace swivel {
 
-/// Every valid node of the lattice with its joints, layer by layer in slot order: what both eager planners start from.
+/// Every valid node of a lattice with its joints, layer by layer in slot order: what both eager
+/// planners start from.
 struct ValidNodes {
   using Node = Lattice::Node;
   std::vector<std::vector<Node>> layers;
-  std::vector<std::vector<double>> costs;  ///< of the nodes themselves; empty where none costs anything
+  /// What the nodes themselves cost; empty where none costs anything.
+  std::vector<std::vector<double>> costs;
+  /// Returns what the k-th valid node of a layer costs.
   [[nodiscard]] double cost(std::size_t layer, std::size_t k) const { return costs.empty() ? 0.0 : costs[layer][k]; }
 };
-/// Asks about every node that exists; adds to `ik_nodes` those that were solved. Throws Stopped.
+/// Returns the valid nodes of a lattice: it asks about every node that exists. Adds to `ik_nodes`
+/// those whose IK was solved. Throws Stopped.
 [[nodiscard]] ValidNodes find_valid_nodes(const Lattice& lattice, Validity& validity, const Budget& budget, std::int64_t& ik_nodes);
 
-/// The valid nodes of one layer after the other, to be met from the layer before.
+/// Finds the successors of nodes among the valid nodes of the next layer, one layer after the
+/// other.
 class Successors {
  public:
   explicit Successors(const Lattice& lattice) : lattice_(lattice) {}
-  /// `next` holds the valid nodes of layer + 1 and must live until the next call.
+  /// Goes to a layer. `next` holds the valid nodes of the layer after it and must live until the
+  /// next call.
   void enter(int layer, const std::vector<ValidNodes::Node>& next);
-  /// Calls visit(index of b in next, delta) for every node in the window of `a` whose joint steps are allowed. Adds to `compared`.
+  /// Calls visit(index of b in next, delta) for every node b in the window of `a` whose joint steps
+  /// are allowed. Adds the nodes compared to `compared`.
   template <class Visit>
   void for_each(const ValidNodes::Node& a, std::int64_t& compared, const Visit& visit) {
     lattice_.successors(layer_, a.slot, runs_);

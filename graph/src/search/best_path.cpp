@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search of `lazy` and `parallel`: Boost.Graph's A* over the lattice that is never stored. Its heuristic is exact: CostToGo is
-// a backward dynamic program over all layers, repaired after every removal, so what it says of a node is the cost of the best path
-// that is left from there, and not just a lower bound. With an exact heuristic, distance + heuristic is the same at every vertex of
-// a best path, and larger at all others, which ImplicitLattice does not even list. So A* walks straight to the goal and expands one
-// vertex a layer, until it comes to where an earlier path holds (EarlierPaths). Costs are multiples of one unit and their sums
-// exact, so that equal costs compare equal.
+// The search of the planners `lazy` and `parallel`: Boost.Graph's A* over a lattice that is never
+// stored. Its heuristic is exact: CostToGo is a backward dynamic program over all layers, repaired
+// after every removal, so what it says of a node is the cost of the best path that is left from
+// there, not just a lower bound. With an exact heuristic, distance + heuristic is the same at every
+// vertex of a best path, and larger at all others, which ImplicitLattice does not even list. So A*
+// walks straight to the goal and expands one vertex a layer, until it comes to a node from which an
+// earlier path still holds (EarlierPaths). Costs are multiples of one unit and their sums exact, so
+// that equal costs compare equal.
 #include <algorithm>
 #include <boost/graph/astar_search.hpp>
 #include <stdexcept>
@@ -20,8 +22,8 @@ namespace {
 
 using Vertex = ImplicitLattice::Vertex;
 
-/// What orders the queue: cost, then depth (deepest first), then slot. With a perfect heuristic every queued vertex lies on an
-/// optimal path, so the first to reach the goal is the smallest in slot order.
+/// Orders the queue: by cost, then depth (deepest first), then slot. With a perfect heuristic every
+/// queued vertex lies on a best path, so the first to reach the goal is the smallest in slot order.
 struct Rank {
   double cost = kUnreachable;
   std::int64_t tie = 0;
@@ -40,7 +42,7 @@ struct Compare {
   bool operator()(const Rank& a, const Rank& b) const { return a.cost != b.cost ? a.cost < b.cost : a.tie < b.tie; }
 };
 
-/// What A* knows of the few vertices it has touched.
+/// What A* knows of a vertex that it has touched; these are few.
 struct Record {
   double distance = kUnreachable;
   Rank rank;
@@ -71,7 +73,7 @@ struct Field {
 
 struct Found {
   Vertex last;
-  const SlotPath* then;  // how it goes on; null at the goal
+  const SlotPath* then;  // earlier path that it goes on with; null at the goal
 };
 
 struct Visitor : boost::default_astar_visitor {

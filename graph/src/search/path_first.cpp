@@ -16,7 +16,8 @@ namespace swivel {
 
 namespace {
 
-/// Layers in the order in which they are worth asking about: where failures were found lately first, then along the path.
+/// Orders layers by how worthwhile it is to ask about them: where failures were found lately first,
+/// then along the path.
 class FailFirst {
  public:
   explicit FailFirst(int layers) : score_(static_cast<std::size_t>(layers), 0.0) {}
@@ -75,7 +76,8 @@ class Search {
     }
   }
 
-  /// Removes what fails of them, before the first sweep. Ends where they fail no longer.
+  /// Removes the suspects that fail, before the first sweep. Ends where fewer than half of some
+  /// fail.
   void ask_suspects(std::span<const Suspect> suspects) {
     constexpr std::size_t kAtOnce = 64;
     std::vector<NodeQuestion> questions;
@@ -96,9 +98,10 @@ class Search {
   };
   static std::int64_t key(int layer, int slot) { return (std::int64_t{layer} << 32) + slot; }
 
-  /// Asks what the path's nodes cost, where that is not known, and sets it; true where a node costs more than was known. A
-  /// node's neighbours often cost as much, and each round in which a path turns out to cost more asks about twice as many of them
-  /// as the one before: so rounds are few where every node costs something, and questions are few where hardly any does.
+  /// Asks what the path's nodes cost, where that is not known, and notes it. Returns true where a
+  /// node costs more than was known. A node's neighbours often cost as much, and each round in
+  /// which a path turns out to cost more asks about twice as many of them as the one before: so
+  /// rounds are few where every node costs something, and questions are few where hardly any does.
   bool costs_more(const SlotPath& path) {
     const TraceSpan span("costs");
     std::vector<NodeQuestion> questions;
@@ -137,11 +140,13 @@ class Search {
     return more;
   }
 
-  /// Asks what is not known of the path, failures first, and removes what fails.
+  /// Asks what is not known of the path, where failures were found first, and removes what fails.
+  /// Returns true if the path is valid.
   bool valid(const SlotPath& path) {
     const TraceSpan span("candidate path");
     const int layers = static_cast<int>(path.size());
-    std::vector<std::optional<Config>> solved(path.size());  // of layers that are asked about
+    // joints at the layers that are asked about
+    std::vector<std::optional<Config>> solved(path.size());
     const auto joints = [&](int layer) -> const Config& {
       auto& q = solved[static_cast<std::size_t>(layer)];
       if (!q) q = cost_to_go_.config(layer, path[static_cast<std::size_t>(layer)]);
@@ -151,7 +156,8 @@ class Search {
     asked_ = 0;
     failed_on_path_.clear();
     left_to_grow_ = most_grown();
-    // Where paths cost that much more than the first, obstacles bar most of them, and each would find a little more of the same.
+    // Where paths cost so much more than the first, obstacles block most of them, and each path
+    // would find a little more of the same region.
     if (!beyond_reach_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
       grow_on();
       for (int i = 0; i < layers; ++i)
@@ -166,9 +172,10 @@ class Search {
     return all_valid<EdgeQuestion>(layers - 1, layers, edge_unknown, edge);
   }
 
-  /// Asks about a path's nodes or edges, from layers 0 ... count - 1, and the regions around those that fail. Where some do, the
-  /// others are asked about all the same as long as that costs less than the next round will: many rounds would each find one of
-  /// them.
+  /// Asks about a path's nodes or edges, from layers 0 ... count - 1, and the regions around those
+  /// that fail. Where some fail, the others are asked about all the same as long as that costs less
+  /// than the next round will: many rounds would each find one of them. Returns true if all asked
+  /// are valid.
   template <class Question, class Unknown, class Make>
   bool all_valid(int count, int layers, const Unknown& unknown, const Make& question) {
     std::vector<int> open;
@@ -194,12 +201,13 @@ class Search {
     return all;
   }
 
-  /// Whether all nodes fail in one of the layers at which the path failed; the first layers first, since less is left to reach
-  /// before them. A layer is asked about only where no path within the limit of the sweep has a node left in it: questions about
-  /// its other nodes take less than a sweep with a higher limit, and end at the first node that is valid.
+  /// Returns true if all nodes fail in one of the layers at which the path failed; the first layers
+  /// come first, since less is left to reach before them. A layer is asked about only where no path
+  /// within the limit of the sweep has a node left in it: questions about its other nodes take less
+  /// than a sweep with a higher limit, and end at the first node that is valid.
   bool bars_a_layer() {
     std::sort(failed_on_path_.begin(), failed_on_path_.end(), [](const Failure& a, const Failure& b) { return a.layer < b.layer; });
-    int slots_left = 100'000;  // so that to look through wide layers does not take longer than the next round
+    int slots_left = 100'000;  // so that looking through wide layers takes no longer than a round
     for (int last = -1; const Failure& x : failed_on_path_)
       if (std::exchange(last, x.layer) != x.layer && slots_left > 0 && !any_left(x.layer, slots_left) && all_fail(x)) return true;
     return false;
@@ -209,8 +217,8 @@ class Search {
       if (cost_to_go_.at(layer, slot) != kUnreachable && verdicts_.node(layer, slot) != Verdict::kRemoved) return true;
     return false;
   }
-  /// Of the layer's nodes, as this one did. A few that lie apart are asked first, then the others in order, since what is asked
-  /// about neighbours takes less.
+  /// Returns true if all nodes of a layer fail as this one did. A few that lie apart are asked
+  /// about first, then the others in order, since questions about neighbours take less.
   bool all_fail(const Failure& like) {
     constexpr int kApart = 16;
     const int slots = lattice_.slots(like.layer);
@@ -232,15 +240,18 @@ class Search {
     return ask_from(step / 2, step) && ask_from(0, 1);
   }
 
-  /// The region of failing nodes around those just found, breadth first along the path and the coordinate: an obstacle blocks many
-  /// neighbours, and each found now saves a round. Nodes are asked only whether the obstacles bar them: to prove that they are
-  /// valid takes the robot's own pairs, too, which are as costly as they are near by design, and few come to lie on a path.
+  /// Asks about the region of failing nodes around those just found, breadth first along the path
+  /// and the coordinate: an obstacle blocks many neighbours, and each found now saves a round. It
+  /// is asked only whether the scene blocks them: proving them valid involves the robot's own
+  /// pairs, too, which take long since they are near by design, and few of these nodes come to lie
+  /// on a path.
   void grow(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;
     grow(failed, frontier);
   }
 
-  /// Goes on where regions ended at nodes that no path reached at the cost of then, and that paths reach by now.
+  /// Continues regions that ended at nodes which no path reached at the cost of that time, and
+  /// which paths reach by now.
   void grow_on() {
     std::deque<Failure> frontier;
     std::erase_if(beyond_reach_, [&](const Failure& x) {
@@ -276,7 +287,8 @@ class Search {
           add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
-    // Where one wave is asked about while the next is made, it takes about half of the frontier: there mostly is another then.
+    // While one wave is asked about, the next is made: a wave takes about half of the frontier, so
+    // that there mostly is another.
     const auto most = [&] {
       constexpr std::size_t kFewest = 16;
       const std::size_t at_once = options_.grow_beside ? std::max(kFewest, frontier.size() / 2) : kGrownAtOnce;
@@ -321,7 +333,8 @@ class Search {
     }
   }
 
-  /// The same for edges: those beside a failing edge, and its continuations along the path, often fail as it does.
+  /// Asks about the region of failing edges around those just found: neighbours of a failing edge,
+  /// and its continuations along the path, often fail as it does.
   void grow(const std::vector<EdgeQuestion>& failed) {
     struct Edge {
       int layer, a, b;
@@ -366,7 +379,7 @@ class Search {
     return options_.grow + static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
   }
 
-  /// Keeps or removes nodes as they were answered, returns those that failed.
+  /// Notes the answers to questions about nodes. Returns the nodes that failed.
   std::vector<Failure> take(std::span<const NodeQuestion> questions, std::span<const NodeAnswer> answers) {
     asked_ += static_cast<std::int64_t>(questions.size());
     std::vector<Failure> failed;
@@ -390,7 +403,7 @@ class Search {
     return failed;
   }
 
-  /// The same of nodes that are asked about now.
+  /// Asks about nodes and notes the answers. Returns the nodes that failed.
   std::vector<Failure> ask(std::span<const NodeQuestion> questions) {
     answers_.assign(questions.size(), {});
     validity_.nodes(questions, answers_);
@@ -424,14 +437,15 @@ class Search {
   EarlierPaths earlier_;
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
-  std::int64_t asked_ = 0;               // in this round
+  std::int64_t asked_ = 0;               // questions in this round
   std::vector<Failure> failed_on_path_;  // in this round
-  int left_to_grow_ = 0;                 // questions about neighbours, in this round
+  int left_to_grow_ = 0;                 // questions about neighbours left in this round
   static constexpr std::size_t kGrownAtOnce = 32;
-  std::unordered_map<std::int64_t, FailureId> spared_;  // by key(): what grow() asked about last, of nodes that no obstacle barred
+  // By key(): the failure that grow() asked about last, of nodes that the scene did not block.
+  std::unordered_map<std::int64_t, FailureId> spared_;
   static constexpr double kMuchDearer = 1.2;
-  double first_cost_ = 0;              // of the first path
-  std::vector<Failure> beyond_reach_;  // where regions ended
+  double first_cost_ = 0;              // cost of the first path
+  std::vector<Failure> beyond_reach_;  // nodes at which regions ended
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;

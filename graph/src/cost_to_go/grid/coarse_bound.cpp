@@ -16,8 +16,8 @@ namespace {
 constexpr float kNever = std::numeric_limits<float>::infinity();
 constexpr int kRun = 16;  // angles relaxed at once
 
-/// Longer chords ask for fewer layers, but follow the joints less and leave the sweep wider gaps: by how far the coordinate may
-/// turn.
+/// How far the coordinate may turn along a chord: longer chords need fewer layers, but follow the
+/// joints less and leave the sweep wider gaps.
 int stride_of(const SrsLattice& lattice) {
   constexpr double kTurn = 0.6;
   const double turn_per_layer = lattice.window() * kTwoPi / lattice.angles();
@@ -38,7 +38,7 @@ constexpr auto kMiddle = SrsLattice::kMiddleJoints;
 using Lanes = Eigen::Array<float, kRun, 1>;
 using Track = Eigen::Map<const Eigen::ArrayXd>;
 
-/// What is known of some nodes of a sheet.
+/// The least value and the joint ranges of some nodes of an IK solution.
 struct Summary {
   float least = kNever;                        // value
   std::array<Interval, kMiddle.size()> joint;  // kMiddle
@@ -48,18 +48,19 @@ struct Summary {
   }
 };
 
-/// One sheet of one layer, from -window to angles + window around the circle, and on to whole runs.
+/// One IK solution at one layer, from -window to angles + window around the circle, and on to whole
+/// runs.
 struct alignas(64) Circle {
   bool alive = false;
   std::vector<float> q[kDof];
   std::vector<float> value;    // bound; kNever where no node is
-  std::vector<Summary> near;   // of each run of angles: what lies in its windows
+  std::vector<Summary> near;   // [run of angles]: what lies in its windows
   std::vector<Summary> parts;  // scratch of look_around
 
   [[nodiscard]] Eigen::Map<const Lanes> lanes(const std::vector<float>& padded, int at) const {
     return Eigen::Map<const Lanes>(padded.data() + at);
   }
-  /// Of the kRun padded positions from `at`.
+  /// Returns the summary of the kRun padded positions from `at`.
   [[nodiscard]] Summary summary(int at) const {
     const auto values = lanes(value, at);
     Summary sum;
@@ -73,7 +74,7 @@ struct alignas(64) Circle {
 
 class Chords {
  public:
-  /// Of the layers c * stride, c = 0, 1, ..., and the last.
+  /// Prepares chords between the layers c * stride, c = 0, 1, ..., and the last.
   Chords(const SrsLattice& lattice, int stride, const Budget& budget, const SharedWork& work)
       : lattice_(lattice),
         stride_(stride),
@@ -96,7 +97,8 @@ class Chords {
       if (!turns) largest = std::max({largest, std::abs(limit.lower), std::abs(limit.upper)});
     }
     task_.unit = static_cast<float>(lattice.cost_unit());
-    // Rounding of joints, their difference, its norm, and of exact costs: a few units of 2^-24 of each.
+    // A few units of 2^-24 for each of the rounding of joints, their difference, its norm, and
+    // exact costs.
     lost_ = 0x1p-20 * scales * (largest + kTwoPi) + 1e-10 * lattice.cost_unit();
     fits_ = scales * (largest + kTwoPi) * lattice.layers() < 1e30;
     for (auto& layer : circles_) layer.resize(static_cast<std::size_t>(lattice.sheets()));
@@ -105,8 +107,9 @@ class Chords {
   [[nodiscard]] bool fits() const { return fits_; }
   [[nodiscard]] int layers() const { return (lattice_.layers() - 1 + stride_ - 1) / stride_ + 1; }
 
-  /// The bounds of the nodes of the layers from c on, as [layer][slot], as many as families go through alone or one; c = 0, then
-  /// what was returned before. The next c; -1 where no node is reached.
+  /// Computes the bounds of the nodes of the layers from c on, as [layer][slot]: one layer, or as
+  /// many as both elbow sides go through alone. c is 0, then what the call before returned. Returns
+  /// the next c; -1 where no node is reached.
   int advance(int c, float* rows) {
     budget_.tell(Stage::kBounds, layer_at(c), lattice_.layers());
     int end = c + 1;
@@ -131,10 +134,10 @@ class Chords {
   }
 
  private:
-  static constexpr int kMostAlone = 16;  // chords until the next word to the budget
+  static constexpr int kMostAlone = 16;  // chords until the next progress report
 
   [[nodiscard]] int first_sheet(int family) const { return family * lattice_.sheets() / 2; }
-  /// Whether any of the steps of the chord before layer c may lead from one family to the other.
+  /// Returns true if a step of the chord before layer c may lead from one elbow side to the other.
   [[nodiscard]] bool meets(int c) const {
     for (int step = c > 0 ? layer_at(c - 1) : 0; step < (c > 0 ? layer_at(c) : 0); ++step)
       if (lattice_.families_meet(step)) return true;
@@ -144,7 +147,7 @@ class Chords {
   Circle& circle(int c, int sheet) {
     return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(sheet)];
   }
-  /// Of a sheet's nodes, from those of layer c - 1; zeros in layer 0.
+  /// Computes the bounds of an IK solution's nodes from those of layer c - 1; zeros in layer 0.
   void bound(int c, int sheet, bool meets_other, float* best) {
     budget_.poll();
     Circle& here = circle(c, sheet);
@@ -165,7 +168,7 @@ class Chords {
     std::copy_n(padded.begin() + window_, window_, padded.begin() + window_ + n_);
   }
 
-  /// Joints, and value 0 where a node is.
+  /// Loads joints, with value 0 where there is a node.
   void load(int c, int family) {
     budget_.poll();
     LayerNodes& nodes = nodes_[static_cast<std::size_t>(family)];
@@ -191,10 +194,10 @@ class Chords {
   }
 
   [[nodiscard]] int runs() const { return (n_ + kRun - 1) / kRun; }
-  /// First angle of a run: whole vectors, so the last two may overlap.
+  /// Returns the first angle of a run. Runs are whole vectors, so the last two may overlap.
   [[nodiscard]] int begin(int run) const { return std::max(0, std::min(run * kRun, n_ - kRun)); }
 
-  /// What lies in the windows of every run, up to a run more on both sides.
+  /// Summarises what lies in the windows of every run, up to a run more on both sides.
   void look_around(Circle& circle) {
     const int length = n_ + 2 * window_;
     circle.parts.clear();
@@ -207,7 +210,7 @@ class Chords {
     }
   }
 
-  /// The bounds of a run's nodes before rounding is taken off.
+  /// Computes the bounds of a run's nodes before rounding is subtracted.
   Lanes relax(int c, int sheet, bool meets_other, int run) {
     const Circle& here = circle(c, sheet);
     const int at = window_ + begin(run), count = std::min(kRun, n_);

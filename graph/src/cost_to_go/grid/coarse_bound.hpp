@@ -8,18 +8,21 @@
 
 namespace swivel {
 
-/// Lower bounds of the cost from layer 0 to the nodes of every stride-th layer and of the last. An edge's cost is a norm of the
-/// joints' move, so a path between two layers costs at least the norm of the chord between its ends: a dynamic program over chords
-/// alone, with the window of a stride's steps and any change of sheet, bounds every path's cost from below and asks for the joints
-/// of one layer a stride. In single precision, less what that may lose. Memory: one byte per lattice node or less.
+/// Lower bounds of the cost from layer 0 to the nodes of every stride-th layer and of the last. An
+/// edge costs a norm of the joints' move, so a path between two layers costs at least the norm of
+/// the chord between its ends. A dynamic program over chords alone, with the window of a stride's
+/// steps and any change of IK solution, therefore bounds every path's cost from below, and needs
+/// the joints of one layer a stride. It runs in single precision, less what that may lose. Memory:
+/// one byte a lattice node, or less.
 class CoarseBound {
  public:
-  /// Throws Stopped.
+  /// Computes the bounds. Throws Stopped.
   explicit CoarseBound(const SrsLattice& lattice, const Budget& budget = {}, const SharedWork& work = {});
 
-  /// Least over the last layer; infinite where some layer stops every path. No bound at all where costs exceed single precision.
+  /// Returns the least bound over the last layer: infinite where some layer stops every path, and
+  /// no bound where costs exceed single precision.
   [[nodiscard]] double best() const { return best_; }
-  /// [slot], or null where the layer has no bounds.
+  /// Returns the bounds of a layer, [slot]; null where it has none.
   [[nodiscard]] const float* row(int layer) const;
   [[nodiscard]] std::int64_t ik_nodes() const { return ik_nodes_; }
 

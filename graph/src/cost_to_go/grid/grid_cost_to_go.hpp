@@ -12,19 +12,21 @@
 
 namespace swivel {
 
-/// Cost-to-go of a grid in vector code, windowed, all sheet pairs.
+/// The cost-to-go of a grid in vector code, within the arm-slope window, over all pairs of IK
+/// solutions.
 ///
-/// Extent::kBounded leaves out what cannot matter: nodes that CoarseBound proves to lie on no path of cost `limit` or less. best()
-/// is exact then as well, and so is at() on every best path: as long as no cost that is coarsely best() exceeds the limit no path
-/// that matters is missing, and where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
-/// goals before the last layer, what deepest_reachable() finds takes its place: exact costs from layer 0 on, or that nothing is
-/// left.
+/// Extent::kBounded leaves out what cannot matter: nodes that CoarseBound proves to lie on no path
+/// of cost `limit` or less. best() is then exact as well, and so is at() on every best path: as
+/// long as no cost that is coarsely best() exceeds the limit, no path that matters is missing;
+/// where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
+/// goals before the last layer, what deepest_reachable() finds takes its place: exact costs from
+/// layer 0 on, or that nothing is left.
 ///
-/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints are solved again where they are
-/// wanted again: that takes less time than a fresh page of memory.
+/// Memory per lattice node: 1.5 bytes, 8 more where it is reached, up to one for the bounds. Joints
+/// are solved again when they are wanted again: that takes less time than a fresh page of memory.
 class GridCostToGo final : public CostToGo {
  public:
-  /// Takes over what `retired` had allocated; null is allowed.
+  /// Takes over the memory of `retired`, which may be null.
   explicit GridCostToGo(const SrsLattice& lattice, Extent extent = Extent::kWhole, const Budget& budget = {},
                         GridCostToGo* retired = nullptr);
   ~GridCostToGo() override;
@@ -55,10 +57,11 @@ class GridCostToGo final : public CostToGo {
   struct Workspace;
   struct Front;
   using ColumnSet = std::vector<std::uint8_t>;  // [column], 0: not in it
-  /// Bit k of a column is its k-th angle. It serves as the set of columns that hold any, too.
+  /// A set of angles: bit k of a column is its k-th angle. It serves as the set of columns that
+  /// hold any, too.
   using AngleSet = ColumnSet;
 
-  /// Joints of one node.
+  /// The joints of one node.
   struct OneNode {
     const LayerNodes* nodes = nullptr;
     int sheet = 0, place = 0;
@@ -66,7 +69,7 @@ class GridCostToGo final : public CostToGo {
     [[nodiscard]] Config config() const { return nodes->config(sheet, place); }
   };
   [[nodiscard]] OneNode one_node(int layer, int slot);
-  /// A column of a family's sheets. Valid until the next call.
+  /// Returns the joints of a column of one elbow side, valid until the next call.
   [[nodiscard]] const LayerNodes& neighbours(int layer, int family, int column);
   [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
   [[nodiscard]] std::size_t tile_of_layer(int sheet, int column) const {
@@ -79,17 +82,20 @@ class GridCostToGo final : public CostToGo {
   [[nodiscard]] std::size_t tile_index(int layer, int sheet, int column) const {
     return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->sheets(), 0) + tile_of_layer(sheet, column);
   }
-  double& value_at(int layer, int slot);  // holds its tile from now on
+  double& value_at(int layer, int slot);  // the tile is held from now on
 
-  // Families, the signs of the elbow, meet at hardly any layer: between, each is a lattice of its own, which one thread goes
-  // through by itself. Nothing that a part writes is read by the other.
-  /// Layers that families go through one after the other or side by side, until the next poll of what else there is to do.
+  // The two elbow sides (families, signs of the elbow angle) meet at hardly any layer: between,
+  // each is a lattice of its own, which one thread goes through by itself. Nothing that one side
+  // writes is read by the other.
+  /// Most layers that the elbow sides go through, one after the other or side by side, until the
+  /// next poll.
   static constexpr int kMostAlone = 64;
-  /// Whether they do from a layer to the next. Where an edge is removed there one thread looks at both.
+  /// Returns true if the elbow sides are apart from a layer to the next. Where an edge is removed
+  /// there one thread looks at both.
   [[nodiscard]] bool families_part(int step_layer) const {
     return !lattice_->families_meet(step_layer) && !verdicts_.removed_edges(step_layer);
   }
-  /// part(family) for both, by two threads where work is shared.
+  /// Calls part(family) for both elbow sides, on two threads where work is shared.
   template <class Part>
   void by_family(const Part& part);
   void collect_counts();
@@ -100,8 +106,8 @@ class GridCostToGo final : public CostToGo {
   void find_ranges(LayerJoints& joints, int family, int column) const;
   void begin(int family, int layer, Workspace& workspace) const;
   void begin_with_all(int family, int layer, Workspace& workspace);  // every node at cost 0
-  /// Values of columns, and their joints. Columns that are not among those reached, where these are given, come to no value and
-  /// need no joints.
+  /// Loads the values of columns, and their joints. Columns that are not among those `reached`, if
+  /// given, get no value and need no joints.
   void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
   void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
   void relax(int family, int step_layer, Workspace& from, const Workspace& to);
@@ -110,16 +116,19 @@ class GridCostToGo final : public CostToGo {
   void add_node_costs(int family, Workspace& workspace) const;
   void prune_above_limit(int family, Workspace& workspace) const;
   void publish_values(int family, Workspace& workspace) const;
-  /// No step takes a joint from one range into the other. Continuous joints have no plain ranges, which tell nothing.
+  /// Returns true if no step takes a joint from one range into the other. Continuous joints have no
+  /// plain ranges, which tell nothing.
   [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
   [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
                                  int other) const;
-  /// Angles that lie in the windows of these; gaps between two of a column are filled, so it may be some more.
+  /// Finds the angles in the windows of these; gaps between two of a column are filled, so there
+  /// may be more.
   void widen(const AngleSet& angles, AngleSet& result) const;
   void store_tiles(int family, const Workspace& workspace);
-  /// Whether values of these angles differ from those kept, which they replace then; `changed`: where. What the workspace holds of
-  /// other angles of their columns may be too much, since not all of their windows were loaded.
+  /// Replaces the values kept of these angles. Returns true if any differ, `changed` says which.
+  /// What the workspace holds of other angles of their columns may be too much, since not all of
+  /// their windows were loaded.
   [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
@@ -129,10 +138,11 @@ class GridCostToGo final : public CostToGo {
   void clear_values();  // everything is unreachable
   void sweep_once();
   void limit_by_reach();
-  /// False where the goal is out of reach, whatever the limit.
+  /// Returns false where the goal is out of reach, whatever the limit.
   bool raise_limit();
   void raise_limit_until_exact();
-  /// What the nodes of a layer cost from layer 0 on, or less; null where nothing is known of the layer.
+  /// Returns what the nodes of a layer cost from layer 0 on, or less; null where nothing is known
+  /// of the layer.
   [[nodiscard]] const float* cost_before(int layer) const;
   void begin_reach_rows(int layers);
   void keep_reach(int family, int layer, float* kept);
@@ -147,7 +157,8 @@ class GridCostToGo final : public CostToGo {
   bool bounded_;
   std::unique_ptr<CoarseBound> coarse_bound_;  // made by the first bounded sweep
   double limit_ = kUnreachable;
-  /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the deepest.
+  /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the
+  /// deepest.
   struct Reach {
     static constexpr int kStride = 4;
     static constexpr double kSlack = 0.5;
@@ -160,7 +171,8 @@ class GridCostToGo final : public CostToGo {
   };
   Reach reach_;
   bool by_reach_ = false;  // nodes are held to the limit by reach_, not by the coarse bound
-  /// By family where threads share the work, else all in the first: two that grow beside each other take more fresh memory.
+  /// One for each elbow side where threads share the work, else all in the first: two that grow
+  /// beside each other take more fresh memory.
   std::array<TileTable, 2> tiles_;
   bool apart_ = false;
   struct {
@@ -171,7 +183,8 @@ class GridCostToGo final : public CostToGo {
   } saved_;
   std::vector<LayerJoints> passing_;                     // [family][layer % 2]: those at hand
   std::array<std::unique_ptr<Workspace>, 2> workspace_;  // [layer % 2]
-  /// Joints of columns around nodes that were asked about one by one: others around them are asked about as well.
+  /// Joints of columns around nodes that were asked about one by one, since others around them will
+  /// be asked about too.
   struct Neighbours {
     std::int64_t of = -1;
     LayerNodes nodes;

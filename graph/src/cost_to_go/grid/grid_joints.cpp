@@ -46,7 +46,7 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
   const int half = lattice_->sheets() / 2, begin = lattice_->window() + column * kTileWidth;
   const int count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
-    std::array<const double*, 2> known{};  // sheets share arrays: two for each sign of a triple
+    std::array<const double*, 2> known{};  // solutions share arrays: two for each sign of a triple
     std::array<JointRange, 2> found;
     for (int sheet = family * half; sheet < (family + 1) * half; ++sheet) {
       const double* q = joints.nodes.q(sheet, MiddleRanges::kJoints[m]) + begin;
@@ -78,7 +78,8 @@ void GridCostToGo::forget_joints() {
 }
 
 const LayerNodes& GridCostToGo::neighbours(int layer, int family, int column) {
-  constexpr std::int64_t kLayersApart = 67;  // neighbours along the path and along the coordinate must not share a place
+  // so that neighbours along path and coordinate share no place
+  constexpr std::int64_t kLayersApart = 67;
   if (neighbours_.empty()) neighbours_.resize(kNeighbourhoods);
   const std::int64_t in_layer = family * tile_columns() + column;
   Neighbours& found = neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];

@@ -79,13 +79,15 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
     if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
     if (out_of_step(step_layer, MiddleRanges::kJoints[m], own_ranges.joint[m], range)) return false;
   }
-  // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns tell windings apart.
+  // Near a singular pose the outer joints of the triple must meet as well. Joints of several turns
+  // tell windings apart.
   const int begin = lattice_->window() + column * kTileWidth,
             count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   const bool one_family = lattice_->family_of(sheet) == lattice_->family_of(other);
   for (const int joint : SrsLattice::kOuterJoints) {
     const double* q = own_joints.nodes.q(sheet, joint);
-    const bool shared = one_family && q == own_joints.nodes.q(other, joint);  // tells nothing apart
+    // shared, so it tells nothing apart
+    const bool shared = one_family && q == own_joints.nodes.q(other, joint);
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const JointRange own(q + begin, count);
     if (out_of_step(step_layer, joint, own, theirs(joint))) return false;

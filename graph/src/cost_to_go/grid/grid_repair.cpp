@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What remains of the lattice after removals: values made exact again, and how far layer 0 still reaches.
+// Repairs values after removals, and finds how far layer 0 still reaches.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -15,8 +15,8 @@ double& GridCostToGo::value_at(int layer, int slot) {
   return tiles_of(sheet).hold(tile_index(layer, sheet, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
 }
 
-/// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node and whose cost-to-go `rest` is
-/// worth a look when its turn comes.
+/// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node
+/// and whose cost-to-go `rest` passes worth() when it is their turn.
 template <class Worth, class Visit>
 void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit) {
   const int n = lattice_->angles();
@@ -120,10 +120,11 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
   }
 }
 
-/// What of a family's values has changed on the way down: angles of the layer after, of any sheet, and of this one.
+/// What has changed of one elbow side's values on the way down: angles of the layer after, of any
+/// solution, and of this one.
 struct alignas(64) GridCostToGo::Front {
   AngleSet after, here;
-  AngleSet dependent, needed;  // angles of this layer that may change for it, and of the layer after that decide these
+  AngleSet dependent, needed;  // angles here that may change, and those after that decide
   bool any_after = false, any_here = false;
   void next_layer() {
     after.swap(here);
@@ -153,7 +154,8 @@ void GridCostToGo::propagate_removals() {
     front.any_here = true;
   };
   const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->sheet_of(slot)) == family; };
-  // Nodes that cost more now do so first with the layer after as it was; where that changed, too, they are relaxed next.
+  // Nodes that cost more now are first computed with the layer after as it was; where that changed
+  // too, they are relaxed next.
   const auto raise = [&](int family, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.raised)
       if (of_family(family, slot))
@@ -163,7 +165,7 @@ void GridCostToGo::propagate_removals() {
     for (const int slot : now.nodes)
       if (of_family(family, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
   };
-  // Finds what depends on the changes of the layer after, and what of that layer it depends on.
+  // Find what depends on the changes of the layer after, and what of that layer it depends on.
   const auto load_after = [&](int family, int layer, Front& front) {
     widen(front.after, front.dependent);
     widen(front.dependent, front.needed);
@@ -185,7 +187,7 @@ void GridCostToGo::propagate_removals() {
            (layer == goal_ || families_part(layer));
   };
   for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
-    int end = layer;  // of the layers that families go through alone
+    int end = layer;  // end of the layers that elbow sides go through alone
     while (end >= 0 && layer - end < kMostAlone && goes_alone(end)) --end;
     if (end < layer) {
       budget_.poll();
@@ -265,19 +267,19 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
   return best;
 }
 
-/// As many as `layers` layers take, and one more.
+/// Makes as many rows as so many layers need, and one more.
 void GridCostToGo::begin_reach_rows(int layers) {
   const auto rows = static_cast<std::size_t>((layers + Reach::kStride - 1) / Reach::kStride) + 1;
   reach_.rows.resize(rows * static_cast<std::size_t>(lattice_->width()), std::numeric_limits<float>::infinity());
 }
 
-/// `kept`: of all slots.
+/// Keeps the costs of one elbow side's nodes, rounded down; `kept` has all slots.
 void GridCostToGo::keep_reach(int family, int layer, float* kept) {
-  constexpr double kMost = 1e30;  // that a float holds
+  constexpr double kMost = 1e30;  // that a float can hold
   const int n = lattice_->angles(), width = lattice_->width() / 2;
   std::fill_n(kept + family * width, width, std::numeric_limits<float>::infinity());
   const Workspace& here = workspace(layer);
-  if (here.half(family).layer != layer) return;  // the family does not come here
+  if (here.half(family).layer != layer) return;  // this elbow side does not come here
   for (const Tile& tile : here.half(family).tiles)
     for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
       kept[slot] = std::nextafter(static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
@@ -311,7 +313,8 @@ int GridCostToGo::deepest_reachable() {
     relax(family, layer - 1, here, before);
     apply_masks(family, here);
   };
-  // Of a node of a layer, where the step that its cost came by is removed, or the layer before is the start alone.
+  // Recomputes the cost of a node where the step that it came by is removed, or where the layer
+  // before is the start alone.
   const auto step_one = [&](int layer, int slot) {
     Workspace& here = workspace(layer);
     const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};

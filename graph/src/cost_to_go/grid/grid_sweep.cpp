@@ -11,7 +11,7 @@ namespace swivel {
 
 namespace {
 
-/// f(0) ... f(count - 1), count <= whole; a loop of known length is unrolled into vectors.
+/// Calls f(0) ... f(count - 1), count <= whole; a loop of known length is unrolled into vectors.
 template <int whole, class F>
 void each(int count, const F& f) {
   if (count == whole)
@@ -126,7 +126,7 @@ void GridCostToGo::save() {
 }
 
 void GridCostToGo::restore() {
-  forget_reach();  // there was more to reach, for less
+  forget_reach();  // what was reached may have been more, for less
   by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
@@ -164,11 +164,13 @@ const float* GridCostToGo::cost_before(int layer) const {
   return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
 }
 
-/// For a goal that is reached: the best path to it costs what was found on the way there.
+/// Sets the limit of a goal that is reached: the best path to it costs what was found on the way
+/// there.
 void GridCostToGo::limit_by_reach() {
   limit_ = kUnreachable;
   by_reach_ = true;
-  for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);  // which are not in it
+  // costs are not in it
+  for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);
   if (!by_reach_) return;
   limit_ = lattice_->most_alike((1 + reach_.slack) * reach_.best);
   reach_.slack *= 2;
@@ -178,7 +180,8 @@ bool GridCostToGo::raise_limit() {
   if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
     const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : lattice_->most_alike(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;
-    for (const double share : {0.03, 0.25, 1.5}) {  // most problems stop at the first: 2 to 10 % of the lattice
+    // most stop at the first: 2 to 10 % of the lattice
+    for (const double share : {0.03, 0.25, 1.5}) {
       limit_ = lattice_->most_alike(least * (1 + share));
       if (limit_ > passed && (found == kUnreachable || found <= limit_)) return true;
     }
@@ -222,7 +225,7 @@ void GridCostToGo::sweep_once() {
   for (int layer = goal_ - 1; layer >= last && reached;) {
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
     const bool some_removed = verdicts_.removed_edges(layer) != nullptr;
-    int end = layer - 1;  // of the layers that families go through alone
+    int end = layer - 1;  // end of the layers that elbow sides go through alone
     if (families_part(layer))
       while (end >= last && layer - end < kMostAlone && families_part(end)) --end;
     by_family([&](int family) {

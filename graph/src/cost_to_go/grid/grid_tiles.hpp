@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What GridCostToGo works with while it is at a layer.
+// The data that GridCostToGo works on while it is at a layer.
 #pragma once
 #include <algorithm>
 #include <tuple>
@@ -9,7 +9,7 @@
 
 namespace swivel {
 
-/// A range of a joint.
+/// A range of a joint, rad.
 struct GridCostToGo::JointRange {
   double low = kUnreachable, high = -kUnreachable;
   JointRange() = default;
@@ -23,7 +23,7 @@ struct GridCostToGo::JointRange {
     else
       of(Eigen::Map<const Eigen::ArrayXd>(q, count));
   }
-  /// Of those that have a value; the others need not have been solved.
+  /// Takes the range of the joints that have a value; the others need not have been solved.
   JointRange(const double* q, const double* value, int begin, int end) {
     relax_kernels().range(q + begin, value + begin, end - begin, low, high);
   }
@@ -35,7 +35,7 @@ struct GridCostToGo::JointRange {
   [[nodiscard]] double gap(const JointRange& other) const { return std::max(low - other.high, other.low - high); }
 };
 
-/// A column of a sheet.
+/// A column, eight angles, of one IK solution.
 struct GridCostToGo::Tile {
   int sheet = 0, column = 0;
   bool live = false;  // holds values
@@ -45,33 +45,38 @@ struct GridCostToGo::Tile {
   bool operator<(const Tile& o) const { return std::tie(sheet, column) < std::tie(o.sheet, o.column); }
 };
 
-/// Ranges of the joints that tell the sheets of a family apart.
+/// Ranges of the joints that tell the IK solutions of one elbow side apart.
 struct GridCostToGo::MiddleRanges {
   static constexpr std::array<int, 2> kJoints{SrsLattice::kMiddleJoints[0], SrsLattice::kMiddleJoints[1]};
   std::array<JointRange, 2> joint;
 };
 
-/// The joints of one family of a layer, from -window to angles + window around the circle, solved by columns as they are wanted.
+/// The joints of one elbow side of a layer, from -window to angles + window around the circle,
+/// solved by columns when they are wanted.
 struct alignas(64) GridCostToGo::LayerJoints {
   int layer = -1;
   LayerNodes nodes;
   ColumnSet solved;
-  /// Ranges of the joints that tell sheets apart, over what is solved: of each column, and of all.
+  /// Ranges of the joints that tell IK solutions apart, over what is solved: of each column, and of
+  /// all.
   std::vector<MiddleRanges> of_tile, of_layer;  // [sheet][column], [sheet]
 };
 
-/// A layer's values, ready to be relaxed against or being relaxed. While families do not meet, each goes through the layers by
-/// itself: then its sheets are at another layer than the others.
+/// A layer's values, to relax others against, or being relaxed. While the elbow sides do not meet,
+/// each goes through the layers by itself: its solutions may then be at another layer than the
+/// others.
 struct GridCostToGo::Workspace {
   std::vector<double> row;    // [sheet][angle], of the tiles
   std::vector<double> value;  // [sheet][padded angle]: the row once it is settled, infinite elsewhere
-  /// The finite values in the window of a column: first and last padded position, none where last < first.
+  /// The finite values in the window of a column: first and last padded position; none where last <
+  /// first.
   struct Window {
     int first = 0, last = -1;
     mutable std::array<MiddleRanges, 2> ranges;  // filled when asked for: [family that asks]
   };
   std::vector<Window> windows;  // [sheet][column], of the sheets with a finite value
-  /// The sheets of one family. One thread writes to it, and to those sheets' part of the arrays above.
+  /// The solutions of one elbow side. One thread writes to it, and to those solutions' part of the
+  /// arrays above.
   struct alignas(64) Half {
     int layer = -1;
     LayerJoints* joints = nullptr;  // null where no column is reached

@@ -10,16 +10,17 @@
 
 namespace swivel {
 
-/// The costs of those tiles of a grid that hold any; a tile is `kTileWidth` neighbouring nodes of a sheet. What it costs to make,
-/// clear, copy and restore grows with the tiles that are held, not with the grid. Memory: 4 bytes a tile of the grid, 68 a tile
-/// held.
+/// The costs of those tiles of a grid that hold any; a tile is `kTileWidth` neighbouring angles of
+/// one IK solution. The time to make, clear, copy and restore the table grows with the tiles that
+/// are held, not with the grid. Memory: 4 bytes a tile of the grid, 68 a tile held.
 class TileTable {
  public:
-  static constexpr int kTileWidth = 8;  // angles: a cache line of costs, one vector of the widest unit
+  // angles: a cache line of costs, a vector of the widest unit
+  static constexpr int kTileWidth = 8;
   using Costs = std::array<double, kTileWidth>;
 
   TileTable() = default;
-  /// Of tiles 0 ... tiles - 1. Takes over what `retired` had allocated.
+  /// Makes an empty table for tiles 0 ... tiles - 1. Takes over the memory of `retired`.
   explicit TileTable(std::size_t tiles, TileTable&& retired = TileTable()) : held_(std::move(retired.held_)) {
     retired.held_ = {};
     if (retired.slot_.size() >= tiles) {
@@ -36,12 +37,13 @@ class TileTable {
     }
   }
 
-  /// Of the grid: 0 until it is given some.
+  /// Returns the number of tiles of the grid, 0 for a table that was made without.
   [[nodiscard]] std::size_t tiles() const { return slot_.size(); }
-  /// kUnreachable where none are held.
+  /// Returns the costs of a tile, kUnreachable where it is not held.
   [[nodiscard]] const Costs& operator[](std::size_t tile) const { return held_.costs[slot_[tile]]; }
   [[nodiscard]] bool holds(std::size_t tile) const { return slot_[tile] != 0; }
-  /// To be filled in by the caller where none were held: then kUnreachable.
+  /// Returns the costs of a tile to write to, and holds it from now on: kUnreachable if it was not
+  /// held before.
   [[nodiscard]] Costs& hold(std::size_t tile) {
     std::uint32_t& slot = slot_[tile];
     if (slot == 0) {
@@ -57,11 +59,11 @@ class TileTable {
     held_.tile.resize(held_.costs.size());
   }
 
-  /// A copy of what is held.
+  /// The tiles that are held, as a value.
   class Held {
     friend class TileTable;
-    std::vector<Costs> costs;         // the first is that of tiles not held
-    std::vector<std::uint32_t> tile;  // of each of costs
+    std::vector<Costs> costs;         // the first stands for tiles not held
+    std::vector<std::uint32_t> tile;  // tile of each of `costs`
   };
   [[nodiscard]] const Held& held() const { return held_; }
   void restore(const Held& held) {

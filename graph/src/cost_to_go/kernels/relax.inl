@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compiled once per vector unit, inside namespace SWIVEL_ISA; see core/src/kinematics/kernels/circle.inl for why nothing shared
-// appears here. Every operation stands in the order of Lattice::delta, step_allowed and edge_cost, so the bits are theirs.
+// Compiled once for each instruction set, inside namespace SWIVEL_ISA;
+// core/src/kinematics/kernels/circle.inl says why nothing shared with other files appears here.
+// Operations have the order of Lattice::delta, step_allowed and edge_cost, so that the bits are
+// theirs.
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -8,7 +10,8 @@
 namespace swivel::SWIVEL_ISA {
 namespace {
 
-// What plain C++ cannot say of a vector of lanes: the widest of this unit, and the same of one number.
+// Operations that plain C++ lacks for a vector of lanes: the widest vector of this instruction set,
+// and one number.
 template <class T>
 struct Widest {
   using Lanes = T;
@@ -101,7 +104,8 @@ inline V larger(V a, V b) {
   return a > b ? a : b;
 }
 
-/// to - from, less the whole turns in it where turn is not 0; halves away from zero, as std::round.
+/// Returns to - from, less the whole turns in it where turn is not 0; halves round away from zero,
+/// as std::round does.
 template <bool kWraps, class V>
 inline V move(V from, V to, double turn) {
   const V d = to - from;
@@ -119,7 +123,8 @@ inline V move(V from, V to, float turn) {
   return d - turn * ((turns + 12582912.0F) - 12582912.0F);  // to the nearest whole
 }
 
-/// The same to rounding, and at half a turn to either side: of bounds.
+/// Returns to - from less whole turns up to rounding, and at half a turn to either side: enough for
+/// bounds.
 template <bool kWraps, class V>
 inline V move_about(V from, V to, double turn) {
   const V d = to - from;
@@ -127,8 +132,9 @@ inline V move_about(V from, V to, double turn) {
   return d - turn * ((d * (1 / 6.2831853071795862) + 6755399441055744.0) - 6755399441055744.0);
 }
 
-/// `best`, or what a partner with the value gives where that is less. Partners that better no lane's best are left before the root
-/// is drawn. `sure`: a measure of the move up to which every joint stays within its bound; negative where no measure tells.
+/// Returns `best`, or the value through a partner where that is less. Partners that better no
+/// lane's best are left out before the square root. `sure` is a measure of the move up to which
+/// every joint stays within its bound; negative where there is no such measure.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
 inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V value, V best, T sure) {
   const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;  // far above what the sum may lose
@@ -140,11 +146,11 @@ inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V va
     step[j] = to[j] - from[j];
     longest = larger(longest, magnitude(step[j]));
   }
-  if constexpr (kWraps)  // below half a turn there is nothing to take away, and the division is dear
+  if constexpr (kWraps)  // below half a turn nothing is taken away, and dividing is slow
     if (any_less(V{} + T(3), longest))
       for (int j = 0; j < 7; ++j) step[j] = move<kWraps>(from[j], to[j], task.turn[j]);
   for (int j = 0; j < 7; ++j) x[j] = task.scale[j] * step[j];
-  V measure, limit;  // what the cost grows with, and of a cost as large as the room
+  V measure, limit;  // a measure that grows with the cost, and its largest allowed value
   if constexpr (kMetric == RelaxMetric::kL2) {
     measure = ((x[0] * x[0] + x[1] * x[1]) + x[2] * x[2]) + x[3] * x[3] + ((x[4] * x[4] + x[5] * x[5]) + x[6] * x[6]);
     limit = room * room;
@@ -167,7 +173,8 @@ inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V va
   return total < best ? total : best;
 }
 
-/// As many nodes as V has lanes, from the run's node `at`. The middle partner, first, is mostly the best.
+/// Relaxes as many nodes as V has lanes, from the run's node `at` on. The middle partner comes
+/// first, since it is mostly the best.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
 inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
   V from[7];
@@ -182,7 +189,8 @@ inline void relax_lanes(const RelaxTask<T>& task, int at, T sure) {
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
 
-/// A measure of a move up to which every joint stays within its bound; negative where no measure tells.
+/// Returns a measure of a move up to which every joint stays within its bound; negative where there
+/// is none.
 template <RelaxMetric kMetric, class T>
 T sure_measure(const RelaxTask<T>& task) {
   T sure = 0;
@@ -210,15 +218,15 @@ void relax_run(const RelaxTask<T>& task) {
   for (; at < task.n; ++at) relax_lanes<T, kMetric, kWraps>(task, at, sure);
 }
 
-/// Bounds of the moves from the nodes first ... last - 1 that any edge may make: of each joint a middle and how far from it a
-/// partner may stand.
+/// Bounds, for each joint a middle and a distance from it, where partners of the nodes first ...
+/// last - 1 may be.
 template <bool kWraps>
 struct Reach {
   double middle[7], radius[7];
   int last;
-  /// Takes nodes for as long as they stay together, at most `most`.
+  /// Adds nodes for as long as they stay together, at most `most`.
   Reach(const RelaxTask<double>& task, int first, int most) : last(first + 1) {
-    constexpr double kTogether = 1;     // rad: nodes further apart are better looked at by themselves
+    constexpr double kTogether = 1;     // rad: nodes further apart are looked at by themselves
     constexpr double kRounding = 1e-9;  // far above that of a few operations on angles
     double low[7] = {}, high[7] = {};
     for (; last < first + most; ++last) {
@@ -239,8 +247,8 @@ struct Reach {
       radius[j] = task.bound[j] + (high[j] - low[j]) / 2 + kRounding;
     }
   }
-  /// Above 0 where a joint of the partner is out of every node's reach. The last joints come first: they move most, and mostly
-  /// tell.
+  /// Returns values above 0 in lanes whose partner has a joint out of every node's reach. The last
+  /// joints come first: they move most and mostly decide.
   template <class V>
   V excess(const RelaxTask<double>& task, int partner) const {
     const auto of = [&](int j) {
@@ -249,14 +257,14 @@ struct Reach {
     const V most = larger(larger(of(6), of(5)), larger(of(4), of(3)));
     return none_within(most) ? most : larger(larger(most, of(2)), larger(of(1), of(0)));
   }
-  /// Whether every lane is above 0.
+  /// Returns true if every lane is above 0.
   template <class V>
   static bool none_within(V excess) {
     return !any_less(excess, V{} + 1e-300);
   }
 };
 
-/// Nodes from `at` on, as many as V has lanes, with one partner each of those listed.
+/// Relaxes as many nodes as V has lanes, from `at` on, with each of the partners listed.
 template <class V, RelaxMetric kMetric, bool kWraps>
 inline void relax_with(const RelaxTask<double>& task, int at, const int* partners, int count, double sure) {
   V from[7];
@@ -270,8 +278,8 @@ inline void relax_with(const RelaxTask<double>& task, int at, const int* partner
   __builtin_memcpy(task.best + at, &best, sizeof best);
 }
 
-/// Runs of nodes near each other with the partners in their reach. A vector may reach into the next run, whose nodes meet all of
-/// theirs then.
+/// Relaxes runs of nodes near each other with the partners in their reach. A vector may extend into
+/// the next run, whose nodes then meet all of their own partners.
 template <RelaxMetric kMetric, bool kWraps>
 void relax_all_run(const RelaxTask<double>& task) {
   using Lanes = typename Widest<double>::Lanes;
@@ -322,7 +330,7 @@ void relax(const RelaxTask<T>& task) {
     task.wraps ? relax_run<RelaxMetric::kMax, true>(task) : relax_run<RelaxMetric::kMax, false>(task);
 }
 
-/// The least of the lanes, by halves.
+/// Returns the least of the lanes, by halves.
 template <class V, class T>
 inline T least_lane(V lanes) {
   constexpr int kLanes = sizeof(V) / sizeof(T);

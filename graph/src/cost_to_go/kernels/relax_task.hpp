@@ -5,7 +5,8 @@
 
 namespace swivel {
 
-/// What a lattice's metric and the joints' largest moves on a step ask of the kernels; the runs that are to meet are the caller's.
+/// Returns a kernel's task with a lattice's metric and the joints' largest moves on a step; the
+/// caller adds the runs of nodes.
 inline RelaxTask<double> relax_task(const Lattice& lattice, int step) {
   RelaxTask<double> task;
   task.metric = lattice.cost().metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;

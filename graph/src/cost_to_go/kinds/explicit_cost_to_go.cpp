@@ -75,7 +75,7 @@ double ExplicitCostToGo::relax_one_forward(int layer, int slot, const Values& be
 
 void ExplicitCostToGo::compute_removals() {
   const TraceSpan span("repair");
-  bool changed = false;  // the layer after
+  bool changed = false;  // in the layer after
   Values settled;
   for (int layer = goal_; layer >= 0 && (changed || !verdicts_.pending.empty()); --layer) {
     budget_.poll();

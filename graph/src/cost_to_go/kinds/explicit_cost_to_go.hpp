@@ -7,8 +7,9 @@
 
 namespace swivel {
 
-/// Cost-to-go of a lattice whose layers list their nodes: every node of a layer against every node of the next, in vector code.
-/// Layers are repaired backwards from the last removal for as long as values change. Memory: 64 bytes a node.
+/// The cost-to-go of a lattice whose layers list their nodes: every node of a layer against every
+/// node of the next, in vector code. Removals are repaired backwards from the last one, layer by
+/// layer, for as long as values change. Memory: 64 bytes a node.
 class ExplicitCostToGo final : public LayerValues {
  public:
   explicit ExplicitCostToGo(const Lattice& lattice, const Budget& budget = {});
@@ -21,7 +22,7 @@ class ExplicitCostToGo final : public LayerValues {
   void compute_removals() override;
   void begin(int layer, Values& out) override { out.assign(static_cast<std::size_t>(lattice_->slots(layer)), 0.0); }
   void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
-  /// By plain loops.
+  /// Computes one node's cost-to-go by plain loops.
   [[nodiscard]] double relax_one(int layer, int slot) override;
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
 

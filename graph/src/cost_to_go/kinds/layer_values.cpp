@@ -9,7 +9,8 @@ namespace swivel {
 
 namespace {
 
-/// Whether the removal of one of these edges, to or from nodes of these values, can have changed a value.
+/// Returns true if removing one of these edges, to or from nodes with the values `others`, can have
+/// changed a node's value.
 bool gives(const std::vector<Verdicts::HalfEdge>& edges, const std::vector<double>& others, double value) {
   return std::any_of(edges.begin(), edges.end(), [&](const Verdicts::HalfEdge& edge) {
     return edge.cost + others[static_cast<std::size_t>(edge.other)] == value;

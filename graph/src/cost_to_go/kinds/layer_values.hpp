@@ -7,8 +7,9 @@
 
 namespace swivel {
 
-/// A cost-to-go that keeps the values of all nodes, a list for each layer: what lattices that list their nodes and grids of rolls
-/// have in common. How the nodes of a layer meet those of its neighbours is left to the classes derived from it.
+/// A cost-to-go that keeps the values of all nodes, a list for each layer: what lattices that list
+/// their nodes and grids of rolls have in common. Derived classes decide which nodes of
+/// neighbouring layers are joined.
 class LayerValues : public CostToGo {
  public:
   [[nodiscard]] double at(int layer, int slot) const override {
@@ -21,18 +22,22 @@ class LayerValues : public CostToGo {
   using Values = std::vector<double>;  // [slot]
   LayerValues(const Lattice& lattice, const Budget& budget);
 
-  /// Replaces `out` by 0 for every node of a layer that exists, infinite elsewhere.
+  /// Replaces `out` by 0 for every node of a layer that exists, and infinity elsewhere.
   virtual void begin(int layer, Values& out) = 0;
-  /// Replaces `out` by the least edge cost plus value over `others`, for every node of a layer; `step` numbers the step between the
-  /// two. Neither removals nor what nodes themselves cost count.
+  /// Replaces `out`, for every node of `layer`, by the least of edge cost plus value over the nodes
+  /// of `other_layer`, whose values are `others`; `step` numbers the step between the two. Neither
+  /// removals nor what nodes themselves cost count.
   virtual void relax(int step, int layer, int other_layer, const Values& others, Values& out) = 0;
-  /// The same for one node over what is not removed: of the next layer, at(); of the one before.
+  /// Returns the least of edge cost plus at() over the next layer for one node, over what is not
+  /// removed.
   [[nodiscard]] virtual double relax_one(int layer, int slot) = 0;
+  /// Returns the least of edge cost plus value over the layer before, whose values are `before`,
+  /// for one node, over what is not removed.
   [[nodiscard]] virtual double relax_one_forward(int layer, int slot, const Values& before) = 0;
-  /// What has been solved of a layer is not wanted again soon.
+  /// Says that what has been solved of a layer is not wanted again soon.
   virtual void done_with(int layer) { static_cast<void>(layer); }
 
-  /// Values of a layer from those of the next, over what is not removed.
+  /// Computes the values of a layer from those of the next, over what is not removed.
   void solve_layer(int layer, Values& out);
   [[nodiscard]] bool removed(int layer, int slot) const { return verdicts_.node(layer, slot) == Verdict::kRemoved; }
 

@@ -10,7 +10,7 @@ namespace swivel {
 
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // of joints that are kept
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // joints that are kept, at most
 
 }  // namespace
 
@@ -25,7 +25,7 @@ RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
 const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
   Solved& solved = solved_[static_cast<std::size_t>(layer)];
   if (!solved.kept) {
-    // The oldest layers make room, but for the two that are being joined.
+    // The oldest layers make room, except the two that are being joined.
     while (bytes_ > kMostBytes && kept_.size() > 2) forget(kept_.front());
     solved.of_roll.swap(spare_);
     solved.of_roll.resize(static_cast<std::size_t>(lattice_->rolls()));
@@ -79,7 +79,8 @@ void RollCostToGo::take_around(const Values& values) {
   }
 }
 
-/// Nodes that exist, a few that do not among them: a call takes as long as some eight nodes.
+/// Finds runs of nodes that exist; short gaps are included, since a call takes as long as some
+/// eight nodes.
 void RollCostToGo::runs_of(const LayerNodes& nodes, int sheet) {
   constexpr int kGap = 8;
   runs_.clear();
@@ -119,7 +120,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
       if (!own.alive(sheet)) continue;
       double* const best = out.data() + lattice_->slot_of(rank, sheet * angles_);
       runs_of(own, sheet);
-      const int first = sheet / windings * windings;  // of the branch
+      const int first = sheet / windings * windings;  // first sheet of the branch
       for (const int near : lattice_->near(step, rank, other > layer))
         for (int partner = first; partner < first + windings; ++partner) {
           const auto row = static_cast<std::size_t>(near * sheets_ + partner);
@@ -127,7 +128,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
           if (low >= high || runs_.empty()) continue;
           const LayerNodes& theirs = nodes(other, near);
           for (const auto& [begin, end] : runs_) {
-            const int from = pad_ - window + begin;  // of the partners
+            const int from = pad_ - window + begin;  // first of the partners
             if (from >= high || from + (end - begin) - 1 + task.offsets <= low) continue;
             for (std::size_t k = 0; k < kDof; ++k) {
               task.from[k] = own.q(sheet, static_cast<int>(k)) + pad_ + begin;
@@ -225,7 +226,7 @@ void RollCostToGo::compute_removals() {
     int slot;
     double before;
   };
-  std::vector<Change> changed, ahead;  // of the layer, of the next
+  std::vector<Change> changed, ahead;  // in this layer, in the next one to repair
   std::vector<int> stale;
   for (int layer = goal_; layer >= 0 && (!ahead.empty() || !verdicts_.pending.empty()); --layer) {
     budget_.poll();

@@ -9,9 +9,10 @@
 
 namespace swivel {
 
-/// Cost-to-go of a grid of rolls and arm angles, in vector code: the circle of arm angles of each roll and sheet against those of
-/// the rolls nearby, of the same branch. A removal is repaired backwards, node by node, for as long as values change.
-/// Memory: 9 bytes a node; joints besides, some 40 bytes a node of the layers that are kept.
+/// The cost-to-go of a grid of rolls and arm angles, in vector code: the circle of arm angles of
+/// each roll and IK solution against those of the rolls nearby, of the same branch. A removal is
+/// repaired backwards, node by node, for as long as values change. Memory: 9 bytes a node, and some
+/// 40 bytes for the joints of each node of the layers that are kept.
 class RollCostToGo final : public LayerValues {
  public:
   explicit RollCostToGo(const RollLattice& lattice, const Budget& budget = {});
@@ -26,29 +27,31 @@ class RollCostToGo final : public LayerValues {
   void relax(int step, int layer, int other_layer, const Values& others, Values& out) override;
   [[nodiscard]] double relax_one(int layer, int slot) override;
   [[nodiscard]] double relax_one_forward(int layer, int slot, const Values& before) override;
-  void done_with(int layer) override { forget(layer); }  // fresh pages would take longer than solving it again where it is wanted
+  // solving it again takes less than fresh pages
+  void done_with(int layer) override { forget(layer); }
 
   [[nodiscard]] bool begins(int layer) const { return layer == 0 && lattice_->has_start(); }
-  /// The nodes of a layer that is not a given start, for one roll: arm angle j at entry pad_ + j, and around the circle on both
-  /// sides.
+  /// Returns the nodes of a layer that is not a given start, for one roll: arm angle j at entry
+  /// pad_ + j, and around the circle on both sides.
   const LayerNodes& nodes(int layer, int rank);
   void forget(int layer);
-  /// Values of a layer with those around the circle, [rank][sheet][pad_ + j].
+  /// The values of a layer, continued around the circle, [rank][sheet][pad_ + j].
   struct Around {
     Values value;
-    std::vector<std::pair<int, int>> finite;  // [rank][sheet]: those that are lie from the first to before the second
+    // [rank][sheet]: first finite one, and behind the last
+    std::vector<std::pair<int, int>> finite;
   };
   void runs_of(const LayerNodes& nodes, int sheet);
   void take_around(const Values& values);
-  /// `visit(slot b, its joints)` for the nodes of a neighbouring layer that a node may be joined to, whether removed or not, whose
-  /// `worth(b)` is true.
+  /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
+  /// joined to, removed or not, whose worth(b) is true.
   template <class Worth, class Visit>
   void each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit);
 
   const RollLattice* lattice_;
   int angles_, sheets_, pad_;
   Around around_;
-  std::vector<std::pair<int, int>> runs_;  // of arm angles, first and behind the last
+  std::vector<std::pair<int, int>> runs_;  // runs of arm angles: first, and behind the last
   struct Solved {
     std::vector<LayerNodes> of_roll;  // [rank]
     std::vector<char> done;
@@ -57,7 +60,7 @@ class RollCostToGo final : public LayerValues {
   std::vector<Solved> solved_;  // [layer]
   std::vector<int> kept_;       // layers, in the order in which they were first wanted
   std::size_t bytes_ = 0;
-  std::vector<LayerNodes> spare_;  // of a layer that was forgotten, for the next
+  std::vector<LayerNodes> spare_;  // arrays of a layer that was forgotten, for the next
 };
 
 }  // namespace swivel

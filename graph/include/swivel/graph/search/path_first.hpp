@@ -10,20 +10,22 @@
 
 namespace swivel {
 
-/// One slot in each layer 0 ... goal.
+/// A path: one slot in each layer 0 ... goal.
 using SlotPath = std::vector<int>;
 
-/// Best paths found before in one cost-to-go, between sweeps to a goal, while ever more was removed or came to cost something. From
-/// a node that one of them went through, and whose cost-to-go is what it was then, the best path goes on as that one did, as long
-/// as that still costs as little: removals leave fewer ways to keep a cost, so the first of them in slot order stays the first.
-/// That takes sums of costs that are exact: paths of kExact units (Lattice::cost_unit) and more are not followed.
+/// Best paths found before in one cost-to-go, between sweeps to a goal, while ever more was removed
+/// or came to cost more. The best path follows an earlier one from any node of it whose cost-to-go
+/// is what it was, as long as that path still costs as little: removals leave fewer ways to keep a
+/// cost, so the first path in slot order stays the first. That needs sums of costs to be exact:
+/// paths of kExact units (Lattice::cost_unit()) and more are not followed.
 class EarlierPaths {
  public:
   static constexpr double kExact = 0x1p13;  // costs are multiples of 2^-40 of a unit, and a double has 53 bits
 
-  /// Of a cost-to-go that is not being repaired; empty paths are left out.
+  /// Adds a best path of a cost-to-go that has been repaired. Empty paths are left out.
   void add(const SlotPath& path, const CostToGo& cost_to_go);
-  /// The earlier path that the best path follows from this node on, until the next add(); null where there is none.
+  /// Returns the earlier path that the best path follows from a node on, valid until the next
+  /// add(); null where there is none.
   [[nodiscard]] const SlotPath* from(int layer, int slot, const CostToGo& cost_to_go);
 
  private:
@@ -37,60 +39,71 @@ class EarlierPaths {
   std::deque<Earlier> earlier_;  // the last one first
 };
 
-/// The best path from layer 0 to the goal layer over what CostToGo has not removed: from CostToGo::first_slot() on the least cost,
-/// smallest slots first among equals. Boost.Graph A* with the perfect heuristic, so it expands one vertex a layer, until it follows
-/// an earlier path, where some are given. Empty when there is none.
+/// Returns the best path from layer 0 to the goal layer over what the cost-to-go has not removed:
+/// from CostToGo::first_slot() on the least cost, the smallest slots first among equals; empty when
+/// there is none. It is Boost.Graph's A* with the perfect heuristic, which expands one vertex a
+/// layer until it meets an earlier path, where such are given. Adds to `expansions`.
 [[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier = nullptr);
 
+/// What a search found.
 struct SearchOutcome {
   SlotPath path;  ///< empty: no path exists
   double cost = 0;
 };
 
+/// How path_first() searches. Changes the work, never the answer.
 struct PathFirstOptions {
-  int batch = 1;  ///< questions asked at once; the answers, not their timing, decide what follows
-  /// A path that has failed is asked about further until the round has asked so many questions: they take about as long as a
-  /// repair and the next path.
+  int batch = 1;  ///< questions asked at once; answers, not their timing, decide what follows
+  /// A path that has failed is asked about further until the round has asked so many questions,
+  /// which take about as long as a repair and the next path.
   int worth_a_round = 64;
-  /// Most questions about the neighbours of failed nodes before the next path is sought, and one more for so many lattice nodes: an
-  /// obstacle blocks more nodes of a finer lattice, and a round costs more.
+  /// Most questions in a round about the neighbours of failed nodes: `grow`, and one more for every
+  /// `grow_one_in` nodes of the lattice, since an obstacle blocks more nodes of a finer lattice,
+  /// and a round costs more.
   int grow = 64, grow_one_in = 64;
-  /// Neighbours are asked about on other threads while the caller takes the answers about those before them.
+  /// True: neighbours are asked about on other threads while the caller takes the answers about
+  /// those before them.
   bool grow_beside = false;
 };
 
+/// The work of a search.
 struct SearchCounters {
   std::int64_t expansions = 0, iterations = 0;
-  SlotPath candidate;  ///< tried last
+  SlotPath candidate;  ///< the path tried last
 };
-/// What failed in a search of the same lattice before, and is likely to fail again.
+/// What failed in an earlier search of the same lattice, and is likely to fail again.
 struct AskedFirst {
   std::vector<NodeQuestion> nodes;
   std::vector<EdgeQuestion> edges;
 };
 
-/// A node that failed in the search of another lattice like this one, whose path lay a little elsewhere.
+/// A node that failed in the search of another lattice like this one, whose path lay a little
+/// elsewhere.
 struct Suspect {
   int layer = 0, slot = 0;
   FailureId likely = kNoFailure;
 };
 
-/// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic lattice, validate it where failures
-/// were found before, remove what fails and the failing region around it, repair the cost-to-go, repeat. What nodes cost themselves
-/// counts as 0 until a path through them is the best, and raises their cost-to-go then. The first path found valid is the
-/// answer, the first in the order of answers (docs/model.md); when none is left, or a layer has no node left, what is removed
-/// proves that none exists. Then the cost-to-go may not have followed yet. `first` is asked about before the first path, all at
-/// once: what it holds changes the work, never the answer. Throws Stopped.
+/// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic
+/// lattice, validate it where failures were found before, remove what fails and the failing region
+/// around it, repair the cost-to-go, and repeat. What nodes themselves cost counts as 0 until a
+/// path through them is the best, and then raises their cost-to-go. Returns the first path found
+/// valid, the first in the order of answers (docs/model.md); an empty path when none is left or a
+/// layer has no node left: what is removed then proves that none exists, though the cost-to-go may
+/// not have followed yet. `first` is asked about before the first path, all at once; it changes the
+/// work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                        SearchCounters& counters, const AskedFirst& first = {});
 
-/// Asks about nodes before the first sweep and removes those that fail, so that neither sweep nor search begins with what failed a
-/// moment ago. It ends where hardly any fails. Changes the work, never the answer. Throws Stopped.
+/// Asks about nodes before the first sweep and removes those that fail, so that neither sweep nor
+/// search begins with what failed a moment ago. It ends where fewer than half fail. Changes the
+/// work, never the answer. Throws Stopped.
 void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects);
 
-/// Deepest layer that a valid path from layer 0 reaches, once path_first has found none; -1 when layer 0 has no valid node. Leaves
-/// the cost-to-go with that layer as its goal, and the best valid path there, in the order of answers, as the last candidate of
-/// `counters`: whatever was asked before. Throws Stopped.
+/// Returns the deepest layer that a valid path from layer 0 reaches, once path_first() has found
+/// none; -1 when layer 0 has no valid node. The cost-to-go then has that layer as its goal, and
+/// `counters` the best valid path there, in the order of answers, as its candidate: whatever was
+/// asked before. Throws Stopped.
 [[nodiscard]] int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
                                       SearchCounters& counters);
 

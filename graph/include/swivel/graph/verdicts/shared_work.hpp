@@ -4,7 +4,7 @@
 
 namespace swivel {
 
-/// How work in independent parts is done: by the caller alone, or by threads that the caller lends.
+/// Runs work in independent parts: by the caller alone, or by threads that the caller lends.
 struct SharedWork {
   int threads = 1;
   /// Calls body(part, worker) for part = 0 ... parts - 1, worker in 0 ... threads - 1, each worker on one thread at a time.

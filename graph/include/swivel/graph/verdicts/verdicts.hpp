@@ -11,60 +11,73 @@
 
 namespace swivel {
 
-/// What is known of a node or edge beyond the closed form.
-enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };  // zeros are kUnknown
+/// What is known of a node or edge beyond the closed form: nothing, that it is valid, or that it is
+/// removed.
+enum class Verdict : std::uint8_t { kUnknown, kValid, kRemoved };  // zeroed memory is kUnknown
 
-/// What the validity has said of the nodes and edges of a lattice: which of them are removed, and what nodes cost themselves.
-/// Memory: a byte a node, and 9 where a cost is known in its layer.
+/// What the Validity has answered about the nodes and edges of a lattice: which of them are
+/// removed, and what nodes themselves cost. Memory: a byte a node, and 9 more where a cost is known
+/// in its layer.
 class Verdicts {
  public:
   explicit Verdicts(const Lattice& lattice);
-  /// Nothing is known any more. As quick as what was known is little.
+  /// Forgets everything. The less is known, the less time it takes.
   void clear();
 
+  /// Returns what is known of a node.
   [[nodiscard]] Verdict node(int layer, int slot) const { return node_[index(layer, slot)]; }
-  /// Of the slots from `slot` on.
+  /// Returns the verdicts of a layer's slots, from `slot` on.
   [[nodiscard]] const Verdict* nodes(int layer, int slot) const { return node_.data() + index(layer, slot); }
-  /// Of every node, layer by layer in slot order.
+  /// Returns the verdicts of all nodes, layer by layer in slot order.
   [[nodiscard]] std::span<const Verdict> nodes() const { return {node_.data(), node_.size()}; }
+  /// Notes that a node is valid.
   void keep_node(int layer, int slot);
+  /// Removes a node.
   void remove_node(int layer, int slot) { remove_nodes(layer, {&slot, 1}); }
+  /// Removes nodes of a layer. Those removed already are left out.
   void remove_nodes(int layer, std::span<const int> slots);
 
-  /// Slot a of `layer`, slot b of the next.
+  /// Returns what is known of the edge from slot a of `layer` to slot b of the next.
   [[nodiscard]] Verdict edge(int layer, int a, int b) const;
+  /// Notes that an edge is valid.
   void keep_edge(int layer, int a, int b);
+  /// Removes an edge with its cost.
   void remove_edge(int layer, int a, int b, double cost);
 
-  /// Nodes and edges removed so far.
+  /// Returns the number of nodes and edges removed so far.
   [[nodiscard]] std::int64_t removed() const { return removed_; }
 
-  /// What a node costs besides the edges to and from it: by the lattice alone (Lattice::node_cost) until it is known.
+  /// Returns what a node costs besides the edges to and from it: by the lattice alone
+  /// (Lattice::node_cost()) until the Validity has said more.
   [[nodiscard]] double cost(int layer, int slot) const {
     const double* costs = this->costs(layer);
     return costs ? costs[slot] : 0;
   }
-  /// Of all slots of a layer; null where all are 0.
+  /// Returns the costs of all slots of a layer, null where all are 0.
   [[nodiscard]] const double* costs(int layer) const {
     return costs_.empty() || costs_[static_cast<std::size_t>(layer)].empty() ? nullptr
                                                                              : costs_[static_cast<std::size_t>(layer)].data();
   }
+  /// Returns true if set_cost() has been called for the node.
   [[nodiscard]] bool knows_cost(int layer, int slot) const { return !cost_known_.empty() && cost_known_[index(layer, slot)] != 0; }
-  /// Once a node; no less than it cost by the lattice alone.
+  /// Sets what a node costs, at most once for each node. It must not be less than by the lattice
+  /// alone.
   void set_cost(int layer, int slot, double cost);
 
+  /// A removed edge as one of its nodes sees it.
   struct HalfEdge {
-    int other = 0;  ///< slot
+    int other = 0;  ///< slot of the other node
     double cost = 0;
   };
-  /// Edges removed between a layer and the next, by the slots of their tails and of their heads.
+  /// The edges removed between a layer and the next, by the slots of their tails and of their
+  /// heads.
   struct RemovedEdges {
     std::map<int, std::vector<HalfEdge>> tails, heads;
   };
-  /// Null where none is.
+  /// Returns the edges removed between a layer and the next, null where there are none.
   [[nodiscard]] const RemovedEdges* removed_edges(int layer) const;
 
-  /// What came in since the cost-to-go was last made exact, by layer.
+  /// What has changed in a layer since the cost-to-go was last repaired.
   struct Pending {
     std::vector<int> nodes;   ///< slots removed
     std::vector<int> tails;   ///< slots that lost an edge
@@ -94,7 +107,7 @@ class Verdicts {
   const Lattice* lattice_;
   std::vector<std::size_t> first_;  // of each layer
   ZeroedArray<Verdict> node_;
-  std::vector<std::size_t> known_;          // indices of nodes, as they came to be known
+  std::vector<std::size_t> known_;          // indices of nodes, in the order in which they became known
   std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
   std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;

@@ -13,10 +13,11 @@
 
 namespace swivel {
 
-/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer * (most slots of a layer) + slot.
-/// The best path begins at vertex(0, CostToGo::first_slot()). Edges are made when asked for, over what CostToGo has not removed,
-/// and only those whose cost plus cost-to-go does not exceed their tail's own cost-to-go by more than `slack` (0: just the edges of
-/// optimal paths).
+/// The lattice as a Boost.Graph IncidenceGraph that stores no vertex and no edge: vertex = layer *
+/// (most slots of a layer) + slot. The best path begins at vertex(0, CostToGo::first_slot()). Edges
+/// are made when asked for: those that the cost-to-go has not removed and whose cost plus
+/// cost-to-go exceeds their tail's own cost-to-go by at most `slack` (0: just the edges of best
+/// paths).
 class ImplicitLattice {
  public:
   using Vertex = std::int64_t;
@@ -26,18 +27,26 @@ class ImplicitLattice {
     bool operator==(const Edge&) const = default;
   };
 
+  /// Makes the graph over a cost-to-go, which must outlive it.
   explicit ImplicitLattice(CostToGo& cost_to_go, double slack = 0);
 
+  /// Returns the vertex of a node.
   [[nodiscard]] Vertex vertex(int layer, int slot) const { return layer * width_ + slot; }
+  /// Returns the layer of a vertex.
   [[nodiscard]] int layer_of(Vertex v) const { return static_cast<int>(v / width_); }
+  /// Returns the slot of a vertex.
   [[nodiscard]] int slot_of(Vertex v) const { return static_cast<int>(v % width_); }
-  /// Most slots of a layer.
+  /// Returns the most slots that a layer has.
   [[nodiscard]] std::int64_t width() const { return width_; }
+  /// Returns the cost-to-go of a vertex.
   [[nodiscard]] double cost_to_go(Vertex v) const { return cost_to_go_->at(layer_of(v), slot_of(v)); }
+  /// Returns the number of vertices, those without a node included.
   [[nodiscard]] std::int64_t vertices() const { return cost_to_go_->lattice().layers() * width_; }
+  /// Returns the cost-to-go.
   [[nodiscard]] const CostToGo& values() const { return *cost_to_go_; }
 
-  /// The edges that leave v. Valid until the next call: a search looks at one vertex's edges at a time.
+  /// Returns the edges that leave v, valid until the next call: a search looks at one vertex's
+  /// edges at a time.
   [[nodiscard]] const std::vector<Edge>& expand(Vertex v) const;
 
  private:
