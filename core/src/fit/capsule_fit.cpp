@@ -159,7 +159,8 @@ Bar bar_about(const Points& all, const Effort& effort) {
     add(axes.col(k).normalized());
     add(Vector3d::Unit(k));
   }
-  for (int k = 0; k < effort.directions; ++k) add(spiral(k, 2 * effort.directions));  // a half sphere: an axis has no sign
+  // a half sphere: an axis has no sign
+  for (int k = 0; k < effort.directions; ++k) add(spiral(k, 2 * effort.directions));
   const auto smaller = [](const Tried& a, const Tried& b) { return a.bar.volume() < b.bar.volume(); };
   std::stable_sort(tried.begin(), tried.end(), smaller);
   for (int n = 0; n < effort.refined; ++n) {

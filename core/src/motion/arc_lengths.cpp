@@ -36,7 +36,8 @@ ArcLengths::~ArcLengths() = default;
 /// Adds a point to the end of one side of a curve. Returns false where the curve ends.
 bool ArcLengths::follow(Curve& curve, std::size_t side, const Pose& tool) const {
   constexpr double kLongest = 0.1, kShortest = 1e-3;  // rad
-  constexpr double kStraight = 0.97, kAside = 0.2;    // cosine of the turn of the tangent; of the step
+  // cosine of the turn of the tangent; of the step
+  constexpr double kStraight = 0.97, kAside = 0.2;
   if (curve.ended[side]) return false;
   const Point& last = curve.side[side].back();
   for (double step = kLongest; step >= kShortest; step /= 2) {

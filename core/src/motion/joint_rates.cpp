@@ -8,7 +8,8 @@
 namespace swivel {
 
 JointRates joint_rates(const Chain& chain, const Limits& limits, const std::string& source) {
-  constexpr double kAcceleration = 10, kJerk = 100;  // of small and middle-sized arms, on the slow side
+  // of small and middle-sized arms, on the slow side
+  constexpr double kAcceleration = 10, kJerk = 100;
   JointRates rates;
   JointRates::Assumed no_acceleration{
       JointRate::kAcceleration,

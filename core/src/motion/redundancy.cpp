@@ -209,7 +209,8 @@ class ArcLengthRedundancy final : public Redundancy {
     }
     return std::make_unique<ArcLengths>(lattice_.chain(), lattice_.path(), std::move(origins));
   }
-  [[nodiscard]] double coordinate(int, const Config&) const override { return 0; }  // lengths begin at the joints
+  // lengths begin at the joints
+  [[nodiscard]] double coordinate(int, const Config&) const override { return 0; }
   void label(std::vector<TrajectoryRow>& rows) const override {
     for (TrajectoryRow& row : rows) {
       row.phi = arc_angle(lattice_.chain(), row.q);

@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kChange = 1e3;      // weight of too large a change of the coordinate
 constexpr double kLeastMove = 1e-9;  // rad; rounds off the tip of the norm
-constexpr double kLeastRoll = 1e-5;  // rad; rounds off the tip of the roll's cost, at which optima stand
+// rad; rounds off the tip of the roll's cost, at which optima stand
+constexpr double kLeastRoll = 1e-5;
 
 /// Joints of all layers at given coordinates, and their first two derivatives by them.
 struct Layers {
@@ -27,7 +28,8 @@ struct Bend {
   double h = 0;
 };
 
-/// The norm of a weighted move: its gradient is `way`, its Hessian (power - 1) (diag(spread) - way way^T) / length.
+/// The norm of a weighted move: its gradient is `way`, its Hessian (power - 1) (diag(spread) - way
+/// way^T) / length.
 struct Norm {
   double length = 0;
   Config way, spread;

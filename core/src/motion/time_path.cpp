@@ -184,12 +184,15 @@ class Piece {
   /// acceleration and jerk of its own, and the first answer pays for it with more slowing down than
   /// is needed. Returns the rounds.
   int speed_up(const Budget& budget) {
-    constexpr double kNearIdeal = 1.02, kUse = 0.99;  // of the time at the speed asked for; of the room
+    // of the time at the speed asked for; of the room
+    constexpr double kNearIdeal = 1.02, kUse = 0.99;
     constexpr double kFaster = 1.02, kHarder = 1.15;  // most that a round changes
-    constexpr double kHardest = 3;                    // times what one joint's acceleration allows: another bend may help
-    constexpr double kLittle = 3e-4;                  // of the time
-    constexpr int kRounds = 12, kRepairs = 6;         // rounds in all; attempts to keep the rates again
-    constexpr int kFew = 2;                           // gains that are next to nothing
+    // times what one joint's acceleration allows: another bend may help
+    constexpr double kHardest = 3;
+    constexpr double kLittle = 3e-4;  // of the time
+    // rounds in all; attempts to keep the rates again
+    constexpr int kRounds = 12, kRepairs = 6;
+    constexpr int kFew = 2;  // gains that are next to nothing
     int rounds = 0, few = 0;
     std::vector<double> slower = slower_, gentler = gentler_;
     double least = end_;
@@ -723,8 +726,9 @@ class Samples {
   const Budget* budget_;
   bool near_;  // true: samples are dense enough to give speeds and accelerations
   std::vector<double> travel_;
-  std::vector<Pose> tool_;                     // at the samples
-  std::vector<std::vector<double>> for_tool_;  // of pieces and places: factors of speeds, from the tool's excess
+  std::vector<Pose> tool_;  // at the samples
+  // of pieces and places: factors of speeds, from the tool's excess
+  std::vector<std::vector<double>> for_tool_;
   std::vector<Asked> asked_;
   // m: how far the tool strays between each sample and the one before
   std::vector<double> strayed_;
@@ -733,7 +737,8 @@ class Samples {
 /// Returns the end of the warning about an assumed rate, where the motion goes as far as it allows
 /// and takes longer than at the speed asked for; else "".
 std::string what_it_decides(const JointRates::Assumed& assumed, const TimedPath& motion, const Chain& chain) {
-  constexpr double kLonger = 1.02, kReached = 0.9;  // motions are planned up to 0.99 of a rate, and slowed down to a little less
+  // motions are planned up to 0.99 of a rate, and slowed down to a little less
+  constexpr double kLonger = 1.02, kReached = 0.9;
   TimedPath::Peak most;
   for (std::size_t j = 0; j < kDof; ++j)
     if (const TimedPath::Peak& peak = motion.peaks[static_cast<std::size_t>(assumed.rate)][j];

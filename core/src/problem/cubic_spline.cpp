@@ -8,7 +8,8 @@
 namespace swivel {
 
 CubicSpline::CubicSpline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)), bend_(x_.size(), 0) {
-  // Continuity of the first derivative, h0 m0 + 2 (h0 + h1) m1 + h1 m2 = 6 (slope1 - slope0), by elimination; m = 0 at both ends.
+  // Continuity of the first derivative, h0 m0 + 2 (h0 + h1) m1 + h1 m2 = 6 (slope1 - slope0), by
+  // elimination; m = 0 at both ends.
   std::vector<double> above(x_.size(), 0);
   for (std::size_t k = 1; k + 1 < x_.size(); ++k) {
     const double h0 = x_[k] - x_[k - 1], h1 = x_[k + 1] - x_[k];

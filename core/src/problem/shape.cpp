@@ -46,7 +46,8 @@ bool is_closed(const TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     std::array<std::uint64_t, 3> v{};
     for (std::size_t k = 0; k < 3; ++k) v[k] = static_cast<std::uint64_t>(number[static_cast<std::size_t>(triangle[k])]);
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;  // a sliver has no area and bounds nothing
+    // a sliver has no area and bounds nothing
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint64_t from = v[k], to = v[(k + 1) % 3];
       edges.push_back(std::min(from, to) << 33 | std::max(from, to) << 1 | static_cast<std::uint64_t>(from < to));

@@ -16,14 +16,15 @@ namespace {
 
 constexpr double kMissTolerance = 1e-3;    // m
 constexpr double kAngleTolerance = 10e-3;  // rad
-constexpr double kExact = 1e-11;           // m, rad: below this the fitted chain is the chain, to rounding
-constexpr double kSnap = 1e-5;             // m, rad: shorter normals, smaller twists are zero
-constexpr double kResidual = 1e-9;         // m, rad: pose error of every solution, at most
-constexpr double kGoal = 1e-11;            // m, rad: where Newton ends
-constexpr double kSame = 1e-7;             // rad: two solutions nearer than this are one
-constexpr double kAligned = 1e-7;          // sine below which two axes are aligned
-constexpr double kNearlyAligned = 1e-4;    // below it they may be aligned, so near a double root
-constexpr double kFarthest = 0.5;          // rad: farthest from a fold for its other solution
+// m, rad: below this the fitted chain is the chain, to rounding
+constexpr double kExact = 1e-11;
+constexpr double kSnap = 1e-5;           // m, rad: shorter normals, smaller twists are zero
+constexpr double kResidual = 1e-9;       // m, rad: pose error of every solution, at most
+constexpr double kGoal = 1e-11;          // m, rad: where Newton ends
+constexpr double kSame = 1e-7;           // rad: two solutions nearer than this are one
+constexpr double kAligned = 1e-7;        // sine below which two axes are aligned
+constexpr double kNearlyAligned = 1e-4;  // below it they may be aligned, so near a double root
+constexpr double kFarthest = 0.5;        // rad: farthest from a fold for its other solution
 
 using Candidate = std::array<Angle, kSix>;
 struct Candidates {
@@ -153,8 +154,8 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   const Vector3d& a = wrist.axis[3];
   const Vector3d& b = wrist.axis[4];
   const Vector3d& c = wrist.axis[5];
-  // cosine cos(q_5) + sine sin(q_5) = R c . a less its constant part; the discriminant by the cross product, since near the
-  // singular pose the cosine has lost half its digits.
+  // cosine cos(q_5) + sine sin(q_5) = R c . a less its constant part; the discriminant by the cross
+  // product, since near the singular pose the cosine has lost half its digits.
   const Vector3d target = R * c, e = R * wrist.across;
   const double P = wrist.middle_cosine, Q = wrist.middle_sine, square = P * P + Q * Q, cosine = a.dot(target);
   const double K = cosine - wrist.first_cosine * wrist.last_cosine;
@@ -213,7 +214,8 @@ void solve(const SphericalWrist& wrist, const Pose& D, double slack, double alig
 void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned, Candidates& result) {
   const CommonNormal& normal = arm.normal;
   const Vector3d &a1 = arm.axis[0], &z = arm.axis[1], &a5 = arm.axis[4], &a6 = arm.axis[5];
-  // u = Rot(axis 1, q_1) z keeps D a_6 . u = z . R_5 a_6 and the height of a point of axis 6 along u.
+  // u = Rot(axis 1, q_1) z keeps D a_6 . u = z . R_5 a_6 and the height of a point of axis 6 along
+  // u.
   const double along = a1.dot(z);
   const Vector3d still = along * a1, cosine = z - still, sine = a1.cross(z);
   const auto wave = [&](const Vector3d& v, double less) { return Wave{still.dot(v) - less, cosine.dot(v), sine.dot(v)}; };
@@ -255,7 +257,8 @@ void solve(const ThreeParallel& arm, const Pose& D, double slack, double aligned
     const double apart = across_part(a6, to).norm();
     if (apart > kAligned) add_planar(turn_between(a6, from, to));
     if (apart < std::max(kNearlyAligned, aligned)) {
-      // Axis 6 is parallel to axes 2-4 and turns freely: it makes the elbow as near to a right angle as it can.
+      // Axis 6 is parallel to axes 2-4 and turns freely: it makes the elbow as near to a right
+      // angle as it can.
       const Vector3d arm6 = across_part(a6, wrist - normal.second);
       const auto planar = [&](const Vector3d& v) { return across_part(z, left.linear() * v); };
       const Vector3d f = across_part(z, left * Vector3d(wrist - arm6) - arm.point[1]), c = planar(arm6),
@@ -503,7 +506,8 @@ std::optional<ClosedForm> ClosedForm::of(const SixChain& chain) {
       }
       const double miss = std::max(deviation.offset, deviation.angle);
       form.fit_.exact = miss < kExact;
-      // Roots of a quadratic that misses by e are off by its square root; lengths are of the order of a metre.
+      // Roots of a quadratic that misses by e are off by its square root; lengths are of the order
+      // of a metre.
       form.slack_ = std::clamp(100 * miss, 1e-6, 1e-2);
       form.aligned_ = 100 * miss;
       form.chain_ = chain;
@@ -583,7 +587,8 @@ LockMethod lock_method(const Chain& chain) {
   for (int sample = 1; sample <= kSamples; ++sample) {
     Config q;
     for (int j = 0; j < kDof; ++j) {
-      constexpr std::array<double, kDof> kPrime = {2, 3, 5, 7, 11, 13, 17};  // Kronecker points: multiples of square roots
+      // Kronecker points: multiples of square roots
+      constexpr std::array<double, kDof> kPrime = {2, 3, 5, 7, 11, 13, 17};
       const double turns = sample * std::sqrt(kPrime[static_cast<std::size_t>(j)]);
       q[j] = kTwoPi * (turns - std::floor(turns));
     }

@@ -62,7 +62,8 @@ void solve_triple(const TripleTask& task) {
                b20 = task.m[3][1], c20 = task.m[3][2], a21 = task.m[4][0], b21 = task.m[4][1], c21 = task.m[4][2];
   const double base0 = task.base[0], base1 = task.base[1], base2 = task.base[2], shift = task.shift;
   const double upper0 = task.upper[0], upper1 = task.upper[1], upper2 = task.upper[2], least_sine = task.least_sine;
-#pragma GCC ivdep  // GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
+// GCC gives up on more than ten run-time alias checks, and forgets restrict on locals
+#pragma GCC ivdep
   for (int k = 0; k < task.n; ++k) {
     const double x = a02 * s[k] + b02 * c[k] + c02, y = a12 * s[k] + b12 * c[k] + c12, z = a22 * s[k] + b22 * c[k] + c22;
     const double h = __builtin_sqrt(x * x + y * y);

@@ -15,7 +15,8 @@ struct TripleTask {
   const double* sin_phi;
   const double* cos_phi;
   double* q[2][3];  ///< [sign of the middle angle's sine][joint of the triple]
-  double* mask[2];  ///< [sign]: 0 where the triple is solved within its limits and not singular, else infinity
+  /// [sign]: 0 where the triple is solved within its limits and not singular, else infinity.
+  double* mask[2];
 };
 
 /// Inverse kinematics of joint triples compiled for one instruction set.

@@ -10,9 +10,10 @@ namespace swivel {
 
 namespace {
 
-constexpr double kSettled = 4e-6;   // rad: after so small a step the remaining error is its square
-constexpr double kParallel = 1e-9;  // sine below which neighbouring axes have no common normal of their own
-constexpr double kLongest = 1;      // rad: longest step
+constexpr double kSettled = 4e-6;  // rad: after so small a step the remaining error is its square
+// sine below which neighbouring axes have no common normal of their own
+constexpr double kParallel = 1e-9;
+constexpr double kLongest = 1;  // rad: longest step
 constexpr int kLockedSteps = 8;
 
 void put(const Vector3d& v, double (&to)[3]) {

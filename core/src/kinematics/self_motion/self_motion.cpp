@@ -15,13 +15,15 @@ using namespace self_motion;
 
 namespace {
 
-constexpr int kSeeds = 32;             // lock values, evenly spread over a turn
-constexpr double kSliver = 1e-3;       // rad by which a range must exceed a turn, so that the joint is a circle
+constexpr int kSeeds = 32;  // lock values, evenly spread over a turn
+// rad by which a range must exceed a turn, so that the joint is a circle
+constexpr double kSliver = 1e-3;
 constexpr double kLeastWeight = 1e-2;  // of the largest
 constexpr int kStarts = 96;            // starts of Newton, where there is no closed form
 constexpr int kImageSteps = 6;         // Newton steps from a node to its image
 constexpr double kSymmetric = 1e-11;   // rad by which a limit may miss the twin of the other
-constexpr double kMostDrift = 0.2;     // rad of self-motion by which an image may leave the nearest one
+// rad of self-motion by which an image may leave the nearest one
+constexpr double kMostDrift = 0.2;
 
 /// Returns the flip of the three axes that meet in every closed form, none where those are not the
 /// chain's own.
@@ -76,7 +78,8 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
   }
   data->alignments = alignments_of(chain);
   for (int k = 1; method.best < 0 && k <= kStarts; ++k) {
-    constexpr std::array<double, kDof> kPrime = {2, 3, 5, 7, 11, 13, 17};  // Kronecker points: multiples of square roots
+    // Kronecker points: multiples of square roots
+    constexpr std::array<double, kDof> kPrime = {2, 3, 5, 7, 11, 13, 17};
     Config& start = data->starts.emplace_back();
     for (std::size_t j = 0; j < kDof; ++j) {
       const double turns = k * std::sqrt(kPrime[j]), part = turns - std::floor(turns);

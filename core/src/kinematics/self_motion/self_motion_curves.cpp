@@ -19,14 +19,15 @@ constexpr double kLongChord = 0.7;   // rad: joined directly; longer ones are tr
 constexpr double kNear = 0.02;       // rad: a seed this near a chord is on a known curve
 constexpr double kSeed = 5e-3;       // rad: a start this near a seed is the seed
 constexpr double kFar = 1;           // rad: more than a chord and what is near it
-constexpr double kFarTriple = 0.25;  // relative discriminant of complex roots that give seeds: of a spherical triple,
-constexpr double kFarParallel = 1;   // and of three parallel axes
-constexpr int kMostPoints = 4000;    // of one curve
-constexpr int kFollowed = 64;        // most points of a curve that is followed ahead of time
-constexpr int kAround = 40;          // after so many it may have come round to a known curve
-constexpr int kApproachSteps = 30;   // of Newton, from a start far away
-constexpr int kCloseSteps = 4;       // and from a guess on a curve
-constexpr int kDepth = 3;            // how often a chord may be halved
+// relative discriminant of complex roots that give seeds: of a spherical triple,
+constexpr double kFarTriple = 0.25;
+constexpr double kFarParallel = 1;  // and of three parallel axes
+constexpr int kMostPoints = 4000;   // of one curve
+constexpr int kFollowed = 64;       // most points of a curve that is followed ahead of time
+constexpr int kAround = 40;         // after so many it may have come round to a known curve
+constexpr int kApproachSteps = 30;  // of Newton, from a start far away
+constexpr int kCloseSteps = 4;      // and from a guess on a curve
+constexpr int kDepth = 3;           // how often a chord may be halved
 
 /// Returns false only if a and b are further apart than `within` in this one joint: a cheap test
 /// that few pass.
@@ -216,8 +217,9 @@ void Curves::add_seeds() {
 }
 
 std::optional<double> Curves::misfit(int half, int other) const {
-  constexpr double kBend = 0.06;    // 1 - cosine of tangent and chord: 0.35 rad
-  constexpr double kUneven = 0.02;  // part of the chord by which a parabola with the tangents may miss it
+  constexpr double kBend = 0.06;  // 1 - cosine of tangent and chord: 0.35 rad
+  // part of the chord by which a parabola with the tangents may miss it
+  constexpr double kUneven = 0.02;
   if (!maybe_near(at(other).q, at(half).q, kLongChord)) return std::nullopt;
   const Config chord = difference(at(other).q, at(half).q);
   const double length2 = chord.squaredNorm();
@@ -375,7 +377,8 @@ std::optional<Point> Curves::advance(const Walk& walk, double& step) const {
 }
 
 int Curves::met(int from, int count, const Point& p, const Config& move) const {
-  const double length2 = move.squaredNorm(), within = 1.1 * std::sqrt(length2);  // of what may lie that far along and that near
+  // of what may lie that far along and that near
+  const double length2 = move.squaredNorm(), within = 1.1 * std::sqrt(length2);
   int result = -1;
   double first = 2;
   for (const auto& [other, q] : open_) {
@@ -400,7 +403,8 @@ void Curves::trace(int half, const Trail* trail) {
   int here = half, again = 0;
   for (int count = 0; count < kMostPoints; ++count) {
     std::optional<Point> next;
-    bool alone = false;  // no open half-edge was there when the trail was followed: there are fewer now
+    // no open half-edge was there when the trail was followed: there are fewer now
+    bool alone = false;
     if (const auto at = static_cast<std::size_t>(count); trail != nullptr && at < trail->points.size()) {
       next = trail->points[at];
       step = trail->steps[at];
@@ -496,8 +500,10 @@ void Curves::trace_all() {
 }
 
 bool Curves::known(const Config& q, const Config& tangent, double near, double part) const {
-  constexpr double kBeside = 0.2;                     // rad: more than what is near a chord lies beside it
-  constexpr double kAway = 1.2 * kLongChord + kNear;  // rad: what is near a chord is not further from its ends
+  // rad: more than what is near a chord lies beside it
+  constexpr double kBeside = 0.2;
+  // rad: what is near a chord is not further from its ends
+  constexpr double kAway = 1.2 * kLongChord + kNear;
   for (const Vertex& v : vertices_) {
     if (!maybe_near(v.q, q, data_.lock, kAway) || !maybe_near(v.q, q, kAway)) continue;
     const double before = difference(v.q[data_.lock], q[data_.lock]);
@@ -552,7 +558,8 @@ void Curves::find(std::span<const Config> known_points) {
       if (const auto p = data_.newton.approach(start, tool_, kApproachSteps)) add_hidden({p->q});
     return;
   }
-  // Curves whose lock stays between two values: complex roots lie near them, and Newton on all seven joints leads there.
+  // Curves whose lock stays between two values: complex roots lie near them, and Newton on all
+  // seven joints leads there.
   std::vector<Config> starts, hidden;
   for (std::size_t k = 0; k < data_.forms.size(); ++k) {
     if (few_[k] == 0) continue;

@@ -93,7 +93,8 @@ class Guesser {
     std::vector<ArmGuess> srs, seven, six;
     for (const Row& row : rows_) {
       const bool is_six = std::ssize(row) == kLeast;
-      // From the tip of the row inwards, so that a joint of the torso does not count where there are seven others.
+      // From the tip of the row inwards, so that a joint of the torso does not count where there
+      // are seven others.
       constexpr std::ptrdiff_t kMostTried = 16;  // a finger has few joints
       const auto end = row.rbegin() + (is_six ? 0 : std::min(kMostTried, std::ssize(row) - kLeast));
       const auto spherical = std::find_if(row.rbegin(), end, [&](int link) { return is_srs(link); });
@@ -206,8 +207,9 @@ class Guesser {
         if (whole) rows_.push_back(visit.row);
         continue;
       }
-      for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {  // the first in the file is visited first
-        constexpr int kFinger = 4;                                           // joints, at most
+      // the first in the file is visited first
+      for (auto joint = moving.rbegin(); joint != moving.rend(); ++joint) {
+        constexpr int kFinger = 4;  // joints, at most
         if (moving.size() > 1 && depth_below(**joint) <= kFinger) continue;
         Visit next{(*joint)->child_link, (*joint)->type == Joint::Type::kFree ? Row() : visit.row};
         if (mimics_above(**joint)) {
@@ -292,10 +294,12 @@ class Guesser {
 
   const RobotModel& robot_;
   std::vector<std::vector<const Joint*>> children_;  ///< by link
-  std::vector<int> depth_;                           ///< by link: joints below it that move on their own, in the longest chain
-  std::vector<int> row_below_;                       ///< by link: arm joints that follow each other below it, in the longest row
-  std::set<int> leaders_;                            ///< joints that others mimic
-  std::vector<Row> rows_;                            ///< of at least six
+  /// By link: joints below it that move on their own, in the longest chain.
+  std::vector<int> depth_;
+  /// By link: arm joints that follow each other below it, in the longest row.
+  std::vector<int> row_below_;
+  std::set<int> leaders_;  ///< joints that others mimic
+  std::vector<Row> rows_;  ///< of at least six
   int most_ = 0, end_of_most_ = 0;
 };
 

@@ -21,7 +21,8 @@ double order(const Angle& x) {
 /// Returns the angle half-way from a to b, counter-clockwise.
 Angle between(const Angle& a, const Angle& b) {
   const double cosine = a.cosine * b.cosine + a.sine * b.sine, sine = a.cosine * b.sine - a.sine * b.cosine;
-  if (cosine < 0) return Angle::of(b.sine - a.sine, a.cosine - b.cosine);  // the sum vanishes at half a turn
+  // the sum vanishes at half a turn
+  if (cosine < 0) return Angle::of(b.sine - a.sine, a.cosine - b.cosine);
   const double sign = sine >= 0 ? 1 : -1;
   return Angle::of(sign * (a.cosine + b.cosine), sign * (a.sine + b.sine));
 }

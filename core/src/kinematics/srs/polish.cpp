@@ -30,8 +30,8 @@ Vector3d rotation_vector(const Matrix3d& R) {
   return 0.5 * Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
 }
 
-/// Solves the seven equations J x = e, rows (J e), by elimination with the largest pivot of each column: a third of the time of a
-/// general decomposition.
+/// Solves the seven equations J x = e, rows (J e), by elimination with the largest pivot of each
+/// column: a third of the time of a general decomposition.
 Config solved(std::array<std::array<double, kDof + 1>, kDof>& rows) {
   constexpr std::size_t n = kDof;
   for (std::size_t k = 0; k < n; ++k) {
@@ -61,7 +61,8 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
   if (arm.exact) return seed;
   constexpr int kSteps = 5;
   constexpr double kResidual = 1e-10;
-  // After a step this short Newton leaves its square times second derivatives below 1,000: less than the residual.
+  // After a step this short Newton leaves its square times second derivatives below 1,000: less
+  // than the residual.
   constexpr double kLastStep = 1e-7, kLeastSine = 0.1;
   const auto near_seed = [&](const Config& q) {
     return (q - seed).lpNorm<Eigen::Infinity>() > kMostPolished ? std::nullopt : std::optional(q);

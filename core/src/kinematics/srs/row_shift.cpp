@@ -19,8 +19,9 @@ RowShift::RowShift(const Chain& chain, const SrsArm& arm)
     const std::size_t own = part_of(joint);
     const double angle = std::atan2(chain.axis[j].cross(arm.axis[j]).norm(), chain.axis[j].dot(arm.axis[j])) + kRounding;
     const double offset = (about_[own] - chain.point[j]).cross(chain.axis[j]).norm() + kRounding;
-    // A turn about an axis at an angle e from the fitted one, d beside its point, takes what is at a distance r from that point
-    // 2 e (r + d) + 2 d away from where the fitted turn takes it, and turns it by 2 asin(e) against that.
+    // A turn about an axis at an angle e from the fitted one, d beside its point, takes what is at
+    // a distance r from that point 2 e (r + d) + 2 d away from where the fitted turn takes it, and
+    // turns it by 2 asin(e) against that.
     for (std::size_t part = own; part < about_.size(); ++part) {
       const double radius = (own == kShoulder && part > kShoulder ? upper_ : 0) + (own < kWrist && part == kWrist ? fore_ : 0);
       shift_[part] += 2 * angle * (radius + offset) + 2 * offset;
@@ -33,7 +34,8 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
   const std::size_t part = part_of(group);
   const PoseShift unknown = PoseShift::unknown(about_[part]);
   if (group == kDof) return {about_[part], 0, 0};  // the tool stands where the layer puts it
-  // With a smaller sine a row might have flipped the elbow: polish() moves no joint by more than kMostPolished.
+  // With a smaller sine a row might have flipped the elbow: polish() moves no joint by more than
+  // kMostPolished.
   constexpr double kLeastSine = 0.05;
   static_assert(kLeastSine >= kMostPolished);
   const double wrist =
@@ -44,9 +46,12 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
   const double most = std::max(std::abs(cosine(reach - wrist)), std::abs(cosine(reach + wrist)));
   if (!(most < 1) || std::sqrt(1 - most * most) < kLeastSine) return unknown;
   const double sine = std::sqrt(1 - most * most);
-  const double plane = 2 * std::asin(wrist / reach);                              // the plane of shoulder, elbow and wrist turns
-  const double upper = plane + wrist / (upper_ * sine);                           // the upper arm turns
-  const double fore = upper + (reach + wrist) * wrist / (upper_ * fore_ * sine);  // the forearm turns
+  // the plane of shoulder, elbow and wrist turns
+  const double plane = 2 * std::asin(wrist / reach);
+  // the upper arm turns
+  const double upper = plane + wrist / (upper_ * sine);
+  // the forearm turns
+  const double fore = upper + (reach + wrist) * wrist / (upper_ * fore_ * sine);
   // A direction turns by `turn`; the sine of `angle` is that of its angle to an axis: returns how
   // far its azimuth about that axis turns at most.
   const auto azimuth = [](double turn, double angle) {
@@ -62,7 +67,8 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
     const double first = azimuth(upper, q[1] + shoulder_shift_);
     return known(group == 1 ? first : first + upper, 0);
   }
-  const double against = fore + turn_[kWrist], last = azimuth(against, q[5] + wrist_shift_);  // forearm and last link
+  // forearm and last link
+  const double against = fore + turn_[kWrist], last = azimuth(against, q[5] + wrist_shift_);
   return known(group == 5 ? fore + last : turn_[kWrist] + last, wrist);
 }
 
@@ -75,7 +81,8 @@ double RowShift::jacobian_change(double reach, const Config& q) const {
   const double tool = from_node(kDof, reach, q).of(hand_);  // m, from where the layer has it
   const std::array<double, 3> from_tool{reach + hand_ + tool, fore_ + hand_ + tool, hand_ + tool};
   double squares = 0;
-  for (int joint = 1; joint <= kDof; ++joint) {  // an axis turns, and its point next to the centre moves
+  // an axis turns, and its point next to the centre moves
+  for (int joint = 1; joint <= kDof; ++joint) {
     const PoseShift moved = from_node(joint, reach, q);
     const double moment = moved.of(from_tool[part_of(joint)]);
     squares += moved.turn * moved.turn + moment * moment;

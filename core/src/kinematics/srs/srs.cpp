@@ -202,7 +202,8 @@ ArmPlane carry_plane(const SrsArm& arm, const ArmPlane& previous, const Pose& to
   const double sine = axis.norm(), cosine = previous.u.dot(plane.u);
   Vector3d r = previous.r;
   if (std::atan2(sine, cosine) <= 179.9 * kPi / 180) {
-    // Rodrigues with the half-angle form, exact for tiny turns: R r = r + a x r + a x (a x r) / (1 + cos).
+    // Rodrigues with the half-angle form, exact for tiny turns: R r = r + a x r + a x (a x r) / (1
+    // + cos).
     const Vector3d ar = axis.cross(r);
     r += ar + axis.cross(ar) / (1 + cosine);
   }  // else a half turn about r itself, which leaves r

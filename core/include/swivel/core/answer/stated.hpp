@@ -8,7 +8,8 @@ namespace swivel {
 struct Stated {
   bool s = true, phi = true, branch = true;  ///< of TrajectoryRow
   bool roll = true;                          ///< TrajectoryRow::roll
-  /// False: the last joint is named "roll" and the file has the six before it alone, as controllers do.
+  /// False: the last joint is named "roll" and the file has the six before it alone, as controllers
+  /// do.
   bool last_joint = true;
   bool v = true, a = true;  ///< of TimedRow
   /// Returns true if the file states every member of TrajectoryRow.

@@ -15,7 +15,8 @@ class Timeline {
   struct Event {
     const char* name = nullptr;             ///< name of the span, a string literal
     std::int64_t begin_ns = 0, end_ns = 0;  ///< in ns since the timeline began
-    int thread = 0;                         ///< 0, 1, ... in the order in which threads ended their first span
+    /// 0, 1, ... in the order in which threads ended their first span.
+    int thread = 0;
     /// Name of `count`, a string literal; null: no count was given.
     const char* count_name = nullptr;
     /// a number that belongs to the span, see TraceSpan::count().

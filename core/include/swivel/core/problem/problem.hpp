@@ -28,7 +28,8 @@ struct Roll {
 struct Waypoint {
   /// m.
   Vector3d position = Vector3d::Zero();
-  Quaterniond orientation = Quaterniond::Identity();  ///< need not be exactly unit: | |q| - 1 | <= 1e-3
+  /// Need not be exactly unit: | |q| - 1 | <= 1e-3.
+  Quaterniond orientation = Quaterniond::Identity();
   /// The range in which the roll must lie here, inside Robot::roll, which must be given and be less
   /// than a turn. Either all waypoints have one or none. Between two waypoints its ends change
   /// linearly.

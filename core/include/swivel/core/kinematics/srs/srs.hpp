@@ -39,10 +39,11 @@ struct FitDeviation {
 /// fit_srs().
 struct SrsArm {
   std::array<Vector3d, kDof> axis;  ///< fitted axes: neighbours perpendicular within each triple
-  Vector3d S, E, W;                 ///< shoulder centre, foot of the elbow on axis 4, wrist centre, m
-  Matrix3d home_rotation;           ///< tool at q = 0
-  Vector3d wrist_in_tool;           ///< W in the tool frame, m
-  double upper = 0, fore = 0;       ///< lengths |SE| and |EW|, m
+  /// Shoulder centre, foot of the elbow on axis 4, wrist centre, m.
+  Vector3d S, E, W;
+  Matrix3d home_rotation;      ///< tool at q = 0
+  Vector3d wrist_in_tool;      ///< W in the tool frame, m
+  double upper = 0, fore = 0;  ///< lengths |SE| and |EW|, m
   /// Angle of the elbow from the straight arm = q4 + elbow_shift, rad.
   double elbow_shift = 0;
   EulerTriple shoulder, wrist;
