@@ -22,7 +22,8 @@ class FailFirst {
  public:
   explicit FailFirst(int layers) : score_(static_cast<std::size_t>(layers), 0.0) {}
   void failed(int layer) {
-    // An obstacle blocks a stretch of layers, so the same place in neighbouring layers is asked about too.
+    // An obstacle blocks a stretch of layers, so the same place in neighbouring layers is asked
+    // about too.
     for (int i = std::max(0, layer - 2); i <= std::min(static_cast<int>(score_.size()) - 1, layer + 2); ++i)
       score_[static_cast<std::size_t>(i)] += i == layer ? 1.0 : 0.5;
   }

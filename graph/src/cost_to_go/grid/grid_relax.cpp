@@ -137,7 +137,8 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
       const auto relax_columns = [&] {
         if (begin == end) return;
         const int stop = std::min(n, end * kTileWidth),
-                  start = std::max(0, std::min(begin * kTileWidth, stop - kTileWidth));  // whole vectors
+                  // whole vectors
+            start = std::max(0, std::min(begin * kTileWidth, stop - kTileWidth));
         relax_run(step_layer, from, sheet, start, stop - start, to, other, from.row.data() + sheet * n + start);
       };
       for (std::size_t k = first; k < last; ++k) {
@@ -183,7 +184,8 @@ void GridCostToGo::publish_values(int family, Workspace& workspace) const {
       const int low = std::max(0, window + first + turn), high = std::min(length - 1, window + last + turn);
       if (low > high) continue;
       if (turn != 0) std::copy(row + low - window - turn, row + high - window - turn + 1, value + low);
-      // The window of column c is at the padded positions c * kTileWidth ... c * kTileWidth + kTileWidth - 1 + 2 * window.
+      // The window of column c is at the padded positions c * kTileWidth ... c * kTileWidth +
+      // kTileWidth - 1 + 2 * window.
       const int begin = std::max(0, low - 2 * window) / kTileWidth, end = std::min(tile_columns() - 1, high / kTileWidth);
       for (int c = begin; c <= end; ++c) {
         windows[c].first = std::min(windows[c].first, std::max(low, c * kTileWidth));

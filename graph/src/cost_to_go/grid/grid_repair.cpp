@@ -298,7 +298,8 @@ int GridCostToGo::deepest_reachable() {
   });
   if (!workspace(0).reaches_any()) return -1;
   std::array<int, SrsLattice::kFamilies> deepest{0, 0};
-  std::vector<float> ended(static_cast<std::size_t>(lattice_->width()));  // costs of these layers' nodes
+  // costs of these layers' nodes
+  std::vector<float> ended(static_cast<std::size_t>(lattice_->width()));
   const auto row_of = [&](int layer) {
     const int row = (layer + Reach::kStride - 1) / Reach::kStride;
     return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();

@@ -126,7 +126,7 @@ void GridCostToGo::save() {
 }
 
 void GridCostToGo::restore() {
-  forget_reach();  // what was reached may have been more, for less
+  forget_reach();  // without removals more is reached, for less
   by_reach_ = false;
   goal_ = saved_.goal;
   limit_ = saved_.limit;
@@ -169,7 +169,7 @@ const float* GridCostToGo::cost_before(int layer) const {
 void GridCostToGo::limit_by_reach() {
   limit_ = kUnreachable;
   by_reach_ = true;
-  // costs are not in it
+  // The costs kept by reach_ leave out what nodes themselves cost.
   for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);
   if (!by_reach_) return;
   limit_ = lattice_->most_alike((1 + reach_.slack) * reach_.best);

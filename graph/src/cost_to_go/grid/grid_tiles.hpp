@@ -66,8 +66,9 @@ struct alignas(64) GridCostToGo::LayerJoints {
 /// each goes through the layers by itself: its solutions may then be at another layer than the
 /// others.
 struct GridCostToGo::Workspace {
-  std::vector<double> row;    // [sheet][angle], of the tiles
-  std::vector<double> value;  // [sheet][padded angle]: the row once it is settled, infinite elsewhere
+  std::vector<double> row;  // [sheet][angle], of the tiles
+  // [sheet][padded angle]: the row once it is settled, infinite elsewhere
+  std::vector<double> value;
   /// The finite values in the window of a column: first and last padded position; none where last <
   /// first.
   struct Window {

@@ -137,7 +137,8 @@ inline V move_about(V from, V to, double turn) {
 /// every joint stays within its bound; negative where there is no such measure.
 template <class V, RelaxMetric kMetric, bool kWraps, class T>
 inline V with_partner(const RelaxTask<T>& task, const V* from, const V* to, V value, V best, T sure) {
-  const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;  // far above what the sum may lose
+  // far above what the sum may lose
+  const T rounding = (kSingle<T> ? T(1e-4) : T(1e-11)) * task.unit;
   const T shift = T(6144) * task.unit;
   const V room = larger(V(best - value + rounding), V{});
   V step[7], x[7];
@@ -200,7 +201,8 @@ T sure_measure(const RelaxTask<T>& task) {
   }
   sure *= T(1 - 1e-12);
   if (kMetric == RelaxMetric::kL2) sure *= sure;
-  // A joint of weight 0 moves at no cost, and a tiny product underflows: the measure then says nothing of the moves.
+  // A joint of weight 0 moves at no cost, and a tiny product underflows: the measure then says
+  // nothing of the moves.
   return sure > T(1e-280) ? sure : T(-1);
 }
 

@@ -238,7 +238,8 @@ void RollCostToGo::compute_removals() {
         stale.insert(stale.end(), slots->begin(), slots->end());
       verdicts_.pending.erase(found);
     }
-    // Vector code takes as long for all nodes of a layer as plain loops do for those around so many.
+    // Vector code takes as long for all nodes of a layer as plain loops do for those around so
+    // many.
     constexpr std::size_t kMany = 256;
     if (ahead.size() + stale.size() > kMany) {
       const Values before = values;

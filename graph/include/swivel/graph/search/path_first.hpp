@@ -20,7 +20,8 @@ using SlotPath = std::vector<int>;
 /// paths of kExact units (Lattice::cost_unit()) and more are not followed.
 class EarlierPaths {
  public:
-  static constexpr double kExact = 0x1p13;  // costs are multiples of 2^-40 of a unit, and a double has 53 bits
+  // costs are multiples of 2^-40 of a unit, and a double has 53 bits
+  static constexpr double kExact = 0x1p13;
 
   /// Adds a best path of a cost-to-go that has been repaired. Empty paths are left out.
   void add(const SlotPath& path, const CostToGo& cost_to_go);
@@ -32,7 +33,9 @@ class EarlierPaths {
   struct Earlier {
     SlotPath path;
     std::vector<double> values;  // cost-to-go of its nodes
-    int broken = -1;  // the deepest layer found to cost more, or to be cut off from the next: up to there it is not followed
+    // the deepest layer found to cost more, or to be cut off from the next: up to there it is not
+    // followed
+    int broken = -1;
   };
   [[nodiscard]] static bool holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
   static constexpr std::size_t kMost = 4;

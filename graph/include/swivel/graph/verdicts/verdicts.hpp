@@ -107,7 +107,8 @@ class Verdicts {
   const Lattice* lattice_;
   std::vector<std::size_t> first_;  // of each layer
   ZeroedArray<Verdict> node_;
-  std::vector<std::size_t> known_;          // indices of nodes, in the order in which they became known
+  // indices of nodes, in the order in which they became known
+  std::vector<std::size_t> known_;
   std::vector<std::vector<double>> costs_;  // [layer][slot], empty where all are 0
   std::vector<std::uint8_t> cost_known_;    // of every node; empty where none is
   std::unordered_map<EdgeKey, Verdict, EdgeHash> edge_;
