@@ -11,10 +11,10 @@ namespace swivel {
 /// One change of a problem that has no path, and what planning the changed problem gave.
 struct Advice {
   enum class Change {
-    kFreeStart,  ///< no start is given
-    kFreeRoll,  ///< path.roll without bounds: the tool may be turned about its axis freely
-    kFiner,  ///< half the steps of the lattice, and Resolution::arcs
-    kClearance,  ///< limits.clearance, and self_clearance where that stands in the way
+    kFreeStart,       ///< no start is given
+    kFreeRoll,        ///< path.roll without bounds: the tool may be turned about its axis freely
+    kFiner,           ///< half the steps of the lattice, and Resolution::arcs
+    kClearance,       ///< limits.clearance, and self_clearance where that stands in the way
     kJointMargin,     ///< limits.joint_margin
     kManipulability,  ///< limits.manipulability
     kArmSlope,        ///< limits.arm_slope
@@ -27,7 +27,7 @@ struct Advice {
     kStepError,       ///< limits.step_error
     /// A greater depth to which bodies that may touch an object (SceneObject::allow) may be in it.
     kDepth,
-    kMoveObject,  ///< an object moved, and the path with it if it is given in its frame
+    kMoveObject,     ///< an object moved, and the path with it if it is given in its frame
     kWithoutObject,  ///< an object removed
   };
   /// What planning the changed problem gave.
@@ -47,7 +47,7 @@ struct Advice {
   /// For kMoveObject: the move in the base frame, m; zero where none helps.
   Vector3d offset{0, 0, 0};
   Outcome outcome = Outcome::kUnknown;
-  std::optional<double> cost;  ///< for kSolved: cost of the path
+  std::optional<double> cost;       ///< for kSolved: cost of the path
   std::optional<double> reached_s;  ///< if there is no path: how far one comes, m along it
 };
 

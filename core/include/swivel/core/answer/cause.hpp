@@ -11,33 +11,33 @@ namespace swivel {
 struct Cause {
   enum class Kind {
     kNone,            ///< not found
-    kReach,  ///< the pose is too far for the arm (Side::kUpper) or too near (kLower)
-    kSingular,  ///< axes or joint centres are in line
-    kLimit,  ///< a joint is beyond its limit less the margin
+    kReach,           ///< the pose is too far for the arm (Side::kUpper) or too near (kLower)
+    kSingular,        ///< axes or joint centres are in line
+    kLimit,           ///< a joint is beyond its limit less the margin
     kManipulability,  ///< the manipulability (Yoshikawa) is too small
-    kPair,  ///< two bodies are nearer than they must keep
-    kContact,  ///< two bodies touch: no smaller clearance would help
-    kArmSlope,  ///< the arm angle would change by more than limits.arm_slope allows
-    kRollSlope,  ///< the roll would change by more than limits.roll_slope allows
-    kJointStep,  ///< a joint would move by more than limits.joint_step
-    kSpeed,  ///< a joint would be too fast at the tool speed asked for
-    kPathError,  ///< the tool would leave its path by more than limits.tool_path_error
-    kAngleError,  ///< the tool would turn off its path by more than limits.tool_angle_error
-    kStepError,  ///< the step error would exceed limits.step_error
-    kCheck,  ///< a StateCheck of the caller refuses it
+    kPair,            ///< two bodies are nearer than they must keep
+    kContact,         ///< two bodies touch: no smaller clearance would help
+    kArmSlope,        ///< the arm angle would change by more than limits.arm_slope allows
+    kRollSlope,       ///< the roll would change by more than limits.roll_slope allows
+    kJointStep,       ///< a joint would move by more than limits.joint_step
+    kSpeed,           ///< a joint would be too fast at the tool speed asked for
+    kPathError,       ///< the tool would leave its path by more than limits.tool_path_error
+    kAngleError,      ///< the tool would turn off its path by more than limits.tool_angle_error
+    kStepError,       ///< the step error would exceed limits.step_error
+    kCheck,           ///< a StateCheck of the caller refuses it
   };
   enum class Side { kNone, kLower, kUpper };
 
   Kind kind = Kind::kNone;
   Side side = Side::kNone;  ///< for kReach and kLimit
-  std::string joint;  ///< for kLimit, kRollSlope, kJointStep and kSpeed: name of the joint
+  std::string joint;        ///< for kLimit, kRollSlope, kJointStep and kSpeed: name of the joint
   /// For kLimit: every node has several joints beyond their limits; `joint` is the furthest.
   bool other_joints = false;
   /// For kLimit: the joint stands within its range, but the path goes on past its end, so that it
   /// would have to unwind by a turn.
   bool unwinds = false;
   std::array<std::string, 2> bodies;  ///< for kPair and kContact: names of the bodies
-  bool between_layers = false;  ///< for kPair, kContact, kCheck: on motions alone
+  bool between_layers = false;        ///< for kPair, kContact, kCheck: on motions alone
   /// For kPair and kContact: name of a scene object that several bodies come too near to; `bodies`
   /// is one pair of them.
   std::string object;

@@ -40,11 +40,11 @@ struct TrajectoryRow {
 
 /// How much work a plan did.
 struct Counters {
-  std::int64_t ik_nodes = 0;  ///< nodes whose IK was solved (repeats counted)
-  std::int64_t edges = 0;  ///< candidate edges whose joint steps were compared (repeats counted)
+  std::int64_t ik_nodes = 0;       ///< nodes whose IK was solved (repeats counted)
+  std::int64_t edges = 0;          ///< candidate edges compared (repeats counted)
   std::int64_t nodes_checked = 0;  ///< nodes whose clearance was asked
   std::int64_t edges_checked = 0;  ///< edges whose tool-path error or clearance was asked
-  std::int64_t fcl_calls = 0;       ///< fcl::collide + fcl::distance
+  std::int64_t fcl_calls = 0;      ///< fcl::collide + fcl::distance
   /// Questions about a configuration's clearance answered without FCL: it is free, or too near.
   std::int64_t certified_free = 0;
   std::int64_t certified_colliding = 0;
@@ -62,9 +62,9 @@ struct LatticeInfo {
     int phi = 0, branches = 8, windings = 1, window = 0;
     std::optional<int> rolls = {};  ///< number of rolls, of a tool that may be turned
   };
-  std::optional<Grid> grid;  ///< for S-R-S arms
+  std::optional<Grid> grid;          ///< for S-R-S arms
   std::optional<std::int64_t> arcs;  ///< for other arms: arcs of self-motion in all layers
-  std::string method;  ///< how solutions are found: ArmClass::method()
+  std::string method;                ///< how solutions are found: ArmClass::method()
   /// True: all IK solutions are known. False: only those that turned up, and "no path" means "none
   /// found".
   bool complete = true;
@@ -77,10 +77,10 @@ struct LatticeInfo {
 /// A run of layers that have no node left, for one cause. docs/model.md.
 struct EmptyLayers {
   int first = 0, last = 0;
-  double first_s = 0, last_s = 0;               ///< m
+  double first_s = 0, last_s = 0;  ///< m
   /// Rows of the path file, 0-based, that lie among these layers; -1: none.
   int first_waypoint = -1, last_waypoint = -1;
-  Cause cause;  ///< with the value of the layer that misses least
+  Cause cause;                      ///< with the value of the layer that misses least
   std::optional<double> most = {};  ///< the most that one of these layers misses by
 };
 
@@ -143,14 +143,14 @@ struct Evidence {
   /// Exact clearances of all rows (which take more time than many a plan), manipulability, arm
   /// angle.
   bool postures = false;
-  bool layers = false;           ///< Diagnosis::empty_layers and removed
+  bool layers = false;  ///< Diagnosis::empty_layers and removed
   /// Returns the evidence that asks for everything.
   [[nodiscard]] static Evidence all() { return {true, true, true}; }
 };
 
 /// The row and pair of bodies that come nearest to the clearance that they must keep.
 struct LeastMargin {
-  double margin = 0;     ///< clearance - required, m
+  double margin = 0;  ///< clearance - required, m
   /// Clearance of this pair, m; another pair that must keep less may be nearer.
   double clearance = 0;
   double required = 0;  ///< clearance that the pair must keep on layers, m
@@ -166,7 +166,7 @@ struct DeepestContact {
   std::optional<double> at_most;
   std::array<std::string, 2> bodies;
   std::optional<double> allowed;  ///< Allowed::depth, m
-  int row = 0;  ///< index of the row, at it or on the way to the next
+  int row = 0;                    ///< index of the row, at it or on the way to the next
 };
 
 /// A pair of the robot's own bodies that is not kept apart as others are, though no SRDF disables
@@ -190,7 +190,7 @@ struct NearestLimit {
 struct TopToolSpeed {
   double speed = 0;   ///< m/s
   std::string joint;  ///< name of the joint that bounds it
-  int row = 0;  ///< index of the row whose step to the next bounds it
+  int row = 0;        ///< index of the row whose step to the next bounds it
 };
 
 /// What a trajectory comes near to, and how well it follows its path. Source: measure() in
@@ -203,9 +203,9 @@ struct Measures {
   Evidence evidence;
   struct {
     double mean = 0, max = 0;
-    int row = 0;  ///< index of the row whose step has the largest
-    std::optional<double> allowed;      ///< limits.tool_path_error
-  } tool_path_error_mm;  ///< for Evidence::tool_path_error; members below: Evidence::postures
+    int row = 0;                    ///< index of the row whose step has the largest
+    std::optional<double> allowed;  ///< limits.tool_path_error
+  } tool_path_error_mm;             ///< for Evidence::tool_path_error; below: postures
   /// Clearance of the nearest pair on any row, m; none where nothing is near.
   std::optional<double> min_clearance;
   std::optional<LeastMargin> min_margin;
@@ -232,12 +232,12 @@ struct PlanResult : Measures {
   std::vector<TrajectoryRow> partial;
   std::array<std::string, kDof> joint_names;
   std::vector<HeldJoint> held;  ///< joints between base and tip that are not planned
-  Diagnosis diagnosis;                     ///< filled when infeasible
+  Diagnosis diagnosis;          ///< filled when infeasible
   /// Pairs that touch in every posture, which are not kept apart.
   std::vector<SpecialPair> dropped_pairs;
   /// Pairs near each other by design, which must keep less.
   std::vector<SpecialPair> reduced_pairs;
-  std::vector<std::string> warnings;       ///< open meshes, merged waypoints, ...
+  std::vector<std::string> warnings;  ///< open meshes, merged waypoints, ...
 };
 
 }  // namespace swivel

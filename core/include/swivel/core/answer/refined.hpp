@@ -12,7 +12,7 @@ namespace swivel {
 struct Refined {
   std::vector<TrajectoryRow> rows;  ///< the refined rows, or those given
   bool refined = false;
-  std::string reason;  ///< why the rows are those given
+  std::string reason;                ///< why the rows are those given
   double cost_before = 0, cost = 0;  ///< by the problem's cost metric
   /// The largest second divided difference of the joints over the tool's travel, rad/m^2.
   double bend_before = 0, bend = 0;

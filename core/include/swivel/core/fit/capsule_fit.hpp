@@ -10,7 +10,8 @@ namespace swivel {
 /// closed.
 struct CapsuleFit {
   std::vector<PlacedShape> capsules;  ///< in the mesh's frame
-  double volume = 0;  ///< sum of the capsules' volumes, m^3; what they share counts twice
+  /// Sum of the capsules' volumes, m^3; what they share counts twice.
+  double volume = 0;
   /// The most by which the hull of the capsules stands out beyond that of the mesh, m.
   double excess = 0;
 };

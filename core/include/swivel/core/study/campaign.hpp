@@ -47,7 +47,7 @@ struct EpisodeRow {
       /// the first layer has a node.
       failed_s;
   std::string cause;  ///< to_string(Cause::Kind) of what ends paths there; empty when solved
-  std::string by;  ///< what that cause is about, see subject_of()
+  std::string by;     ///< what that cause is about, see subject_of()
   /// The cause in words, or the message of an internal error; empty when solved.
   std::string reason;
   std::vector<double> offsets;  ///< of the varied_coordinates(), m and rad

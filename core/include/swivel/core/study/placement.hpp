@@ -22,8 +22,8 @@ inline constexpr std::array<const char*, 6> kCoordinates{"x", "y", "z", "roll", 
 struct Movable {
   enum class Kind {
     kObject,  ///< an object of the scene, and the path if it is given in its frame
-    kPath,  ///< the path alone, about the origin of its frame
-    kBase,  ///< the robot: as seen from it everything else moves the other way
+    kPath,    ///< the path alone, about the origin of its frame
+    kBase,    ///< the robot: as seen from it everything else moves the other way
   };
   Kind kind = Kind::kObject;
   std::string object;  ///< for kObject: its name
@@ -83,7 +83,7 @@ struct PlacementRow {
   std::uint64_t cell = 0;
   Offset offset{};
   PlanStatus status = PlanStatus::kInfeasible;
-  std::optional<double> cost;              ///< set when solved
+  std::optional<double> cost;  ///< set when solved
   /// Clearance of the pair that comes nearest to what it must keep, m; none where nothing is near.
   std::optional<double> clearance;
   std::optional<double> clearance_margin;  ///< that clearance less what the pair must keep, m
