@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bisection against every midpoint in turn. docs/model.md "Motions".
+// Compares bisection with a plain test of every midpoint. docs/model.md "Motions".
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(EdgeRule, Midpoints) {
   EXPECT_EQ(rule.midpoints(q0, q1), 128);
 }
 
-/// At every midpoint in turn.
+/// Returns true if the pair is too near at any midpoint; tests them one after the other.
 bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
   const std::int64_t n = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < n; ++m)

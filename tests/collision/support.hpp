@@ -47,7 +47,8 @@ TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
 /// An upright arm like the usual 7-axis ones: links l0 ... l7, joints j1 ... j7, one capsule each (l0: a box).
 RobotModel capsule_arm();
-/// The same, but links 5 and 7 are about `gap` apart, whatever the joints; 1.1 gap nearer where sin q6 cos q7 = 1.
+/// An arm like capsule_arm(), but links 5 and 7 are about `gap`, m, apart at all joint values, and
+/// 1.1 gap nearer where sin q6 cos q7 = 1.
 RobotModel near_wrist_arm(double gap);
 /// base l0, tip l7, no scene; the caller fills in the rest. `robot` must outlive it.
 Problem problem_for(const RobotModel& robot);

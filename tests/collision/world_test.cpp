@@ -201,7 +201,7 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
   EXPECT_GT(free, 50);
   EXPECT_LT(free, 950);
 
-  // Its meshes are made ready by whoever comes first.
+  // The trees of its meshes are built by whichever thread comes first.
   const World fresh(robot, arm_of(robot), problem);
   const std::size_t triangles = fresh.triangles_to_make_ready();
   EXPECT_GT(triangles, 200u);

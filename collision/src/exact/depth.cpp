@@ -17,8 +17,8 @@ constexpr double kTolerance = 0.02e-3;  // m
 constexpr int kMostPatches = 20'000;    // looked at before the search is cut short
 constexpr int kMostCorners = 2'000;     // of a mesh, looked for in another mesh
 
-/// A point, a segment or a triangle (by `corners`) of a body's medial set, and how deep its corners lie beneath the body's surface,
-/// m: linear in between.
+/// A point, a segment or a triangle (1, 2 or 3 `corners`) of a body's medial set. `depth` is how
+/// deep each corner lies beneath the body's surface, m, and is linear in between.
 struct Patch {
   int corners = 0;
   std::array<Vector3d, 3> at{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
@@ -28,7 +28,7 @@ struct Patch {
     at[static_cast<std::size_t>(corners)] = corner;
     depth[static_cast<std::size_t>(corners++)] = beneath;
   }
-  /// Two halves, divided across the longest edge.
+  /// Returns the two halves of the patch, which is divided across its longest edge.
   [[nodiscard]] std::pair<Patch, Patch> halves() const {
     const auto edge = [&](std::size_t k) { return (at[(k + 1) % 3] - at[k]).squaredNorm(); };
     std::size_t from = 0;
@@ -56,8 +56,9 @@ Patch triangle(const Vector3d& a, double of_a, const Vector3d& b, double of_b, c
   return patch;
 }
 
-/// The points of a body that are deepest beneath its surface as seen along some way inwards, in its own frame: whatever lies in the
-/// body, one of them lies as deep in both bodies together.
+/// The medial set of a body, in its own frame: the points that are locally deepest beneath its
+/// surface. For every point in the body there is a point of this set at which the sum of the depths
+/// in both bodies is at least as large.
 struct Medial {
   std::vector<Patch> patches;
   double off = 0;  ///< no point of the set is further from the patches than this, m
@@ -70,7 +71,8 @@ Medial axis_of(double radius, double length) {
   return {{axis}};
 }
 
-/// From each edge inwards at 45 degrees, up to the rectangle in the middle of the shortest side.
+/// Returns the medial set of a box: quadrilaterals from each edge inwards at 45 degrees, and the
+/// rectangle in the middle of the shortest side, in which they end.
 Medial medial_of(const Box& box) {
   const Vector3d half = box.size / 2;
   Eigen::Index least = 0;
@@ -104,8 +106,9 @@ Medial medial_of(const Box& box) {
   return medial;
 }
 
-/// From both rims inwards at 45 degrees, and what lies between: a part of the axis, or of a flat cylinder a disc. Circles are
-/// polygons.
+/// Returns the medial set of a cylinder: cones from both rims inwards at 45 degrees, and what lies
+/// between their inner ends, which is a part of the axis or, in a flat cylinder, a disc. Circles
+/// are replaced by polygons.
 Medial medial_of(const Cylinder& cylinder) {
   const double radius = cylinder.radius, half = cylinder.length / 2, deepest = std::min(radius, half);
   const double inner = radius - deepest, height = half - deepest;
@@ -139,8 +142,8 @@ struct MedialOf {
   Medial operator()(const MeshPtr&) const { return {}; }
 };
 
-/// How deep a point lies beneath the surface of a convex solid, less than 0 outside: a concave function, which lies nowhere above
-/// its tangent.
+/// How deep a point lies beneath the surface of a convex solid, m, less than 0 outside, and the
+/// gradient of that depth. The depth is a concave function, so it nowhere exceeds its tangent.
 struct Tangent {
   double depth = 0;
   Vector3d slope = Vector3d::Zero();
@@ -175,7 +178,8 @@ struct TangentAt {
   Tangent operator()(const MeshPtr&) const { return {}; }
 };
 
-/// How deep points lie beneath the surface of a body, m, less than 0 outside; points in its own frame.
+/// Computes how deep points, in the body's frame, lie beneath the surface of one body, m, less than
+/// 0 outside.
 class Solid {
  public:
   explicit Solid(const FclShape& shape) : shape_(&shape) {}
@@ -190,7 +194,8 @@ class Solid {
     }
     return tangent_.depth;
   }
-  /// What the sum of a patch's depth and that in this body is at most on it; depth() was asked about one of its points.
+  /// Returns an upper bound, m, of the sum of a patch's depth and the depth in this body, over all
+  /// points of the patch. depth() must have been called last with a point of the patch.
   [[nodiscard]] double most_on(const Patch& patch) const {
     if (!shape_->mesh) return most_on(patch, tangent_.slope);
     double by_tangent = -kInfinity, by_triangle = -kInfinity;
@@ -203,7 +208,7 @@ class Solid {
     for (std::size_t k = 0; k < static_cast<std::size_t>(patch.corners); ++k) {
       const Vector3d way = patch.at[k] - point_;
       by_tangent = std::max(by_tangent, patch.depth[k] + tangent_.depth + way.norm());
-      // No point is deeper than any one triangle is far, and that distance is convex.
+      // No point lies deeper than its distance from any one triangle, and that distance is convex.
       by_triangle = std::max(by_triangle, patch.depth[k] + shape_->mesh->triangles().distance_at(patch.at[k], nearest_));
     }
     return std::min(by_tangent, by_triangle);
@@ -218,9 +223,10 @@ class Solid {
       most = std::max(most, patch.depth[k] + tangent_.depth + slope.dot(patch.at[k] - point_));
     return most;
   }
-  /// The normal of a plane beside which a mesh is nowhere deeper than the half-space behind the plane, for all points within
-  /// `radius` of this one, which lies outside of the mesh; none where a triangle crosses the plane that may be the nearest to one
-  /// of these points.
+  /// Looks for a plane such that no point within `radius` of the last point asked about, which lies
+  /// outside of the mesh, is deeper in the mesh than in the half-space behind the plane. Returns
+  /// the gradient of the depth in that half-space; none if a triangle that may be the nearest to
+  /// one of these points reaches beyond the plane.
   [[nodiscard]] std::optional<Vector3d> slope_outside(double radius) const {
     const TriangleTree& tree = shape_->mesh->triangles();
     const Vector3d nearest = tree.nearest_on(point_, nearest_), normal = (nearest - point_) / tangent_.depth;
@@ -234,7 +240,8 @@ class Solid {
   int nearest_ = 0;
 };
 
-/// How many there are of a body's medial set, by order alone.
+/// Returns the dimension of a body's medial set (0 a point or axis, 1 a box, 2 a cylinder, 3 none
+/// known), which is used only to order two bodies.
 int patches_of(const FclShape& shape) {
   if (shape.mesh) return 3;
   if (std::holds_alternative<Cylinder>(shape.shape)) return 2;
@@ -245,7 +252,8 @@ bool has_inside(const FclShape& shape) {
   return !shape.mesh || shape.mesh->is_closed();
 }
 
-/// How deep corners of a's triangles lie in b.
+/// Returns how deep the deepest of at most kMostCorners corners of mesh a lies in mesh b, m; minus
+/// infinity if none lies in it.
 double deepest_corner(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   const Pose in_b = b.pose->inverse(Eigen::Isometry) * *a.pose;
   const auto& corners = std::get<MeshPtr>(a.shape->shape)->vertices;

@@ -21,7 +21,8 @@ namespace {
 
 constexpr double kTolerance = 1e-4;  // m
 
-/// What FCL is asked about: of round bodies the centre or the core segment, for the reasons of PairTest::core_distance.
+/// The geometry that FCL is called with: the centre or the axis of a round body, for the reasons
+/// given at PairTest::core_distance(), or any other body itself.
 struct Core {
   explicit Core(const PlacedShapeRef& body) : pose(*body.pose) {
     if (const auto* sphere = std::get_if<Sphere>(&body.shape->shape)) {
@@ -51,8 +52,9 @@ fcl::DistanceResultd distance(const fcl::CollisionGeometryd& a, const Pose& X_a,
   return result;
 }
 
-/// Not further than the tolerance outside the body. A point inside says yes: if the other one is of its body as well, the two can
-/// only be as near as the bodies are when both lie on the surfaces.
+/// Returns true if the point is inside the body or at most the tolerance outside it. Points inside
+/// need not be excluded: two points that belong to their bodies can be as near as the bodies only
+/// if both lie on the surfaces.
 bool belongs(const Vector3d& point, const Core& core) {
   const Pose at(Eigen::Translation3d{point});
   return distance(fcl::Sphered(0), at, *core.geometry, core.pose).min_distance <= core.radius + kTolerance;
@@ -68,8 +70,8 @@ std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, c
     return swapped ? std::optional(std::array{(*swapped)[1], (*swapped)[0]}) : std::nullopt;
   }
   const Core core_a(a), core_b(b);
-  // FCL gives the points in the base frame for most kinds of pairs, in the frames of their bodies for others. Neither is believed
-  // unless it passes.
+  // FCL gives the points in the base frame for most kinds of pairs, in the frames of their bodies
+  // for others. Either reading has to pass the test before it is used.
   const fcl::DistanceResultd found = distance(*core_a.geometry, core_a.pose, *core_b.geometry, core_b.pose);
   const Vector3d p = found.nearest_points[0], q = found.nearest_points[1];
   const std::array<std::array<Vector3d, 2>, 2> readings{{{p, q}, {core_a.pose * p, core_b.pose * q}}};
@@ -87,12 +89,13 @@ std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeR
   PairTest test(PairTest::Meshes::kNear);
   MeshStore none;
   const FclShape dot = make_fcl_shape(Sphere{kTolerance / 2}, none);
-  // Of a point, how far it is from that of the two bodies which is further.
+  // Distance of a point from the further one of the two bodies, m.
   const auto apart = [&](const Vector3d& point) {
     const Pose at(Eigen::Translation3d{point});
     return std::max(test.clearance({&dot, &at}, a), test.clearance({&dot, &at}, b));
   };
-  // Cubes in which a common point may lie, the one whose middle is nearest to both bodies first.
+  // Cubes in which a common point may lie; the cube whose middle is nearest to both bodies comes
+  // first.
   struct Cube {
     double apart;
     int order;

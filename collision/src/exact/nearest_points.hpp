@@ -7,13 +7,14 @@
 
 namespace swivel::detail {
 
-/// A point of a and one of b, base frame, as far apart as the bodies: |p - q| within 0.1 mm of `clearance`, which is PairTest's,
-/// and each within 0.1 mm of its body. None where they touch, and where FCL's points fail that test.
+/// Returns a point of a and a point of b, base frame, whose distance is within 0.1 mm of
+/// `clearance`, m, as PairTest::clearance() returned it. Each lies within 0.1 mm of its body.
+/// Returns none if the bodies touch, or if the points that FCL names fail this test.
 [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const PlacedShapeRef& a, const PlacedShapeRef& b,
                                                                     double clearance);
 
-/// A point of both, base frame: within 0.1 mm of each, or inside. None where they are further apart than that, and where none is
-/// found soon.
+/// Returns a point, base frame, that lies inside or within 0.1 mm of both bodies. Returns none if
+/// there is no such point or the search finds none within 4000 evaluations.
 [[nodiscard]] std::optional<Vector3d> common_point(const PlacedShapeRef& a, const PlacedShapeRef& b);
 
 }  // namespace swivel::detail

@@ -18,7 +18,8 @@ namespace swivel::detail {
 
 namespace {
 
-/// Surfaces that are nearer are left to FCL as a whole, m: there it matters what is inside what.
+/// Below this distance of two surfaces, m, FCL is called with all triangles, because there it
+/// matters which body is inside which.
 constexpr double kTouching = 2 * kVerdictBand;
 
 bool is_round(const PlacedShapeRef& body) {
@@ -34,8 +35,8 @@ bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d)
   } else if (is_round(b)) {
     near = inflated_meets(b, a, false, d);
   } else {
-    // FCL skips subtrees that cannot beat the result it is given, so a result that starts just above d gives the verdict of a fresh
-    // one without searching for a minimum that nobody asks for.
+    // FCL skips subtrees that cannot beat the result it is given. A result that starts just above d
+    // gives the verdict of a fresh one, without a search for the minimum, which is not needed.
     constexpr double kAbove = 1e-5;
     if (meshes_ == Meshes::kNear && are_triangles(a, b)) {
       TrianglePair anywhere;
@@ -90,9 +91,10 @@ bool PairTest::meets(const fcl::CollisionGeometryd& a, const Pose& X_a, const fc
   }
 }
 
-/// Distance from the centre or the core segment, less the radius. GJK stops as soon as a step gains less than its tolerance, and
-/// round shapes gain slowly: it returned 0.15 mm too much for a whole capsule. And FCL leaves the distance of a sphere and a
-/// triangle that meet unset.
+/// Returns the distance from the centre or the axis of a round body, less its radius, m. The body
+/// itself is not used: GJK stops as soon as a step gains less than its tolerance, and round shapes
+/// gain slowly, so that it returned 0.15 mm too much for a whole capsule; and FCL leaves the
+/// distance of a sphere and a triangle that intersect unset.
 double PairTest::core_distance(const PlacedShapeRef& round, const PlacedShapeRef& other, bool round_first) {
   constexpr double kUnbounded = std::numeric_limits<double>::max();
   const auto ask = [&](const fcl::CollisionGeometryd& core) {
@@ -109,8 +111,9 @@ double PairTest::whole_distance(const PlacedShapeRef& a, const PlacedShapeRef& b
   return distance(a.shape->distance_geometry(), *a.pose, b.shape->distance_geometry(), *b.pose, bound);
 }
 
-/// The same of the triangles that are within `limit` of each other, or `bound` where there are none; `limit` is by more than FCL
-/// may err above what is sought.
+/// Returns FCL's distance, m, of only those triangles of the bodies that are within `limit`, m, of
+/// each other, or `bound` if there are none. `limit` must exceed the distance sought by more than
+/// FCL may err.
 double PairTest::near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double limit, double bound) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
   const double beyond = a.shape->beyond_triangles + b.shape->beyond_triangles;
@@ -122,7 +125,8 @@ double PairTest::near_distance(const PlacedShapeRef& a, const PlacedShapeRef& b,
   return distance(near_a, *a.pose, near_b, *b.pose, bound);
 }
 
-/// FCL's distance where it is below `bound`, else `bound`; zero or negative when the surfaces meet or FCL fails.
+/// Returns FCL's distance, m, or `bound` if it is not below that; zero or less if the surfaces meet
+/// or FCL fails.
 double PairTest::distance(const fcl::CollisionGeometryd& a, const Pose& X_a, const fcl::CollisionGeometryd& b, const Pose& X_b,
                           double bound) {
   const fcl::DistanceRequestd request(false, false, 0.0, 0.0, kGjkTolerance, fcl::GST_LIBCCD);

@@ -9,20 +9,23 @@ namespace swivel::detail {
 /// a cylinder; at 1e-10 no more than 0.05 um, for the same time.
 inline constexpr double kGjkTolerance = 1e-10;
 
-/// FCL's verdicts on one pair of bodies, and a count of what they took; so it belongs to one thread.
-/// Every verdict is a function of its arguments alone: fresh results, a before b, no cached guess, no penetration depth (which can
-/// throw and abort).
+/// Asks FCL about pairs of bodies, and counts the calls, so that an instance belongs to one thread.
+/// Every verdict depends on its arguments alone: FCL gets a fresh result object, a before b, no
+/// cached guess, and is never asked for a penetration depth (which can throw and abort).
 class PairTest {
  public:
-  /// What FCL is asked about a mesh before a box, cylinder or mesh. kNear: of the triangles only those that are near enough to
-  /// decide, which our own trees find; the answers are the same. FCL's trees, a third of a second for a hundred thousand triangles,
-  /// are then hardly ever built.
+  /// How FCL is called about a mesh and a box, cylinder or mesh. kWhole: with all triangles. kNear:
+  /// only with the triangles that are near enough to decide, which our own trees find; the answers
+  /// are the same. With kNear, FCL's trees, which take a third of a second for a hundred thousand
+  /// triangles, are hardly ever built.
   enum class Meshes { kWhole, kNear };
   explicit PairTest(Meshes meshes = Meshes::kWhole) : meshes_(meshes) {}
-  /// clearance(a, b) < d; d >= 0. True also where FCL fails, which is counted.
+  /// Returns true if the clearance of a and b is less than d >= 0, m, or if FCL fails, which is
+  /// counted.
   bool below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
-  /// Clearance, m; 0 when touching, inside each other, or where FCL fails. `witness`: triangles at which the search for the near
-  /// ones begins, and where it ended; the answer does not depend on it.
+  /// Returns the clearance of a and b, m; 0 if they touch, if one is inside the other, or if FCL
+  /// fails. `witness` is a warm start for the search for near triangles: on entry the triangles at
+  /// which it begins, on return those at which it ended. The answer does not depend on it.
   double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* witness = nullptr);
   [[nodiscard]] const CollisionCounters& counters() const { return counters_; }
 

@@ -15,8 +15,9 @@ constexpr double kRounding = 1e-6;  // far above what these distances lose, far 
 
 constexpr Proof kCollides{Certificate::kColliding};
 
-/// Of distances that are larger than the clearance by at most `growth`: below `low` is a collision, from `high` on is free, and
-/// what is beyond `far` need not be told apart.
+/// Turns a distance into a verdict. The distance exceeds the clearance by at most `growth`. A
+/// distance below `low` is a collision, one of at least `high` is free, and distances beyond `far`
+/// need not be told apart. All in metres.
 struct Range {
   double growth, low, high, far;
   Range(double d, double margin, double growth_within, double growth_between = 0)
@@ -33,13 +34,14 @@ struct Range {
 bool is_round(const PlacedShapeRef& body) {
   return body.shape->kind == FclShape::Kind::kRound;
 }
-/// A cylinder that the capsule about it exceeds by little.
+/// Returns true for a cylinder that is little smaller than the capsule around it.
 bool is_rod(const PlacedShapeRef& body) {
   const auto* cylinder = std::get_if<Cylinder>(&body.shape->shape);
   return cylinder && cylinder->length >= 2 * cylinder->radius;
 }
 
-/// What a sphere, a capsule or a rod grows from: radius and, in the shape's frame, length along z, m.
+/// The core of a sphere, a capsule or a rod: its radius and, along z of the shape's frame, its
+/// length, m.
 struct Core {
   double radius, length;
 };
@@ -52,7 +54,7 @@ Core core_of(const Shape& shape) {
 double radius_of(const PlacedShapeRef& round) {
   return core_of(round.shape->shape).radius;
 }
-/// Base frame.
+/// Returns the core segment, base frame.
 Segment core_of(const PlacedShapeRef& round) {
   const Vector3d along = core_of(round.shape->shape).length * round.pose->linear().col(2);
   return {round.pose->translation() - along / 2, along};
@@ -62,7 +64,7 @@ Segment in_frame(const Segment& s, const Pose& frame) {
   return {frame.linear().transpose() * (s.start - frame.translation()), frame.linear().transpose() * s.along};
 }
 
-/// From the nearest point of a solid to this one.
+/// Returns the vector from the nearest point of a solid to the point p, in the solid's frame.
 Vector3d way_out(const Box& box, const Vector3d& p) {
   return (p.cwiseAbs() - box.size / 2).cwiseMax(0).cwiseProduct(p.cwiseSign());
 }
@@ -72,12 +74,13 @@ Vector3d way_out(const Cylinder& cylinder, const Vector3d& p) {
   return {aside * p.x(), aside * p.y(), std::copysign(std::max(0.0, std::abs(p.z()) - cylinder.length / 2), p.z())};
 }
 
-/// How far inside the solid a point lies that does.
+/// Returns how deep a point p inside the solid lies beneath its surface, m.
 double depth(const Cylinder& cylinder, const Vector3d& p) {
   return std::min(cylinder.radius - std::hypot(p.x(), p.y()), cylinder.length / 2 - std::abs(p.z()));
 }
 
-/// A convex solid's distance is convex along a segment: its least value lies between the values and the tangents on both sides.
+/// Compares the distance of a segment from a convex solid with a range. The distance is convex
+/// along the segment, so its least value lies between the values and the tangents on both sides.
 template <class Solid>
 Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
   struct Place {
@@ -115,7 +118,7 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
   return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
-/// Less than 0 inside.
+/// Returns the distance of a point from a solid, m; if the point is inside, minus its depth.
 double signed_distance(const Box& box, const Vector3d& p) {
   const Vector3d out = p.cwiseAbs() - box.size / 2;
   const double most = out.maxCoeff();
@@ -125,7 +128,7 @@ double signed_distance(const Cylinder& cylinder, const Vector3d& p) {
   const double out = way_out(cylinder, p).norm();
   return out > 0 ? out : -depth(cylinder, p);
 }
-/// Whether that is below `low`.
+/// Returns true if the signed distance of a point from a solid is below `low`, m.
 bool is_nearer(const Box& box, const Vector3d& p, double low) {
   const Vector3d out = p.cwiseAbs() - box.size / 2;
   const double most = out.maxCoeff();
@@ -135,13 +138,14 @@ bool is_nearer(const Cylinder& cylinder, const Vector3d& p, double low) {
   return signed_distance(cylinder, p) < low;
 }
 
-/// A corner or the middle of the triangle is one of the points of which `holds` holds.
+/// Returns true if `holds` returns true for a corner or the middle of the triangle.
 template <class Holds>
 bool any_point(const Holds& holds, const Triangle& t) {
   return holds(t.a) || holds(t.a + t.ab) || holds(t.a + t.ac) || holds(t.a + (t.ab + t.ac) / 3);
 }
-/// A corner or the middle of a triangle of `body` is found nearer than `low` to the box or cylinder `solid`; deeper in it than -low
-/// where that is below zero. False for bodies of other kinds.
+/// Looks for a corner or middle of a triangle of `body` whose signed distance from the box or
+/// cylinder `solid` is below `low`, m, and returns true if it finds one. Returns false for bodies
+/// of other kinds. `first` is a warm start.
 bool finds_deeper(double low, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
   if (solid.shape->kind != FclShape::Kind::kSolid || !body.shape->has_triangles()) return false;
   const Pose to_solid = solid.pose->inverse(Eigen::Isometry) * *body.pose;
@@ -154,8 +158,9 @@ bool finds_deeper(double low, const PlacedShapeRef& solid, const PlacedShapeRef&
   if (const auto* box = std::get_if<Box>(&solid.shape->shape)) return seek(*box);
   return seek(std::get<Cylinder>(solid.shape->shape));
 }
-/// A surface need not be searched as a whole to find a part of it that is well inside the other body. Proves only what the search
-/// of the whole would (a prism lacks what is beyond it), so that it is a matter of time alone.
+/// Looks for a part of the surface of `body` that is well inside `solid`, without searching the
+/// whole surface. It proves only what the whole search would prove (a prism lacks what is beyond
+/// it), so it only saves time.
 bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& body, int& first) {
   const double low = d - solid.shape->beyond_triangles;
   return low > 0 && finds_deeper(low, solid, body, first);
@@ -193,7 +198,7 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness, Expected expected) {
   if (is_round(a)) return prove_round(a, b, d, margin, witness.b);
   if (is_round(b)) return prove_round(b, a, d, margin, witness.a);
-  // Its axis is nearer to a rod's surface than the prism's long triangles make it.
+  // The capsule around a rod often proves more than the prism with its long triangles does.
   if (is_rod(a))
     if (const Proof proof = prove_round(a, b, d, margin, witness.b); proof.certificate == Certificate::kFree) return proof;
   if (is_rod(b))

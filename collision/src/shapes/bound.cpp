@@ -21,7 +21,7 @@ struct BoundVisitor {
   }
 };
 
-/// Widest gap along the axes of both boxes.
+/// Returns the widest gap of two bounding volumes along the axes of both boxes, m.
 double gap_along_box_axes(const Bound& a, const Matrix3d& axes_a, const Bound& b, const Matrix3d& axes_b, const Vector3d& offset) {
   const Matrix3d turn = (axes_a.transpose() * axes_b).cwiseAbs();
   const Vector3d along_a = (axes_a.transpose() * offset).cwiseAbs() - a.half - turn * b.half;

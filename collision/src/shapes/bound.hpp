@@ -4,31 +4,37 @@
 
 namespace swivel::detail {
 
-/// A box in the shape's axes, grown by a ball: it contains the shape. A capsule is a degenerate box with a radius, so that its
-/// round sides cost nothing.
+/// A bounding volume of a shape: a box along the shape's axes, grown by a ball. For a capsule the
+/// box degenerates to its axis, so that its round sides are bounded exactly.
 struct Bound {
   Vector3d center = Vector3d::Zero();  ///< in the shape's frame
   Vector3d half = Vector3d::Zero();    ///< half edge lengths of the box
   double radius = 0;                   ///< of the ball
   double reach = 0;                    ///< radius of the ball about `center` that contains the shape
 };
+/// Returns the bounding volume of a shape, in the shape's frame.
 [[nodiscard]] Bound bound_of(const Shape& shape);
 
-/// A bound where its body is.
+/// The centre and the axes (columns) of a bounding volume, base frame.
 struct PlacedBound {
   Vector3d center;
   Matrix3d axes;
 };
+/// Returns the bounding volume's centre and axes for a body at `pose`, base frame.
 [[nodiscard]] PlacedBound place(const Bound& bound, const Pose& pose);
 
-/// No point of a body's core (the shape itself, or what a ball grows to it) moves further than this between two places, m.
+/// Returns an upper bound, m, of how far any point of the body's core (the shape itself or, if a
+/// ball grows the box, the box) moves between two placements.
 [[nodiscard]] double motion(const Bound& bound, const PlacedBound& from, const PlacedBound& to);
 
-/// A number that the distance of the two bodies cannot be below, m: the widest gap along the line of centres and the six box axes.
+/// Returns a lower bound of the distance of two bodies, m: the widest gap along the line of centres
+/// and the six box axes. Negative if their bounds overlap.
 [[nodiscard]] double distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
-/// The same by the line of centres alone; cheap.
+/// Returns a lower bound of the distance of two bodies, m, by the balls about their centres alone.
+/// Cheaper and weaker than distance_bound().
 [[nodiscard]] double ball_distance_bound(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b);
-/// True only if distance_bound >= d; asks the cheap balls first.
+/// Returns true if the distance of the two bodies is proved to be at least d, m, by the criterion
+/// of distance_bound(). Tests the cheap balls first.
 [[nodiscard]] bool proved_apart(const Bound& a, const PlacedBound& at_a, const Bound& b, const PlacedBound& at_b, double d);
 
 }  // namespace swivel::detail

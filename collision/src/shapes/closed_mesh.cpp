@@ -15,14 +15,15 @@ bool before(const Vector3d& a, const Vector3d& b) {
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-/// Where the edge from a to b (a before b, a.u <= u < b.u) crosses the plane of this u: its (v, w).
+/// Returns the (v, w) at which the edge from a to b (a before b, a.u <= u < b.u) crosses the plane
+/// of this u.
 Eigen::Vector2d crossing(const Vector3d& a, const Vector3d& b, double u) {
   const double t = (u - a.x()) / (b.x() - a.x());
   return a.tail<2>() + t * (b.tail<2>() - a.tail<2>());
 }
 
-/// Whether the ray from p towards +w crosses the triangle. Half open in u and v, so that a ray through an edge or a corner counts
-/// as if p were moved by an infinitely small step.
+/// Returns true if the ray from p towards +w crosses the triangle. The test is half open in u and
+/// v, so that a ray through an edge or a corner counts as if p were moved by an infinitesimal step.
 bool ray_crosses(const std::array<Vector3d, 3>& c, const Vector3d& p) {
   const double u = p.x();
   if (u < c[0].x() || u >= c[2].x()) return false;

@@ -7,14 +7,16 @@
 
 namespace swivel::detail {
 
-/// The inside of a closed mesh, for points that are not on its surface: a ray from the point leaves the solid as often as it
-/// enters it, plus once if the point is inside.
-/// The ray runs along the mesh's thinnest side; a grid over the other two lists the triangles it may cross. Triangles that share an
-/// edge compute the same crossing of that edge, bit for bit, so that no ray slips between them and no tolerance is needed.
+/// Tells whether points lie inside a closed mesh. A ray from a point inside crosses the surface an
+/// odd number of times, a ray from outside an even number. Points on the surface may be classified
+/// either way.
+/// The ray runs along the mesh's thinnest side; a grid over the other two axes lists the triangles
+/// it may cross. Triangles that share an edge compute bit-identical crossings of that edge, so that
+/// no ray slips between them and no tolerance is needed.
 class ClosedMesh {
  public:
   explicit ClosedMesh(const TriangleMesh& mesh);
-  /// Point in the mesh's own frame.
+  /// Returns true if the point, in the mesh's own frame, lies inside the mesh.
   [[nodiscard]] bool contains(const Vector3d& point) const;
 
  private:
@@ -32,7 +34,8 @@ class ClosedMesh {
   std::vector<Corners> corners_;
 };
 
-/// One vertex of each connected part of the surface, vertices at equal positions being one.
+/// Returns one vertex of each connected part of the surface, in the mesh's frame. Vertices at equal
+/// positions count as one.
 [[nodiscard]] std::vector<Vector3d> one_point_per_part(const TriangleMesh& mesh);
 
 }  // namespace swivel::detail

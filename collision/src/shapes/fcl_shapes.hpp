@@ -18,25 +18,30 @@
 
 namespace swivel::detail {
 
-/// What collision needs of one mesh. Each part is computed when it is first asked for: certificates leave FCL few questions, and
-/// boxes about a link are often all that is asked of it. Const calls are safe from many threads.
+/// The search structures of one mesh. Each is built when it is first used, because distance proofs
+/// leave FCL few questions and boxes about a link often suffice. Const calls are safe from many
+/// threads.
 class MeshModel {
  public:
   /// Throws InputError for a mesh without a triangle that has an area.
   explicit MeshModel(MeshPtr mesh);
-  /// For certificates.
+  /// Returns our own tree of the triangles, which distance proofs use.
   [[nodiscard]] const TriangleTree& triangles() const;
+  /// Returns true if triangles() has been built.
   [[nodiscard]] bool is_ready() const { return triangles_.is_made(); }
-  /// For booleans: of FCL's trees the one that needs no copy per question and has the cheapest overlap test.
+  /// Returns FCL's tree for boolean collision queries: the kind that needs no copy per query and
+  /// has the cheapest overlap test.
   [[nodiscard]] const fcl::BVHModel<fcl::OBBd>& boolean_tree() const;
-  /// For distances, which an OBB cannot bound.
+  /// Returns FCL's tree for distance queries, which oriented bounding boxes cannot bound.
   [[nodiscard]] const fcl::BVHModel<fcl::RSSd>& distance_tree() const;
-  /// The same of some of the triangles that triangles() was made of, by their places there; at least one.
+  /// Returns FCL's tree for distance queries, made only of the triangles at `places` in the list
+  /// that triangles() was made of. `places` must not be empty.
   [[nodiscard]] std::unique_ptr<fcl::BVHModel<fcl::RSSd>> distance_tree_of(const std::vector<int>& places) const;
+  /// Returns true if the mesh is a closed surface.
   [[nodiscard]] bool is_closed() const;
-  /// Of a mesh that is closed.
+  /// Returns the point-in-solid test. The mesh must be closed.
   [[nodiscard]] const ClosedMesh& solid() const;
-  /// A point of every connected part.
+  /// Returns one point of every connected part, in the mesh's frame.
   [[nodiscard]] const std::vector<Vector3d>& part_points() const;
 
  private:
@@ -49,16 +54,19 @@ class MeshModel {
   Lazy<fcl::BVHModel<fcl::RSSd>> distance_tree_;
 };
 
-/// Models by mesh, so that one file serves many links, and one world's trees the next world.
+/// The models of meshes. Each is built once, so that links that use one file share it, and later
+/// worlds reuse its trees.
 class MeshStore {
  public:
+  /// Returns the model of a mesh, which is created when first asked for. Throws InputError for a
+  /// mesh without a triangle that has an area.
   std::shared_ptr<const MeshModel> model(const MeshPtr& mesh);
 
  private:
   std::map<const TriangleMesh*, std::shared_ptr<const MeshModel>> models_;  // a model keeps its mesh alive
 };
 
-/// One shape as FCL and the tests around it see it.
+/// A shape with the geometry that FCL, distance proofs and bounding volumes need.
 struct FclShape {
   enum class Kind { kRound, kSolid, kMesh };  ///< sphere or capsule; box or cylinder; mesh
   Kind kind = Kind::kSolid;
@@ -69,11 +77,14 @@ struct FclShape {
   double beyond_triangles = 0;                              // no point of the cylinder is further from its prism, m
   Bound bound;
   [[nodiscard]] bool has_triangles() const { return mesh || surface; }
-  /// The surface of a mesh or box, or of a prism in a cylinder.
+  /// Returns the triangles of a mesh or box, or of the prism in a cylinder. The shape must have
+  /// triangles.
   [[nodiscard]] const TriangleTree& triangles() const { return mesh ? mesh->triangles() : *surface; }
-  /// What FCL is asked for distances about.
+  /// Returns the geometry that FCL's distance queries use.
   [[nodiscard]] const fcl::CollisionGeometryd& distance_geometry() const { return mesh ? mesh->distance_tree() : *geometry; }
 };
+/// Returns the geometry of a shape; takes the model of a mesh from `store`. Throws InputError for a
+/// mesh without a triangle that has an area.
 [[nodiscard]] FclShape make_fcl_shape(const Shape& shape, MeshStore& store);
 
 }  // namespace swivel::detail

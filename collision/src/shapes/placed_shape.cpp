@@ -8,7 +8,7 @@ namespace swivel::detail {
 
 namespace {
 
-/// A point of `inner` lies in the solid mesh `outer`.
+/// Returns true if `outer` is a closed mesh and a point of `inner` lies inside it.
 bool holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
   if (!outer.shape->mesh || !outer.shape->mesh->is_closed()) return false;
   const ClosedMesh& solid = outer.shape->mesh->solid();
@@ -25,7 +25,7 @@ bool holds(const Cylinder& cylinder, const Vector3d& p) {
   return std::hypot(p.x(), p.y()) <= cylinder.radius && std::abs(p.z()) <= cylinder.length / 2;
 }
 
-/// A point of `inner` lies in the box or cylinder `outer`.
+/// Returns true if `outer` is a box or cylinder and a point of `inner` lies inside it.
 bool solid_holds_a_point(const PlacedShapeRef& outer, const PlacedShapeRef& inner) {
   if (outer.shape->kind != FclShape::Kind::kSolid) return false;
   const Pose to_outer = outer.pose->inverse(Eigen::Isometry) * *inner.pose;

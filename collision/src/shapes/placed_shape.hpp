@@ -4,17 +4,20 @@
 
 namespace swivel::detail {
 
-/// A body where it is.
+/// A shape and its pose. Refers to both, which must outlive it.
 struct PlacedShapeRef {
   const FclShape* shape;
   const Pose* pose;  ///< of the shape, base frame
 };
 
-/// A point of one lies inside the other, which is a closed mesh. Decides where surfaces do not meet: FCL sees a mesh as a surface.
+/// Returns true if a point of one body lies inside the other, which is a closed mesh. If the
+/// surfaces do not meet, this tells whether one contains the other; FCL does not, because it sees a
+/// mesh as a surface.
 [[nodiscard]] bool one_inside_other(const PlacedShapeRef& a, const PlacedShapeRef& b);
 
-/// A point of one, or of a part of it if it is a mesh, lies inside the other, which is a box or cylinder. Decides where triangles
-/// of their surfaces do not meet.
+/// Returns true if a point of one body (for a mesh: of any of its connected parts) lies inside the
+/// other, which is a box or cylinder. If the triangles of their surfaces do not meet, this tells
+/// whether one contains the other.
 [[nodiscard]] bool one_inside_solid(const PlacedShapeRef& a, const PlacedShapeRef& b);
 
 }  // namespace swivel::detail

@@ -13,15 +13,17 @@ double on_unit(double t) {
   return std::clamp(t, 0.0, 1.0);
 }
 
-/// Whether x, relative to corner a and in the triangle's plane, lies in the triangle.
+/// Returns true if x, relative to corner a and in the triangle's plane, lies in the triangle.
 bool holds(const Triangle& t, const Vector3d& x) {
   return t.normal.dot(t.ab.cross(x)) >= 0 && t.normal.dot(x.cross(t.ac)) >= 0 && t.normal.dot((t.ac - t.ab).cross(x - t.ab)) >= 0;
 }
 
 constexpr double kNotInside = std::numeric_limits<double>::max();
 
-/// The squared distance where the segment comes nearest, or is at least `limit`, over the triangle's inside; else kNotInside: where
-/// it passes over the inside elsewhere, it comes nearer until it is over an edge.
+/// Returns the squared distance of the segment and the triangle, m^2, if the nearest point of the
+/// triangle lies in its inside; a value of at least `limit` if the plane proves the distance to be
+/// no less; else kNotInside. In that last case the segment comes nearest at an edge: if it passes
+/// over the inside elsewhere, it comes nearer until it is over an edge.
 double squared_distance_over_inside(const Segment& s, const Triangle& t, double limit) {
   const Vector3d from = s.start - t.a;
   const double height = t.normal.dot(from), end_height = height + t.normal.dot(s.along);
@@ -36,7 +38,8 @@ double squared_distance_over_inside(const Segment& s, const Triangle& t, double 
   return holds(t, foot) ? nearer * nearer : kNotInside;
 }
 
-/// A plane of one, their boxes, or the way from one middle to the other part them by `limit`.
+/// Returns true if the triangles are proved to be apart by at least sqrt(limit): along either
+/// normal, by their boxes, or along the line that joins their middles.
 bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   const auto above = [limit](const Triangle& below, const Triangle& other) {
     const double h = below.normal.dot(other.a - below.a), hb = h + below.normal.dot(other.ab), hc = h + below.normal.dot(other.ac);
@@ -54,7 +57,7 @@ bool surely_further(const Triangle& s, const Triangle& t, double limit) {
   return to > from && (to - from) * (to - from) >= limit * between.squaredNorm();
 }
 
-/// From the nearest point of t to that of s.
+/// Returns the vector from the nearest point of t to the nearest point of s.
 Vector3d shortest(const Segment& s, const Segment& t) {
   const Vector3d between = s.start - t.start;
   const double ss = s.along.squaredNorm(), tt = t.along.squaredNorm(), st = s.along.dot(t.along);
@@ -70,7 +73,8 @@ Vector3d shortest(const Segment& s, const Segment& t) {
   return between + x * s.along - y * t.along;
 }
 
-/// The way parts them by `limit`.
+/// Returns true if the triangles are apart by at least sqrt(limit) along the direction `way`, with
+/// s ahead.
 bool apart_along(const Vector3d& way, const Triangle& s, const Triangle& t, double limit) {
   const double from = way.dot(s.a - t.a) + std::min({0.0, way.dot(s.ab), way.dot(s.ac)});
   const double to = std::max({0.0, way.dot(t.ab), way.dot(t.ac)});

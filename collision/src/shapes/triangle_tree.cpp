@@ -13,8 +13,8 @@ namespace {
 constexpr int kLeaf = 4;
 constexpr int kBox = 12;  // triangles of a box: one leaf, whose bound is the box itself
 
-/// Least squared distance that a segment may have from a box: by the gaps along the box's axes and across the segment. Need not be
-/// told where it is at least `limit`.
+/// Computes a lower bound of the squared distance of a segment from boxes, m^2, by the gaps along
+/// the box's axes and across the segment. The bound may be coarser where it is at least `limit`.
 class BoxBound {
  public:
   explicit BoxBound(const Segment& s) : middle_(s.at(0.5)), half_(s.along.cwiseAbs() / 2) {
@@ -41,10 +41,11 @@ Single in_single(const Vector3d& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()), 0};
 }
 
-/// Least squared distances of boxes from boxes of a tree that stands at a pose, by the gaps along the axes of both. In single
-/// precision, one vector for three numbers, or for one number of four boxes. What that loses is taken off each gap: a few dozen
-/// roundings, of 2^-24 each, of lengths that are at most how far the boxes lie from both frames' origins (`reach`) and these from
-/// each other.
+/// Computes lower bounds of the squared distances, m^2, of boxes of one tree from boxes of another
+/// tree that is placed at a pose, by the gaps along the axes of both. It works in single precision,
+/// with one vector for three numbers, or for one number of four boxes. The rounding error is
+/// subtracted from each gap: a few dozen roundings of 2^-24 each, of lengths that are at most how
+/// far the boxes lie from both frames' origins (`reach`) plus how far these lie from each other.
 class BoxPairBound {
  public:
   BoxPairBound(const Pose& pose, double reach)
@@ -57,7 +58,8 @@ class BoxPairBound {
       back_spread_[k] = back_[k].abs();
     }
   }
-  /// Upright boxes. Need not be told where it is at least `limit`.
+  /// Returns the bound for two boxes along the axes of their trees. It may be coarser where it is
+  /// at least `limit`.
   template <class Box>
   [[nodiscard]] float squared(const Box& box, const Box& other, float limit) const {
     const Single offset = at_ + product(turn_, other.center) - box.center;
@@ -65,12 +67,13 @@ class BoxPairBound {
     if (along_box >= limit) return along_box;
     return std::max(along_box, squared(product(back_, offset).abs() - other.half - product(back_spread_, box.half)));
   }
-  /// Squared, of four boxes.
+  /// Squared distances of four boxes from one.
   struct FourGaps {
     Single bound;    ///< least distance
     Single between;  ///< of the centres
   };
-  /// Four upright boxes, each from one.
+  /// Returns the bounds for four boxes of this tree and one of the other, all along the axes of
+  /// their trees.
   template <class Four, class Box>
   [[nodiscard]] FourGaps squared_of_four(const Four& boxes, const Box& other) const {
     const Single center = at_ + product(turn_, other.center), reach = product(spread_, other.half);
@@ -85,7 +88,8 @@ class BoxPairBound {
       along_other += over_gap(dot(turn_[k], offset).abs() - other.half[static_cast<Eigen::Index>(k)] - dot(spread_[k], boxes.half));
     return {along_boxes.max(along_other), squared_norm(offset)};
   }
-  /// Whether boxes with axes of their own are apart by `limit`, squared.
+  /// Returns true if two boxes with axes of their own are proved to be apart by at least
+  /// sqrt(limit).
   template <class Box>
   [[nodiscard]] bool further(const Box& box, const Box& other, float limit) const {
     const Single offset = product(box.rows, at_ + product(turn_, other.center) - box.center);
@@ -119,7 +123,8 @@ class BoxPairBound {
   float lost_;
 };
 
-/// Least squared distance that a triangle may have from a box: by the gaps along the box's axes.
+/// Returns a lower bound of the squared distance of a triangle from a box, m^2, by the gaps along
+/// the box's axes.
 double squared_gap(const Triangle& t, const Vector3d& center, const Vector3d& half) {
   const Vector3d from = t.a - center;
   const Vector3d low = from + t.ab.cwiseMin(t.ac).cwiseMin(0), high = from + t.ab.cwiseMax(t.ac).cwiseMax(0);
@@ -177,7 +182,7 @@ TriangleTree::FourBoxes TriangleTree::boxes_below(int node) const {
   return boxes;
 }
 
-/// Along the patch's mean normal and its longest edge.
+/// Returns a box around a leaf's triangles, along their mean normal and their longest edge.
 TriangleTree::OrientedBox TriangleTree::oriented_box(const Node& leaf) const {
   Vector3d normal = Vector3d::Zero(), longest = Vector3d::Zero();
   for (int k = leaf.begin; k < leaf.end; ++k) {
@@ -283,7 +288,8 @@ double TriangleTree::distance(const TriangleTree& other, const Pose& pose, doubl
   struct Open {
     int a, b;
     float bound, between;
-    /// Boxes that overlap are all at 0: those whose centres are nearest are the likeliest to hold triangles that touch.
+    /// Orders by the bound. All boxes that overlap have the bound 0: among these the ones whose
+    /// centres are nearest are the likeliest to hold triangles that touch.
     [[nodiscard]] bool before(const Open& other) const {
       return bound < other.bound || (bound == other.bound && between < other.between);
     }

@@ -8,37 +8,48 @@
 
 namespace swivel::detail {
 
-/// A triangle of one tree and one of another.
+/// The index of a triangle in one tree and of a triangle in another.
 struct TrianglePair {
   int a = 0, b = 0;
 };
 
-/// Triangles in a binary tree of boxes, for exact distances up to a limit. Const calls are safe from many threads.
+/// A binary tree of boxes over triangles, which computes exact distances up to a limit. Const calls
+/// are safe from many threads.
 class TriangleTree {
  public:
-  /// At least one triangle.
+  /// Builds the tree of at least one triangle.
   explicit TriangleTree(std::vector<Triangle> triangles);
-  /// The distance from the nearest triangle, m, where it lies in [enough, limit]; below that, the first distance found that is
-  /// below `enough`; beyond it, `limit`. The segment is in the triangles' frame. The search begins with the triangle `first`, and
-  /// leaves there the nearest one that it has met: the next question about bodies that have moved little is answered sooner.
+  /// Returns the distance of the segment, in the triangles' frame, from the nearest triangle, m, if
+  /// it lies in [enough, limit]; if it is less, the first distance found that is below `enough`; if
+  /// it is more, `limit`. `first` is a warm start: the search begins with this triangle and stores
+  /// the nearest one that it meets, so that the next call for bodies that have moved little is
+  /// faster.
   [[nodiscard]] double distance(const Segment& segment, double enough, double limit, int& first) const;
-  /// The same from the triangles of another tree, whose frame lies at `pose` in this one's.
+  /// Returns the distance of this tree's triangles from those of `other`, m, whose frame lies at
+  /// `pose` in this tree's frame, if it lies in [enough, limit]; if it is less, the first distance
+  /// found that is below `enough`; if it is more, `limit`. `first` is a warm start: the search
+  /// begins with this pair and stores the nearest one that it meets.
   [[nodiscard]] double distance(const TriangleTree& other, const Pose& pose, double enough, double limit,
                                 TrianglePair& first) const;
-  /// The distance of a point from one of the triangles, m.
+  /// Returns the distance of a point from one of the triangles, m.
   [[nodiscard]] double distance_at(const Vector3d& point, int triangle) const;
-  /// The nearest point of one of the triangles.
+  /// Returns the point of one of the triangles that is nearest to `point`.
   [[nodiscard]] Vector3d nearest_on(const Vector3d& point, int triangle) const;
-  /// Whether a triangle that is nearer than `radius` to the point reaches beyond the plane of points x with normal . x = offset.
+  /// Returns true if a triangle that is nearer than `radius`, m, to the point reaches beyond the
+  /// plane of the points x with normal . x = offset.
   [[nodiscard]] bool reaches_beyond(const Vector3d& point, double radius, const Vector3d& normal, double offset) const;
-  /// Of one triangle from one of the other tree, m.
+  /// Returns the distance of triangle pair.a of this tree from triangle pair.b of `other`, m, whose
+  /// frame lies at `pose` in this tree's frame.
   [[nodiscard]] double distance_at(const TriangleTree& other, const Pose& pose, const TrianglePair& pair) const;
-  /// The triangles that are nearer than `limit` to one of the other tree, and those of the other tree, by their places in the lists
-  /// that the trees were made of, in ascending order.
+  /// Returns the triangles of this tree that are nearer than `limit`, m, to a triangle of `other`,
+  /// and those of `other` that are nearer than it to one of this tree: indices into the lists that
+  /// the trees were made of, in ascending order. The frame of `other` lies at `pose` in this tree's
+  /// frame.
   [[nodiscard]] std::array<std::vector<int>, 2> nearer(const TriangleTree& other, const Pose& pose, double limit) const;
-  /// Looks for a triangle of which `proves` holds where `gap`, a signed distance from some solid, m, is least. Begins with the
-  /// triangle `first`, and leaves there the one found. Looks into a few boxes only, none of them at a gap of `enough`: where it
-  /// finds no triangle, there may be one.
+  /// Looks for a triangle for which `proves` returns true, where `gap`, a signed distance from some
+  /// solid, m, is least, and returns true if it finds one. `first` is a warm start: the search
+  /// begins with this triangle and stores the one found. Only a few boxes are searched, and none
+  /// whose gap is at least `enough`: if the result is false, there may still be such a triangle.
   template <class Gap, class Proves>
   [[nodiscard]] bool seek(double enough, const Gap& gap, const Proves& proves, int& first) const;
 
@@ -49,17 +60,18 @@ class TriangleTree {
     int right = 0;           ///< second child; the first is the next node; 0: a leaf
     int place = 0;           ///< in `leaves_` or, of other nodes, in `below_`
   };
-  /// A node's box once more, in single precision; the fourth numbers are zero.
+  /// A node's box in single precision. The fourth numbers are zero.
   struct SingleBox {
     Eigen::Array4f center, half;
   };
-  /// The two to four boxes of a node's children's children, or of a child that is a leaf: one vector for each coordinate.
+  /// The two to four boxes of a node's grandchildren, or of a child that is a leaf, with one vector
+  /// for each coordinate.
   struct FourBoxes {
     std::array<Eigen::Array4f, 3> center, half;
     std::array<int, 4> node{};
     int count = 0;
   };
-  /// A box along the axes of what it holds: a leaf is a patch of a surface, and thin.
+  /// A box along axes fitted to its triangles: a leaf is a patch of a surface, and thin.
   struct OrientedBox {
     std::array<Eigen::Array4f, 3> axes, rows;  ///< columns and rows of the matrix of its axes
     Eigen::Array4f center, half;
@@ -86,8 +98,8 @@ class TriangleTree {
 template <class Gap, class Proves>
 bool TriangleTree::seek(double enough, const Gap& gap, const Proves& proves, int& first) const {
   if (proves(triangles_[first])) return true;
-  // Looking into 16 proves 910 of a thousand collisions of an arm's links with boxes, into 64 proves 990. Where nothing collides,
-  // none of it helps.
+  // The search of 16 boxes proves 910 of a thousand collisions of an arm's links with boxes, the
+  // search of 64 proves 990. If nothing collides, the search is wasted.
   constexpr int kMostBoxes = 40;
   struct Open {
     int node;

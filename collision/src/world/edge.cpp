@@ -36,8 +36,11 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 
 namespace {
 
-/// below(q, level, likely, stretch) names a pair too near, or none; of a stretch about q, where it is not null. No pair comes
-/// nearer by more than `bound` on the whole motion, and no point's path bends by more than `bend` on half of it.
+/// Searches the motion from q0 to q1 for a pair that is too near, by bisection down to `leaves`
+/// midpoints. below(q, level, likely, stretch) returns a pair that is too near at q, or none; if
+/// `stretch` is not null, what it asks of a pair is limited to how much nearer the pair can come on
+/// that stretch about q. No pair comes nearer by more than `bound`, m, on the whole motion, and no
+/// point's path bends by more than `bend`, m, on half of it. Throws Stopped.
 template <class Below>
 std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double bend,
                                const Budget& budget, const Below& below) {
@@ -48,7 +51,8 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
   for (std::int64_t size = leaves; !open.empty(); size /= 2) {
     const double half_bound = step * static_cast<double>(size) / 2;
     const double share = static_cast<double>(size) / static_cast<double>(leaves);
-    // All bounds hold up to the ends, half a leaf beyond the midpoints that count: what lies between must cover how FCL errs.
+    // The bounds hold up to the ends of the interval, half a leaf beyond its outermost midpoints.
+    // This half leaf must cover FCL's error.
     const Stretch stretch{share / 2 * delta, share * share * bend, step / 2};
     next.clear();
     for (const std::int64_t first : open) {
@@ -70,7 +74,7 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
   return std::nullopt;
 }
 
-/// The distance that a level asks of a pair of the rule's own.
+/// Returns the distance, m, that a level requires of a pair that has a rule of its own.
 double distance_of(const Level& level, const EdgeRule::Near& pair) {
   return pair.d_edge + (level.keep == Keep::kMidpoint ? pair.h : 0) + level.more;
 }
@@ -91,7 +95,8 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
   if (spare) *spare = std::numeric_limits<double>::infinity();
   const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely, const Stretch* stretch) {
     const auto pair = stretch ? query.next_below_on(*stretch, q, level) : query.next_below(q, level, likely);
-    // What is asked of motions says whether to go on, and proves nothing.
+    // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
+    // slack.
     if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
     return pair;
   };
@@ -99,7 +104,7 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
-  if (spare && !rule.near.empty()) *spare = 0;  // of those nothing is known
+  if (spare && !rule.near.empty()) *spare = 0;  // the slack of these pairs is unknown
   return std::nullopt;
 }
 

@@ -14,7 +14,7 @@ NamePair ordered(const std::string& a, const std::string& b) {
   return a < b ? NamePair(a, b) : NamePair(b, a);
 }
 
-/// Links joined by fixed joints are one cluster; the cluster's number is that of its top link.
+/// Clusters of links that fixed joints join. The index of a cluster is that of its top link.
 class Clusters {
  public:
   explicit Clusters(const RobotModel& robot) : robot_(robot) {}
@@ -25,7 +25,7 @@ class Clusters {
     }
     return link;
   }
-  /// One movable joint joins them.
+  /// Returns true if one movable joint joins the clusters of the two links.
   [[nodiscard]] bool parent_and_child(int a, int b) const { return of_parent(of(a)) == of(b) || of_parent(of(b)) == of(a); }
 
  private:

@@ -6,7 +6,9 @@
 
 namespace swivel::detail {
 
-/// Pairs of robot bodies that no rule of the model takes out: the SRDF, one rigid group, parent and child. a < b.
+/// Returns the pairs of robot bodies (a < b, indices into `bodies`) that are candidates for
+/// self-collision: all but those that the SRDF disables, those in one rigid group, and those on a
+/// parent link and its child link.
 [[nodiscard]] std::vector<BodyPair> candidate_robot_pairs(const RobotModel& robot, const std::vector<RobotBody>& bodies);
 
 }  // namespace swivel::detail

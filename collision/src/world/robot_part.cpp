@@ -18,10 +18,12 @@ namespace {
 constexpr double kFar = std::numeric_limits<double>::infinity();
 constexpr double kFarAway = 1e6;  // m, beyond any robot, with a square
 constexpr int kSamples = 1000;
-/// The first of these, an odd number: what a pair keeps is half of a median, which needs no third digit.
+/// How many of the samples a median is taken of; an odd number. A pair keeps half of its median,
+/// for which two digits suffice.
 constexpr std::size_t kMedianSamples = 201;
 
-/// Postures inside the joint limits, always the same: displacements by group.
+/// A fixed pseudo-random sequence of postures inside the joint limits, as displacements of the
+/// rigid groups.
 class Samples {
  public:
   explicit Samples(const Chain& chain) : chain_(&chain) {}
@@ -30,7 +32,7 @@ class Samples {
     for (int j = 0; j < kDof; ++j) {
       const JointLimit& limit = chain_->limit[j];
       const double lower = limit.continuous ? -kPi : limit.lower, upper = limit.continuous ? kPi : limit.upper;
-      // The library's distributions differ by vendor.
+      // The standard library's distributions differ by vendor.
       q[j] = lower + static_cast<double>(random_() >> 11) * 0x1.0p-53 * (upper - lower);
     }
     return chain_->all_displacements(q);
@@ -41,7 +43,7 @@ class Samples {
   std::mt19937_64 random_{20141};
 };
 
-/// One pair of the robot's bodies at one posture.
+/// A pair of the robot's bodies at one posture.
 struct PlacedPair {
   PlacedPair(const RobotPart& part, const BodyPair& pair, const std::vector<Pose>& moved)
       : shape_a(&part.shapes[pair.a]),
@@ -65,7 +67,8 @@ struct PlacedPair {
   Pose pose_a, pose_b;
 };
 
-/// Where a joint moves no shape at all, nothing keeps what it moves clear of anything.
+/// Returns a warning for each joint that moves no collision shape: what it moves is kept clear of
+/// nothing.
 std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel& arm, const std::vector<RobotBody>& bodies) {
   std::vector<bool> has_shape(kDof + 1 + arm.chain.followers.size());
   for (const RobotBody& body : bodies) has_shape[body.group] = true;
@@ -83,7 +86,8 @@ std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel
   return warnings;
 }
 
-/// From this median on, a pair keeps what others keep, and is no burden on motions.
+/// Returns the median clearance, m, from which on a pair keeps what other pairs keep and needs no
+/// extra midpoints on motions.
 double far_enough(const Limits& limits) {
   constexpr double kNoBurden = 0.01;
   return std::max({2 * limits.d_self(), 4 * limits.d_self_edge(), 2 * limits.edge_tolerance, kNoBurden});
@@ -148,7 +152,8 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
   };
-  // Our own distances of triangles tell which ones FCL need not be asked about.
+  // Our own triangle distances show which samples decide the median; only about these FCL has to be
+  // asked.
   const PlacedPair first(*this, pair, *near.front());
   const bool triangles = are_triangles(first.a(), first.b());
   std::vector<double> clearances;
@@ -203,7 +208,7 @@ std::vector<RobotPair> RobotPart::pairs(const Limits& limits) const {
     pair.dropped = candidates_[k].dropped;
     if (!pair.dropped) {
       pair.median = m;
-      // Where the median is nearly zero, the tolerance is still one that can be proved with.
+      // Even if the median is nearly zero, the tolerance stays large enough for a proof.
       pair.keeps = {std::min(limits.d_self(), m / 2), std::min(limits.d_self_edge(), m / 4),
                     std::min(h, std::max(m / 2, kVerdictBand))};
       pair.near = m < far_enough(limits);

@@ -20,7 +20,7 @@ using namespace detail;
 namespace {
 
 constexpr double kAskedNothing = -std::numeric_limits<double>::infinity();
-/// What one pair must keep, by Keep.
+/// The clearance that one pair must keep, m, indexed by Keep.
 using Kept = std::array<double, 4>;
 constexpr auto kMotionIndex = static_cast<std::size_t>(Keep::kMotion), kMidpointIndex = static_cast<std::size_t>(Keep::kMidpoint);
 Kept kept(const PairKeeps& keeps, double forgiven) {
@@ -28,13 +28,17 @@ Kept kept(const PairKeeps& keeps, double forgiven) {
   return {0, std::max(0.0, keeps.node - forgiven), motion, motion + keeps.tolerance};
 }
 
-/// Bounds are exact up to rounding; this is far above it and far below what FCL resolves.
+/// Added to bounds, which are exact up to rounding, m: far above the rounding error and far below
+/// what FCL resolves.
 constexpr double kBoundSafety = 1e-6;
-/// A clearance kept says "free" only where FCL would.
+/// A kept clearance proves a pair free only if it exceeds the threshold by this, m, so that FCL
+/// would agree.
 constexpr double kKeptSafety = kVerdictBand + kBoundSafety;
-/// A depth that is more than what is asked about by this tells that bodies that stand nearly alike are too deep as well.
+/// If a depth exceeds the threshold by this, m, bodies that are placed almost equally are too deep
+/// as well; the search for a larger depth ends there.
 constexpr double kTelling = 2 * kVerdictBand;
-/// Clearances to be kept are sought this far beyond the question, m, unless a step like the last one uses that up.
+/// Clearances to be kept are sought this far beyond the threshold, m, unless a step like the last
+/// one would use that up.
 constexpr double kMargin = 0.005;
 
 std::string millimetres(double metres) {
@@ -118,18 +122,19 @@ struct World::Impl {
     [[maybe_unused]] static const bool warm = warm_up();
   }
 
-  /// What is asked of one of `pairs`, m.
+  /// Returns the clearance required of pair k at this level, m.
   [[nodiscard]] double required(std::size_t k, const Level& level) const {
     return keeps[k][static_cast<std::size_t>(level.keep)] + level.more;
   }
-  /// Of two bodies of the robot. `pairs` has these last.
+  /// Returns true for a pair of two robot bodies. These come last in `pairs`.
   [[nodiscard]] bool is_own(const BodyPair& p) const { return p.b < static_cast<int>(robot->bodies.size()); }
   [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
     if (level.keep == Keep::kNothing) return level.more;
     const auto number = number_of(p);
     return number ? required(*number, level) : kAskedNothing;
   }
-  /// Less than zero is asked of pairs alone that keep a depth.
+  /// Returns true if a threshold d, m, has to be tested for pair k: a negative one only for pairs
+  /// that keep a depth.
   [[nodiscard]] bool is_asked(std::size_t k, double d) const { return d >= 0 || (may_touch[k] && d > kAskedNothing); }
   [[nodiscard]] bool is_asked(const BodyPair& p, double d) const {
     const auto number = number_of(p);
@@ -151,16 +156,19 @@ struct World::Impl {
     if (const auto depth = depth_of(p)) return keeps_of_depth(*depth);
     return {limits.clearance, limits.d_edge(), limits.edge_tolerance};
   }
-  /// What a pair keeps that may be so deep in each other, m. A motion is proved by midpoints that are less deep than that by the
-  /// tolerance. Planned nodes are less deep by twice as much, so that a node from which no motion could be proved is refused at
-  /// once. What is verified (`forgiven` > 0) may be as deep as allowed at every row, however close rows are.
+  /// Returns what a pair keeps whose bodies may be `depth`, m, deep in each other. A motion is
+  /// proved by midpoints that are less deep than that by the tolerance. Planned nodes are less deep
+  /// by twice the tolerance, so that a node from which no motion could be proved is refused at
+  /// once. In verification (`forgiven` > 0) every row may be as deep as allowed, however close the
+  /// rows are.
   [[nodiscard]] PairKeeps keeps_of_depth(double depth) const {
     if (forgiven > 0) return {-depth, -depth, kVerdictBand};
     const double tolerance = std::min(limits.edge_tolerance, std::max(depth / 32, kVerdictBand));
     const double reserve = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
     return {reserve - depth, -depth, tolerance};
   }
-  /// How deep, m, a pair may be in each other; none where nothing bounds it.
+  /// Returns how deep, m, the bodies of a pair may be in each other; none if no depth bounds the
+  /// pair.
   [[nodiscard]] std::optional<double> depth_of(const BodyPair& p) const {
     const auto found = std::find_if(allowed.begin(), allowed.end(), [&](const AllowedPair& x) { return x.pair == p; });
     return found == allowed.end() ? std::nullopt : found->depth;
@@ -215,7 +223,7 @@ struct World::Impl {
     names.push_back(name);
   }
 
-  /// A scene object of this shape; null if there is none.
+  /// Returns a scene object of this shape; null if there is none.
   const Body* scene_body(const Shape& shape) const {
     const auto first = bodies.begin() + static_cast<std::ptrdiff_t>(robot->bodies.size());
     const auto found = std::find_if(first, bodies.end(), [&](const Body& body) { return body.shape.shape == shape; });
@@ -234,7 +242,8 @@ struct World::Impl {
     std::sort(pairs.begin(), pairs.end(), [&](const BodyPair& p, const BodyPair& q) { return key(p) < key(q); });
   }
 
-  /// FCL builds its dispatch tables at the first call, without promising that two threads may do so at once.
+  /// Calls FCL once, because it builds its dispatch tables at the first call and does not promise
+  /// that two threads may do so at once.
   static bool warm_up() {
     MeshStore none;
     const FclShape ball = make_fcl_shape(Sphere{1}, none);
@@ -338,7 +347,7 @@ struct World::Query::Impl {
   Certificates certificates;
   PairTest test;
   CollisionCounters own;        // all but what the test counts
-  bool all_certified = false;   // no verdict of this question needed FCL
+  bool all_certified = false;   // no verdict of this query needed FCL
   bool last_certified = false;  // the last verdict was a certificate's
   std::vector<Pose> poses;
   std::vector<PlacedBound> bounds;
@@ -346,15 +355,17 @@ struct World::Query::Impl {
   std::array<Pose, kDof + 1> displacements;
   int displaced = 0;           // up to this group of the chain
   std::vector<char> in_place;  // bodies, at q
-  // For next_below. What a pair's two bodies have moved in all is subtracted from its lower bound of the distance.
+  // For next_below(): what a pair's two bodies have moved in all is subtracted from the pair's
+  // lower bound of the distance.
   std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
   std::vector<PlacedBound> moved_to;  // by body; empty before the first posture
   std::vector<double> lower_bound;    // by pair, m
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
   std::vector<std::size_t> open;      // pairs whose bound does not prove them free
-  // For next_below_on.
+  // For next_below_on().
   std::optional<Stretch> stretch;
-  /// What the joints of a stretch move a group of bodies by, to first order: a point x by `origin` + turn x x, base frame.
+  /// The displacement of a group of bodies by the joint steps of a stretch, to first order: a point
+  /// x, base frame, moves by origin + turn x x.
   struct Twist {
     Vector3d turn = Vector3d::Zero(), origin = Vector3d::Zero();  // rad, m
   };
@@ -379,7 +390,7 @@ struct World::Query::Impl {
     }
   }
 
-  /// Bodies are placed where they are asked about.
+  /// Sets the posture. A body is placed only when a query needs it.
   void move_to(const Config& to) {
     if (to == q) return;  // an edge asks the same place at two distances
     q = to;
@@ -424,8 +435,9 @@ struct World::Query::Impl {
                                  : Twist{carried.turn + motion, carried.origin + (parent * follower.point).cross(motion)};
     }
   }
-  /// How much nearer two bodies can come on the stretch, to first order: how fast they go, as seen from the group of the chain that
-  /// carries both; where there are no followers, that is one of them, and the other goes.
+  /// Returns how much nearer two bodies can come on the stretch, m, to first order: the sum of
+  /// their speeds relative to the group of the chain that carries both. Without followers that
+  /// group carries one of the two bodies, and only the other moves.
   [[nodiscard]] double comes_nearer(const BodyPair& p) const {
     const int group_a = world->body(p.a).group, group_b = world->body(p.b).group;
     const Chain& chain = world->robot->chain;
@@ -435,7 +447,8 @@ struct World::Query::Impl {
     if (group_b != common) speed += speed_against(common, group_b, p.b);
     return speed;
   }
-  /// The highest speed of any point of a body of a group, as seen from another group.
+  /// Returns the highest speed of any point of a body of `group` relative to the group `still`, m
+  /// per stretch.
   [[nodiscard]] double speed_against(int still, int group, int body) const {
     const Twist &far = twists[static_cast<std::size_t>(group)], &near = twists[static_cast<std::size_t>(still)];
     const Vector3d turn = far.turn - near.turn;
@@ -445,7 +458,8 @@ struct World::Query::Impl {
       if (const double half = bound(body).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
     return speed;
   }
-  /// What is asked of one of the world's pairs, m.
+  /// Returns the clearance required of pair k at this level, m. On a stretch, level.more is
+  /// replaced by how far the pair can come nearer, if that is less.
   [[nodiscard]] double required(std::size_t k, const Level& level) const {
     const double d = world->required(k, level);
     if (!stretch || !(level.more > 0)) return d;
@@ -508,7 +522,8 @@ struct World::Query::Impl {
   bool is_below(const BodyPair& p, double d, TrianglePair& from) {
     return d < 0 ? is_deeper(p, -d) : is_below(p, d, certify_pair(p, d, from));
   }
-  /// Needs no FCL. A depth that the search leaves open counts as more than what is asked about.
+  /// Returns true if the bodies of a pair are not proved to be at most d, m, deep in each other; a
+  /// depth that the search leaves open counts as more. FCL is not called.
   bool is_deeper(const BodyPair& p, double d) {
     last_certified = true;
     if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), kBoundSafety - d)) return false;
@@ -519,7 +534,7 @@ struct World::Query::Impl {
     last_certified = !deeper || found.at_least > d + kVerdictBand;
     return deeper;
   }
-  /// is_deeper, which also renews the bound.
+  /// Returns what is_deeper() does for pair k, and renews the pair's lower bound.
   bool is_deeper_now(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
@@ -540,7 +555,7 @@ struct World::Query::Impl {
     return certificates == Certificates::kOff ? Certificate::kNone : prove(placed(p.a), placed(p.b), d, 0, from).certificate;
   }
 
-  /// Without FCL: that the clearance of one of the pairs is more than this.
+  /// Returns true if the clearance of pair k is proved to exceed d, m, without FCL.
   [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return true;
@@ -584,7 +599,8 @@ struct World::Query::Impl {
     }
     own.pairs_kept += static_cast<std::int64_t>(lower_bound.size() - found);
   }
-  /// certify_pair, which also renews the bound.
+  /// Compares the clearance of pair k with d, m, as certify_pair() does, and renews the pair's
+  /// lower bound.
   Certificate renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
@@ -592,12 +608,14 @@ struct World::Query::Impl {
     if (bound_now < d + kMargin) bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     lower_bound[k] = bound_now + so_far;
     if (bound_now >= d + kMargin) return Certificate::kFree;
-    // A clearance that the next step uses up is not worth looking for: of bodies near by design it takes most of the time.
+    // A margin that the next step uses up is not worth searching for: for bodies that are near by
+    // design that search takes most of the time.
     const double last_step = step[p.a] + step[p.b];
     const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), witness[k]) < d + last_step);
     const double margin = lasts ? kMargin : kBoundSafety;
     if (bound_now >= d + margin) return Certificate::kFree;
-    const Proof proof = prove(placed(p.a), placed(p.b), d, margin, witness[k], Expected::kFree);  // most of the pairs are
+    // Most pairs are free.
+    const Proof proof = prove(placed(p.a), placed(p.b), d, margin, witness[k], Expected::kFree);
     lower_bound[k] = std::max(bound_now, proof.bound) + so_far;
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
@@ -703,7 +721,8 @@ std::optional<World::Query::Clearance> World::Query::clearance_below(const Confi
   return impl_->nearest(so_far);
 }
 
-/// None where no pair is below `so_far`.
+/// Returns the pair of least margin and the least clearance, or none if neither is below that of
+/// `so_far`.
 std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearance& so_far) {
   place_bodies();
   const auto& pairs = world->pairs;
@@ -730,7 +749,8 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   for (const Candidate& c : order) {
     const bool may_touch = c.bound <= kBoundSafety, may_be_nearest = c.bound - kBoundSafety <= answer.least;
     if (!may_touch && !may_be_nearest && c.bound - c.required - kBoundSafety > std::get<1>(least)) continue;
-    // Neither the least margin nor the least clearance, where it is proved to be further than both.
+    // A pair that is proved to be further away than both has neither the least margin nor the least
+    // clearance.
     const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
     if (std::get<0>(least) && beyond < std::numeric_limits<double>::max() && proved_beyond(c.pair, beyond)) continue;
     const double found = test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &witness[c.pair]);
