@@ -20,8 +20,9 @@ namespace swivel::detail {
 struct Arena::Impl {
   pid_t process = getpid();
   int threads;
-  /// TBB allows as many threads as the machine has cores, and prints a warning to stderr where an arena asks for more. Set only
-  /// then: the least of all controls of a process holds, so that fewer would slow its other work down.
+  /// TBB allows as many threads as the machine has cores, and prints a warning to stderr if an
+  /// arena asks for more. This control raises the limit, and is set only then: the least of all
+  /// controls of a process applies, so a lower one would slow the program's other work.
   std::optional<tbb::global_control> allowed;
   std::unique_ptr<tbb::task_arena> arena;
 };
@@ -35,7 +36,8 @@ Arena::Arena(int threads) : impl_(std::make_unique<Impl>()) {
 
 Arena::~Arena() {
   if (getpid() == impl_->process) return;
-  // After a fork TBB's threads are the parent's alone, and its locks may be theirs.
+  // After a fork TBB's threads exist in the parent alone, and may hold locks here for ever; so
+  // nothing is destroyed.
   static_cast<void>(impl_->arena.release());
   static_cast<void>(impl_.release());
 }

@@ -5,8 +5,9 @@
 
 namespace swivel::detail {
 
-/// A TBB arena of a caller and `threads` - 1 of TBB's threads. Built under a thread sanitizer, which reports races within Debian's
-/// uninstrumented libtbb, it is made of plain threads.
+/// A TBB arena for a caller and `threads` - 1 of TBB's threads. In builds with a thread sanitizer,
+/// which reports false races within Debian's uninstrumented libtbb, it consists of plain threads
+/// instead.
 class Arena {
  public:
   explicit Arena(int threads);
@@ -14,11 +15,13 @@ class Arena {
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  /// How many of TBB's threads may work here now: what was asked for, less where the program has a tbb::global_control of its own.
+  /// Returns how many of TBB's threads may work here now: `threads` - 1, or less if the program has
+  /// a tbb::global_control of its own; 0 in a process that was forked after construction.
   [[nodiscard]] int most_helpers() const;
-  /// Runs `task` on one of TBB's threads as soon as one is free.
+  /// Runs `task` on one of TBB's threads as soon as one is free. Returns at once.
   void enqueue(std::function<void()> task);
-  /// Calls body(index, worker) for index = 0 ... count - 1 on the caller's and TBB's threads, worker in 0 ... threads - 1.
+  /// Calls body(index, worker) once for each index = 0 ... count - 1, on the caller's and TBB's
+  /// threads, with worker in 0 ... threads - 1. Rethrows an exception that a body threw.
   void for_each(int count, const std::function<void(int index, int worker)>& body);
 
  private:

@@ -13,21 +13,22 @@ namespace swivel {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// Work that is worth waking a thread, and TBB's first threads: what the caller has done alone since threads last helped counts as
-/// well, since as much is likely to follow. On two cores waking costs some 10 us and beginning 0.5 ms.
+/// The work, estimated in time, for which it pays to wake a helper, or to start TBB's first
+/// threads. What the caller has done alone since helpers last helped counts too, because as much is
+/// likely to follow. On two cores waking takes some 10 us and starting 0.5 ms.
 constexpr Clock::duration kWorthWaking = std::chrono::microseconds(40);
 constexpr Clock::duration kWorthBeginning = std::chrono::milliseconds(3);
-/// What is left of a call and worth handing over.
+/// The rest of a loop, estimated in time, that is worth sharing.
 constexpr Clock::duration kWorthSharing = std::chrono::microseconds(10);
-constexpr int kMostHelpers = 7;  // of brief calls, which have few parts
+constexpr int kMostHelpers = 7;  // in brief loops, which have few indices
 
 }  // namespace
 
 struct Executor::Impl {
   int threads = 1;
-  Clock::duration alone{0};  // what the caller has worked in brief calls since threads last helped
+  Clock::duration alone{0};  // the caller's time in brief loops since helpers last helped
   std::unique_ptr<detail::Arena> arena;
-  std::unique_ptr<detail::Helpers> helpers;  // of brief calls; in the arena
+  std::unique_ptr<detail::Helpers> helpers;  // for brief loops; tasks of the arena
 
   detail::Arena& in_arena() {
     if (!arena) arena = std::make_unique<detail::Arena>(threads);

@@ -19,13 +19,15 @@ namespace swivel::detail {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-/// What a plan does between two batches of questions.
+/// How long a helper waits for the next loop: about the time of a plan between two batches of
+/// collision queries.
 constexpr Clock::duration kStay = std::chrono::milliseconds(2);
 constexpr int kLooks = 16;  // between two looks at the clock
-/// Looks before the core is left to others, some microseconds: the time between two layers of a sweep. To leave it takes one.
+/// How often to look before yielding the core, which takes some microseconds: about the time
+/// between two layers of a cost-to-go sweep. A yield takes about one microsecond.
 constexpr int kSpins = 256;
 
-/// Waits until `there`, with the core at first.
+/// Waits until there() returns true: spins first, then yields the core at most `yields` times.
 template <class There>
 void look_for(const There& there, int yields) {
   for (int spin = 0; spin < kSpins; ++spin) {
@@ -37,7 +39,8 @@ void look_for(const There& there, int yields) {
   for (int look = 0; look < yields && !there(); ++look) std::this_thread::yield();
 }
 
-/// How often a loop was opened, and indices first ... last - 1 that nobody has taken, in one word.
+/// The state of the open loop in one 64-bit word: how often a loop was opened, and the indices
+/// first ... last - 1 that nobody has taken.
 struct Open {
   static constexpr int kMost = 0xffff;
   std::uint64_t times = 0, first = 0, last = 0;
@@ -51,7 +54,8 @@ struct Open {
 struct Helpers::State {
   explicit State(int most) : there(static_cast<std::size_t>(most)) {}
 
-  /// Open. While it has any indices, counted from `first`, `first` and `body` are theirs.
+  /// `open` is the word of an Open. While it has indices, `first` (the index to which they are
+  /// relative) and `body` belong to them.
   std::atomic<std::uint64_t> open{0};
   std::atomic<int> first{0};
   std::atomic<const std::function<void(int, int)>*> body{nullptr};
@@ -65,9 +69,10 @@ struct Helpers::State {
 
   [[nodiscard]] bool any_open() const { return Open(open.load()).any(); }
 
-  /// Calls the body for one index; false where none is open. A loop that was opened since fails the exchange, so that what was read
-  /// belongs to what is taken. The caller takes from the end and helpers from the beginning: from loop to loop each meets what it
-  /// wrote before.
+  /// Runs the body for one open index; returns false if none is open. If another loop was opened
+  /// meanwhile, the exchange fails, so that `first` and `body` belong to the index taken. The
+  /// caller takes indices from the end and helpers from the beginning, so that from loop to loop
+  /// each finds data in its cache that it wrote before.
   bool take_one(int worker) {
     std::uint64_t word = open.load();
     for (;;) {
@@ -98,8 +103,8 @@ struct Helpers::State {
       }
       look_for([&] { return any_open(); }, kLooks);
       if (Clock::now() - last < kStay) continue;
-      // A loop that is opened before the caller can see that this task leaves is seen here; the caller may have started another
-      // since.
+      // A loop that the caller opened before it could see that this task leaves is noticed here.
+      // The caller may also have started another task for this worker since; then this one ends.
       std::atomic<bool>& here = there[static_cast<std::size_t>(worker - 1)];
       here = false;
       if (!any_open() || here.exchange(true)) break;

@@ -9,28 +9,30 @@
 
 namespace swivel::detail {
 
-/// Helps one caller with loops of a few microseconds: tasks of a TBB arena that take indices of whatever loop is open, look for the
-/// next loop for 2 ms, and then return their thread to TBB. Starting a task and waking its thread takes longer than such a loop,
-/// hence the wait.
+/// Helps one caller with loops of a few microseconds. Helpers are tasks of a TBB arena that run
+/// indices of the loop that is open, wait 2 ms for the next loop, and then return their thread to
+/// TBB. They wait because starting a task and waking its thread takes longer than such a loop.
 class Helpers {
  public:
-  /// At most `most` tasks at a time, in `arena`, which must live as long.
+  /// Allows at most `most` tasks at a time in `arena`, which must outlive this object.
   Helpers(Arena& arena, int most);
-  /// Waits for tasks that run; a task that has not begun ends by itself later.
+  /// Waits for the tasks that run. A task that has not begun ends by itself later.
   ~Helpers();
   Helpers(const Helpers&) = delete;
   Helpers& operator=(const Helpers&) = delete;
 
-  /// Whether a task was started and has not returned.
+  /// Returns true if a task was started and has not returned.
   [[nodiscard]] bool any() const;
-  /// Calls body(index, worker) for index = first ... count - 1, in any order. The caller is worker 0, and does `work` first unless
-  /// it is null; tasks are workers 1 ... most. Starts the tasks that have returned. Every index is called whatever throws; rethrows
-  /// what `work` threw, else what a body threw first. Throws std::logic_error if called from within body or work.
+  /// Calls body(index, worker) once for each index = first ... count - 1, in any order. The caller
+  /// is worker 0 and runs `work` first, unless it is null; tasks are workers 1 ... most. Starts the
+  /// tasks that have returned. Every index is run even if a body throws; afterwards rethrows what
+  /// `work` threw, else the first exception of a body. Throws std::logic_error if called from
+  /// within body or work.
   void share(int first, int count, const std::function<void(int index, int worker)>& body,
              const std::function<void()>* work = nullptr);
-  /// Starts the tasks, for a caller who is about to share.
+  /// Starts the tasks that do not run, for a caller that is about to share.
   void start();
-  /// How many indices the tasks have called, all within the arena.
+  /// Returns how many indices the tasks have run since construction.
   [[nodiscard]] std::int64_t helped() const;
 
  private:

@@ -6,32 +6,39 @@
 
 namespace swivel {
 
-/// Runs loops over indices on the caller's thread and those of TBB. A body must write only to its own index (and its worker's
-/// workspace), so that results do not depend on the number of threads. Where the program limits TBB by a tbb::global_control, fewer
-/// threads help.
+/// Runs loops over indices on the caller's thread and TBB's threads. A body must write only to its
+/// own index (and its worker's workspace), so that results do not depend on the number of threads.
+/// If the program limits TBB by a tbb::global_control, fewer threads help.
 class Executor {
  public:
-  /// threads < 1: as many as the machine has cores.
+  /// Creates an executor of `threads` threads, the caller's included; if threads < 1, as many as
+  /// the machine has cores. No thread is started yet.
   explicit Executor(int threads);
   ~Executor();
   Executor(Executor&&) noexcept;
   Executor& operator=(Executor&&) noexcept;
 
+  /// Returns the number of threads, the caller's included.
   [[nodiscard]] int threads() const;
-  /// Calls body(index, worker) for index = 0 ... count - 1, worker in 0 ... threads() - 1, each worker on one thread at a time.
-  /// Exceptions of body reach the caller.
+  /// Calls body(index, worker) once for each index = 0 ... count - 1, with worker in 0 ...
+  /// threads() - 1. A worker runs on one thread at a time. Rethrows an exception that a body threw.
   void for_each(int count, const std::function<void(int index, int worker)>& body);
-  /// Does what for_each() does, for loops that may be over before another thread is awake: the caller calls body for the first
-  /// indices itself, as worker 0, and shares the others once they would keep it for long, or at once with helpers that are still
-  /// awake. Until then no thread is begun. Helpers are tasks of a TBB arena that look for the next loop for 2 ms. Throws
-  /// std::logic_error if called from within body.
+  /// Calls body(index, worker) once for each index = 0 ... count - 1, for loops that may end before
+  /// another thread is awake. The caller runs the first indices itself, as worker 0, and shares the
+  /// rest once they would take it long enough to wake a helper, or at once if helpers are still
+  /// awake. No thread is started before that. Helpers, at most 7, are tasks of a TBB arena that
+  /// wait 2 ms for the next loop. Rethrows an exception that a body threw. Throws std::logic_error
+  /// if called from within a body that is shared.
   void for_each_brief(int count, const std::function<void(int index, int worker)>& body);
-  /// Does what for_each_brief() does beside `work`, which the caller does first and which must not share work itself. Exceptions of
-  /// `work` come before those of `body`.
+  /// Runs `work` on the caller's thread and calls body(index, worker) for each index = 0 ... count
+  /// - 1 as for_each_brief() does: on helpers meanwhile if any are awake, else after `work`. `work`
+  /// must not share work itself. Rethrows what `work` threw, else what a body threw.
   void for_each_beside(int count, const std::function<void(int index, int worker)>& body, const std::function<void()>& work);
-  /// Starts the helpers of for_each_brief() now, for a caller who knows that there will be enough to share.
+  /// Starts the helpers of for_each_brief() now, for a caller that expects enough work to share.
+  /// Does nothing with one thread.
   void begin_brief();
-  /// How many indices of for_each_brief() and for_each_beside() helpers have called; the caller called all others.
+  /// Returns how many indices of for_each_brief() and for_each_beside() ran on helpers; all others
+  /// ran on the caller's thread.
   [[nodiscard]] std::int64_t helped() const;
 
  private:
