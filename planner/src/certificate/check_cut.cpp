@@ -19,7 +19,7 @@ constexpr std::size_t index(int k) {
   return static_cast<std::size_t>(k);
 }
 
-/// What is wrong with a certificate, in words.
+/// The reason why a certificate is refused, thrown within this file.
 struct Refused {
   std::string why;
 };
@@ -73,7 +73,8 @@ class Verifier {
     throw Refused{"layer " + number(layer) + ", slot " + number(slot) + ": " + why};
   }
 
-  /// Nodes of a layer, and what is said of them; asks the witness of each that is said to be removed.
+  /// Builds the nodes of a layer with the state that the certificate gives them. Refuses a node
+  /// whose witness does not remove it.
   Layer read(int number_of, const Cut::Layer& said) {
     budget_.poll();
     Layer layer;
@@ -120,7 +121,8 @@ class Verifier {
         refuse(layer.layer, static_cast<int>(slot), "of the first layer is neither reached nor removed");
   }
 
-  /// Every edge from a reached node leads to a reached one, or is removed, or its head is.
+  /// Refuses unless every edge from a reached node of `from` leads to a reached node of `to` or is
+  /// removed, or its head is removed.
   void nothing_leads_on(const Layer& from, const Layer& to, const std::vector<Cut::Edges>& removed) {
     for (const Cut::Edges& edges : removed) {
       witness(edges.witness, to.layer);
@@ -178,7 +180,7 @@ class Verifier {
   Layer before_, here_;
 };
 
-/// A certificate of another lattice says nothing about this one.
+/// Throws InputError if the certificate is for another lattice than the problem's.
 void require_same_layout(const Problem& problem, const Cut& cut, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)

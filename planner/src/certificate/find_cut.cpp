@@ -57,11 +57,11 @@ class Finder {
   }
 
  private:
-  /// Those of a layer that exist.
+  /// The nodes of a layer, with what the search found out about them.
   struct Nodes {
     std::vector<Lattice::Node> list;
     std::vector<const Lattice::Node*> at;  // by slot
-    std::vector<char> removed, asked;      // by slot; asked: whether there is a row
+    std::vector<char> removed, asked;      // by slot; asked: whether row() was called
     [[nodiscard]] bool open(std::size_t slot) const { return at[slot] != nullptr && !removed[slot]; }
   };
   [[nodiscard]] Nodes nodes_of(int layer) const {
@@ -78,7 +78,8 @@ class Finder {
     return nodes;
   }
 
-  /// Whether a slot has a node that was not removed, and a row: the search need not have asked.
+  /// Returns true if a slot has a node that was not removed and has an exact configuration, which
+  /// the search need not have computed.
   [[nodiscard]] bool has_row(int layer, int slot, Nodes& nodes) const {
     if (!nodes.open(index(slot))) return false;
     if (lattice_.has_own_rows() && !nodes.asked[index(slot)]) {
@@ -88,7 +89,7 @@ class Finder {
     return nodes.open(index(slot));
   }
 
-  /// Slots that edges from slot a of a layer led to before they were removed.
+  /// Returns the heads of the removed edges from slot a of a layer; null if there are none.
   [[nodiscard]] const std::vector<Verdicts::HalfEdge>* removed_from(int layer, int a) const {
     const auto* edges = verdicts_.removed_edges(layer);
     if (edges == nullptr) return nullptr;
@@ -100,7 +101,8 @@ class Finder {
            std::any_of(edges->begin(), edges->end(), [&](const Verdicts::HalfEdge& edge) { return edge.other == slot; });
   }
 
-  /// The last layer that no node of leads on to the end of the path.
+  /// Returns the last layer from which no node leads to the end of the path. Throws InvalidArgument
+  /// if there is a path.
   [[nodiscard]] int last_without_way_on() const {
     int layer = lattice_.layers() - 1;
     Nodes ahead = nodes_of(layer);
@@ -132,7 +134,8 @@ class Finder {
     return layer;
   }
 
-  /// Nodes and witnesses of a layer: of the slots that are asked for and not reached.
+  /// Returns a layer of the certificate: its reached slots, and a witness for each slot that is
+  /// asked for and not reached.
   [[nodiscard]] Cut::Layer layer_of(int layer, const Nodes& nodes, const std::vector<char>& reached,
                                     const std::vector<char>& asked) {
     Cut::Layer found;
@@ -153,11 +156,12 @@ class Finder {
     return found;
   }
 
-  /// The layer after one whose reached nodes are known, which both are replaced by those of.
+  /// Returns the certificate's layer after `layer`. On entry `nodes` and `reached` are those of
+  /// `layer`, on return those of the next layer.
   [[nodiscard]] Cut::Layer next(int layer, Nodes& nodes, std::vector<char>& reached) {
     Nodes ahead = nodes_of(layer + 1);
     std::vector<char> reached_ahead(ahead.at.size(), 0), met(ahead.at.size(), 0);
-    std::map<int, std::vector<int>> removed;  // edges: tails by head
+    std::map<int, std::vector<int>> removed;  // removed edges: tails by head
     std::vector<Lattice::SlotRun> runs;
     for (const Lattice::Node& a : nodes.list) {
       if (!reached[index(a.slot)]) continue;
@@ -225,7 +229,7 @@ class Finder {
 
 Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("cut");
-  std::unique_ptr<CostToGo> own;  // the eager planners keep no verdicts
+  std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
     own = make_cost_to_go(view.lattice, Extent::kWhole, budget);
     own->sweep(view.lattice.layers() - 1);

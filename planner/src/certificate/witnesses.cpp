@@ -78,7 +78,7 @@ Cause Witnesses::limit_of(int joint, Cause::Side side) const {
   return cause;
 }
 
-/// Of a slot without a row.
+/// Returns true if the cause explains why a slot has no exact configuration (Lattice::row).
 bool Witnesses::removes_missing(const Cause& cause, const About& about, int layer, int slot) const {
   const Lattice::NodeFault fault = lattice_.fault(layer, slot);
   switch (fault.status) {
@@ -89,13 +89,13 @@ bool Witnesses::removes_missing(const Cause& cause, const About& about, int laye
     case NodeStatus::kLimit:
       return cause.kind == Cause::Kind::kLimit && ((fault.joints >> about.joint) & 1) != 0 &&
              side_of(fault.q, about.joint) == cause.side;
-    case NodeStatus::kValid:  // a limit by rounding alone, as it is missing
+    case NodeStatus::kValid:  // beyond a limit by rounding alone, since it is missing
       return cause.kind == Cause::Kind::kLimit;
   }
   return false;
 }
 
-/// Of a joint beyond its limits: which.
+/// Returns the side on which a joint is beyond its limits.
 Cause::Side Witnesses::side_of(const Config& q, int joint) const {
   const JointLimit& limit = lattice_.chain().limit[static_cast<std::size_t>(joint)];
   return q[joint] > limit.upper - lattice_.limits().joint_margin ? Cause::Side::kUpper : Cause::Side::kLower;
@@ -183,7 +183,7 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
   }
 }
 
-/// What a fault between two layers is called.
+/// Returns the cause that names a fault between two layers; none if there is no fault.
 std::optional<Cause> Witnesses::of_fault(const Lattice::Between& between) const {
   using Fault = Lattice::Between::Fault;
   switch (between.fault) {

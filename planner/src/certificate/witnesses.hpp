@@ -13,23 +13,32 @@
 
 namespace swivel {
 
-/// Single things that remove nodes or edges of a lattice, numbered as they are met: of each it can be asked whether it removes a
-/// node or an edge, whatever else does.
+/// Witnesses of a certificate: single causes that remove nodes or edges of a lattice, numbered in
+/// the order in which they are met. Tests whether one of them removes a node or an edge, regardless
+/// of the others.
 class Witnesses {
  public:
+  /// Creates an empty list of witnesses for a lattice in a world, whose collision queries use
+  /// `certificates`. `lattice`, `world` and `budget` must outlive it; `check` may be null.
   Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
             const std::shared_ptr<StateCheck>& check, const Budget& budget);
 
-  /// In the order of their numbers, without values.
+  /// Returns the witnesses in the order of their numbers, without values.
   [[nodiscard]] const std::vector<Cause>& all() const { return causes_; }
-  /// Takes one that a file names. False where it is none of this problem: unknown joints or bodies, another kind.
+  /// Adds a witness that a file names. Returns false if this problem has none such: unknown joints
+  /// or bodies, or a kind that is no witness.
   [[nodiscard]] bool add(const Cause& cause);
 
-  /// Whether one of them removes a node, or an edge from slot a of `layer` to slot b of the next, whose joint steps are allowed.
+  /// Returns true if the witness removes the node at a slot of a layer. Throws Stopped.
   [[nodiscard]] bool removes_node(int witness, int layer, int slot);
+  /// Returns true if the witness removes the edge from slot a of `layer` to slot b of the next
+  /// layer, whose joint step is allowed. Throws Stopped.
   [[nodiscard]] bool removes_edge(int witness, int layer, int a, int b);
-  /// One that does; `likely`, where it does (-1: none is). -1: none was found.
+  /// Returns the number of a witness that removes the node; -1 if none was found. `likely` is a
+  /// witness to try early, or -1. Throws Stopped.
   [[nodiscard]] int of_node(int layer, int slot, int likely);
+  /// Returns the number of a witness that removes the edge from slot a of `layer` to slot b of the
+  /// next layer; -1 if none was found. `likely` is a witness to try early, or -1. Throws Stopped.
   [[nodiscard]] int of_edge(int layer, int a, int b, int likely);
 
  private:
@@ -48,7 +57,7 @@ class Witnesses {
   };
   [[nodiscard]] std::optional<Move> move(int layer, int a, int b) const;
   [[nodiscard]] bool removes_move(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
-  // Of lattices with layers between theirs.
+  // For lattices that have path layers between their own (Lattice::has_layers_between).
   [[nodiscard]] std::optional<Cause> of_fault(const Lattice::Between& between) const;
   [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
   [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int likely);

@@ -9,15 +9,15 @@ namespace swivel {
 
 namespace {
 
-/// Bits of a set, lowest first.
+/// Calls `each` with the number of each bit of a set, lowest first.
 template <class Each>
 void for_each_bit(ConstraintSet set, const Each& each) {
   for (; set != 0; set &= set - 1) each(std::countr_zero(set));
 }
 
-constexpr int kMostMeasured = 16;  // causes of one layer: a clearance takes many questions
+constexpr int kMostMeasured = 16;  // causes per layer: measuring a clearance takes many queries
 
-/// Of two values of one thing: whether the first misses by less.
+/// Returns true if cause a violates its limit by less than cause b of the same kind.
 bool misses_less(const Cause& a, const Cause& b) {
   const auto x = a.by(), y = b.by();
   return x && (!y || *x < *y);
@@ -140,7 +140,7 @@ ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waiv
         witness.measured += cause.kind == Cause::Kind::kPair;
       });
     };
-    // Continuations on the same sheet first: where they exist, most other edges need no question.
+    // Moves on the same IK solution come first: where they exist, most other edges need no query.
     const int slots = lattice_.slots(layer);
     for (int a = 0; a < slots; ++a)
       if (here.reached[index(a)] != 0)
@@ -164,18 +164,20 @@ ConstraintRemoval::What ConstraintRemoval::what(int constraint) const {
   return Constraints::bars_nodes(constraint) ? What::kOnNodes : What::kOnMoves;
 }
 
-/// One that lets paths reach `least`, the most often met.
+/// Returns the constraint of a kind, among those without which paths reach layer `least`, that is
+/// met most often; none if there is none.
 std::optional<int> ConstraintRemoval::best(const Pass& pass, What kind, int least) const {
   std::optional<int> best;
   for (int c = 0; c < Constraints::kCount; ++c) {
     if (what(c) != kind || pass.furthest[index(c)] < least || !pass.witness[index(c)].found) continue;
-    if (c == Constraints::kCheck) return c;  // proved, where others count on what the check would say
+    if (c == Constraints::kCheck) return c;  // proved, whereas the others assume that the check passes
     if (!best || pass.votes[index(c)] > pass.votes[index(*best)]) best = c;
   }
   return best;
 }
 
-/// Where no single one is enough: the one that comes furthest, or else the one met most often where paths end.
+/// Returns the constraint to give up if no single one suffices: the one without which paths come
+/// furthest, or else the one met most often where paths end; none if there is none.
 std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes, ConstraintSet waived) const {
   std::optional<int> best;
   for (const Pass& pass : passes) {
@@ -196,7 +198,7 @@ std::optional<int> ConstraintRemoval::to_give_up(const std::vector<Pass>& passes
 
 std::optional<ConstraintRemoval::Answer> ConstraintRemoval::find(double most_us) {
   most_us_ = constraints_.spent_us() + most_us;
-  std::vector<int> begins;  // the layers that passes begin at, the nearest first
+  std::vector<int> begins;  // first layers of the passes, the nearest first
   for (const int back : {8, 64})
     if (deepest_ > back) begins.push_back(deepest_ - back);
   begins.push_back(0);

@@ -9,55 +9,67 @@
 
 namespace swivel {
 
-/// What stands in the way of every path past the furthest layer: the constraint whose removal alone lets paths go on, and how far.
+/// Finds what blocks every path beyond the furthest layer: the constraint whose removal alone lets
+/// paths continue, and how far they then come.
 ///
-/// Every node and edge has the set of constraints that it violates. Let bit c of a set stand for "without constraint c"; the last
-/// bit for "with all of them". Then the bits under which node b is reached are
-///   reached(b) = exists(b) & OR over edges (a, b) of reached(a) & exists(a, b),
-/// where exists() is all bits for what violates nothing, and else the bits of what does away with all that it violates alone: that
-/// constraint, or an object. One pass over
-/// the layers tells for all constraints at once how far paths come without each. It is Hauser's minimum constraint removal (The
-/// minimum constraint removal problem with three robotics applications, 2014) for one constraint, where it is exact.
+/// Every node and edge has the set of constraints that it violates. Let bit c of a set stand for
+/// "without constraint c", and the last bit for "with all of them". Then the bits under which node
+/// b is reached are
+/// reached(b) = exists(b) & OR over edges (a, b) of reached(a) & exists(a, b),
+/// where exists() is all bits for what violates nothing, and else the bits of those constraints, or
+/// objects, that each alone account for all violations. One pass over the layers tells for all
+/// constraints at once how far paths come without each. This is Hauser's minimum constraint removal
+/// (The minimum constraint removal problem with three robotics applications, 2014) for one
+/// constraint, for which it is exact.
 ///
-/// The pass begins some layers before the furthest one, at the node of a path that is known to lead there; from further back where
-/// that finds nothing. What it finds is true from wherever it begins; from layer 0 it finds all.
+/// The pass begins some layers before the furthest one, at the node of a path that is known to lead
+/// there, and further back if that finds nothing. What it finds is true wherever it begins; from
+/// layer 0 it finds everything.
 class ConstraintRemoval {
  public:
-  /// `path`: a valid one from layer 0 to the furthest layer that one reaches, empty where layer 0 has no valid node.
+  /// Prepares the search. `path` is a valid path from layer 0 to the furthest layer that any
+  /// reaches; empty if layer 0 has no valid node. The arguments must outlive this object.
   ConstraintRemoval(const Lattice& lattice, Constraints& constraints, const SlotPath& path, const Budget& budget);
 
+  /// What blocks every path.
   struct Answer {
     Cause cause;
-    std::optional<int> without_it;  ///< layer reached without this constraint, at least; none where it is not enough
-    std::vector<Cause> together;    ///< what must go besides
+    std::optional<int> without_it;  ///< layer reached without it, at least; none if it is not enough
+    std::vector<Cause> together;    ///< further constraints that must go too
   };
-  /// None where no constraints were found that would help, or it would have taken more than `most_us` by a fixed estimate. Throws
-  /// Stopped.
+  /// Returns the constraint, or several that together, block every path. If none was found that
+  /// lets paths continue, or that would take more than `most_us` by a fixed estimate, returns the
+  /// first of the constraints that were given up, without `without_it`; none if there were none.
+  /// Throws Stopped.
   [[nodiscard]] std::optional<Answer> find(double most_us);
 
  private:
   static constexpr ConstraintSet kAlways = ~ConstraintSet{0}, kWithAll = Constraints::of(Constraints::kCount);
 
-  /// A node or edge that one constraint alone removes, which misses least of those seen.
+  /// A node or edge that one constraint alone removes: of those seen, the one that violates it by
+  /// the least.
   struct Witness {
     bool found = false;
-    int layer = 0;  // of the node, or of the edge's head
+    int layer = 0;  // of the node or the edge's head
     Cause cause;
     int measured = 0;
   };
   struct Pass {
-    std::array<int, 64> furthest{};        // layer reached without constraint c
-    std::array<std::int64_t, 64> votes{};  // nodes and edges of paths' continuations that c alone removes
+    std::array<int, 64> furthest{};  // layer reached without constraint c
+    // nodes and edges on continuations of paths that constraint c alone removes
+    std::array<std::int64_t, 64> votes{};
     std::array<Witness, 64> witness;
-    std::array<std::int64_t, 64> blamed{};  // that c removes, alone or with others, where paths under all constraints end
-    bool whole = true;                      // false: stopped at the estimate
+    // nodes and edges that constraint c removes, alone or with others, where paths under all
+    // constraints end
+    std::array<std::int64_t, 64> blamed{};
+    bool whole = true;  // false: stopped because of the estimated time
   };
   [[nodiscard]] Pass run_pass(int from, ConstraintSet waived, bool any_slope);
   [[nodiscard]] const Constraints::Node& at(int layer, int slot);
   void enter(int layer);
   void blame(Pass& pass, ConstraintSet violated) const;
   void see(Pass& pass, int removal, int layer, const Constraints::Node& node);
-  /// What is removed: in this order, as far as it helps.
+  /// What a constraint removes. Kinds are tried in this order.
   enum class What { kOnNodes, kObject, kOnMoves };
   [[nodiscard]] What what(int constraint) const;
   [[nodiscard]] std::optional<int> best(const Pass& pass, What what, int least) const;

@@ -9,14 +9,14 @@
 
 namespace swivel {
 
-/// What has been found so far, and whether that is enough.
+/// The violations found so far, and whether they are enough.
 struct Constraints::Violations {
   const Constraints& constraints;
   ConstraintSet waived = 0;
   Until until = Until::kNoRemoval;
   ConstraintSet set = 0;
   bool uncounted = false;  // violates a constraint that has no number
-  /// True where no more need be found.
+  /// Adds a constraint; returns true if no more need be found.
   bool add(int constraint) {
     if (constraint < 0)
       uncounted = true;
@@ -193,7 +193,7 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   const Config& bound = lattice_.row_step_bound(layer);
   if (!lattice_.row_step_allowed(layer, delta)) {
     add_steps(qa, delta, bound, Config::Zero(), found);
-  } else if (lattice_.has_own_rows()) {  // nodes must keep a bound of their own
+  } else if (lattice_.has_own_rows()) {  // nodes have a bound of their own
     const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
     if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.misfit(), found);
   }
@@ -219,7 +219,7 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     const StateCheck::Motion motion{qa, qa + delta};
     if (!check_.motions({&motion, 1})[0]) found.add(kCheck);
   }
-  return found.uncounted ? of(kCount) - 1 : found.set;  // all: none of them alone would help
+  return found.uncounted ? of(kCount) - 1 : found.set;  // all constraints: removing one alone would not help
 }
 
 std::optional<int> Constraints::run_out(int k, const Config& from, const Config& moved) const {
@@ -243,7 +243,8 @@ void Constraints::add_steps(const Config& from, const Config& moved, const Confi
   }
 }
 
-/// Of the rows between and the moves from one to the next as well: the first that is at fault says what is violated.
+/// Adds what is violated by the configurations between the layers and the moves from one to the
+/// next: the first fault decides.
 void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found) {
   using Fault = Lattice::Between::Fault;
   const Lattice::Between between = lattice_.between(layer, a, qa, b, qb);
@@ -292,7 +293,7 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
 }
 
 std::optional<double> Constraints::clearance(const BodyPair& pair, const Config& q, double most) {
-  double low = 0, high = most;  // below `high`, not below `low`
+  double low = 0, high = most;  // the clearance is below `high` and not below `low`
   constexpr double kContact = 1e-6, kTelling = 1e-5;
   if (query_.pair_below(q, pair, kContact)) return 0;
   while (high - low > kTelling) {
@@ -309,7 +310,8 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   } else if (cause.kind == Cause::Kind::kManipulability) {
     cause.value = lattice_.chain().manipulability(q);
   } else if (cause.kind == Cause::Kind::kPair) {
-    for (const BodyPair& p : world_.pairs()) {  // links may have several bodies: the nearest of them
+    // A link may have several bodies: the nearest counts.
+    for (const BodyPair& p : world_.pairs()) {
       if (world_.names(p) != cause.bodies || !query_.pair_below(q, p, Keep::kNode)) continue;
       const double keeps = world_.keeps(p).node;
       const auto value = keeps < 0 ? -query_.depth(q, p).at_least : clearance(p, q, keeps);
@@ -324,7 +326,8 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   return cause;
 }
 
-/// The deepest contact of the cause's bodies, where they may touch to a depth, at a few postures of the motion from node a to b.
+/// Measures the deepest contact of the cause's bodies, if they may touch to a depth, at a few
+/// postures of the motion from node a to node b.
 void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& qa, int b, const Config& qb) {
   constexpr int kParts = 16;  // of a motion
   const bool by_rows = lattice_.has_layers_between();
@@ -332,7 +335,7 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
   if (by_rows)
     for (const Config& q : lattice_.between(layer, a, qa, b, qb).rows) rows.push_back(q);
   rows.push_back(rows.back() + lattice_.delta(rows.back(), qb));
-  for (const BodyPair& p : world_.pairs()) {  // links may have several bodies
+  for (const BodyPair& p : world_.pairs()) {  // a link may have several bodies
     const PairKeeps keeps = world_.keeps(p);
     if (keeps.motion >= 0 || world_.names(p) != cause.bodies) continue;
     const double allowed = by_rows ? -keeps.node : -(keeps.motion + keeps.tolerance);
@@ -377,7 +380,7 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed: {
       const Config& bound = lattice_.row_step_bound(layer);
-      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // the roll keeps another limit
+      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // the roll has a limit of its own
       Eigen::Index k = 0;
       if (cause.kind == Cause::Kind::kJointStep)
         delta.head(joints).cwiseAbs().maxCoeff(&k);
@@ -388,7 +391,8 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
       if (cause.kind == Cause::Kind::kSpeed) cause.limit = bound[k];
       break;
     }
-    case Cause::Kind::kLimit:  // the joint has run out of turns: a node beyond its limits is no end of a move
+    // The joint has run out of turns. A node beyond the joint's limits cannot end a move.
+    case Cause::Kind::kLimit:
       cause.unwinds = true;
       cause.value = qa[constraint / 2] + wrap_angle(delta[constraint / 2]);
       break;

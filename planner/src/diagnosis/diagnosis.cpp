@@ -19,7 +19,8 @@ namespace swivel {
 
 namespace {
 
-/// Causes by their words, so that those of one name are counted together and listed in a fixed order.
+/// Counts causes by their words, so that equal ones are counted together and listed in a fixed
+/// order.
 class Counts {
  public:
   void add(const Cause& cause, std::int64_t count = 1) {
@@ -47,8 +48,9 @@ class Counts {
 
 constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
 
-/// What blocks the nodes of one layer: manipulability, or a pair of bodies. A failure tells of every node whose failing bodies
-/// stand alike (Lattice::alike), so that most nodes need no question, or a short one.
+/// Finds what blocks the nodes of one layer: manipulability, or a pair of bodies. A failure applies
+/// to every node at which the failing bodies have the same poses (Lattice::alike), so that most
+/// nodes need no query, or a short one.
 class LayerBlockers {
  public:
   LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
@@ -59,7 +61,8 @@ class LayerBlockers {
     asked_.assign(known_.size(), 0);
     all_ = false;
   }
-  /// The first of World::pairs() that is too near, or kManipulability, or kFree.
+  /// Returns the index in World::pairs() of the first pair that is too near, or kManipulability, or
+  /// kFree.
   int first(int layer, int slot, const Config& q) {
     const auto k = static_cast<std::size_t>(slot);
     if (known_[k] == kUnknown) return ask(layer, slot, q);
@@ -69,12 +72,12 @@ class LayerBlockers {
     if (!lattice_.manipulable(q)) return kManipulability;
     return known_[k];
   }
-  /// One of those that are too near.
+  /// Returns the index of any pair that is too near, or kManipulability, or kFree.
   int any(int layer, int slot, const Config& q) {
     const int known = known_[static_cast<std::size_t>(slot)];
     return known == kUnknown ? ask(layer, slot, q) : known;
   }
-  /// Every node of the layer is blocked by the pair that was named last.
+  /// Returns true if every node of the layer is blocked by the pair that was named last.
   [[nodiscard]] bool all() const { return all_; }
 
  private:
@@ -104,8 +107,8 @@ class LayerBlockers {
   const World& world_;
   RowMargin row_margin_;
   World::Query& query_;
-  std::vector<int> known_;   // [slot] kUnknown, or what is known to block it
-  std::vector<char> asked_;  // [slot] known_ is the first that does
+  std::vector<int> known_;   // [slot] what is known to block the node, or kUnknown
+  std::vector<char> asked_;  // [slot] known_ is the first pair that does
   bool all_ = false;
   std::vector<int> alike_;
 };
@@ -122,14 +125,15 @@ class Inspector {
         blockers_before_(lattice, world, constraints_.query()) {}
 
   Constraints& constraints() { return constraints_; }
-  /// What the cause has cost is not taken from what the layers may cost.
+  /// Restarts the time estimate for the layers, so that the cause's share is not taken from theirs.
   void begin_layers() { spent_before_us_ = constraints_.spent_us(); }
   [[nodiscard]] bool affordable() const {
     constexpr double kMost = 1e6;  // us
     return constraints_.spent_us() - spent_before_us_ < kMost;
   }
 
-  /// What blocks the nodes of the layer that exist, by count. `left`: those that are valid.
+  /// Returns what blocks the nodes of the layer that exist, with counts. Appends the valid ones to
+  /// `left`.
   Counts blocked(int layer, std::vector<Lattice::Node>& left) {
     rows_of(layer, nodes_);
     constraints_.count_nodes(lattice_.slots(layer));
@@ -148,11 +152,13 @@ class Inspector {
     return causes;
   }
 
-  /// Why no node of the layer is valid; none where one is. Asks first at `hint`, a slot that is valid in the layer before or -1.
+  /// Returns why no node of the layer is valid; none if one is. Tests first the continuation of
+  /// `hint`, a slot that is valid in the layer before, or -1; sets it to a valid slot of this
+  /// layer.
   std::optional<Cause> why_empty(int layer, int& hint) {
     budget_.poll();
     blockers_.start(layer);
-    std::vector<Lattice::Node> free;  // but for the user's check
+    std::vector<Lattice::Node> free;  // except for the user's check
     Counts causes;
     if (const int slot = hint < 0 ? -1 : lattice_.along(layer - 1, hint, 1); slot >= 0) {
       constraints_.count_nodes(1);
@@ -166,7 +172,8 @@ class Inspector {
     causes = {};
     lattice_.layer_nodes(layer, nodes_);
     constraints_.count_nodes(static_cast<std::int64_t>(nodes_.size()));
-    constexpr std::size_t kBatch = 64;  // of questions to the user's check; one free node is enough where there is none
+    // States per call of the user's check. Without a check one free node is enough.
+    constexpr std::size_t kBatch = 64;
     std::map<int, std::int64_t> counts;
     for (const Lattice::Node& node : nodes_) {
       budget_.poll();
@@ -193,7 +200,8 @@ class Inspector {
     return causes.empty() ? kinematic_cause(layer) : causes.most_frequent();
   }
 
-  /// What every node of the layer fails, or the joint whose release alone would help; and by how little.
+  /// Returns the kinematic cause that every node of the layer fails by, or the joint limit whose
+  /// release alone would help most nodes, with the least violation.
   Cause kinematic_cause(int layer) {
     if (const auto reach = lattice_.out_of_reach(layer)) {
       Cause cause = of_kind(Cause::Kind::kReach);
@@ -203,7 +211,7 @@ class Inspector {
       return cause;
     }
     bool singular = false;
-    std::map<int, std::pair<std::int64_t, Cause>> released;  // by the limit that one node or more lacks alone
+    std::map<int, std::pair<std::int64_t, Cause>> released;  // by limit, if it alone removes a node
     std::optional<Cause> several;
     for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
       if (slot % 64 == 0) budget_.poll();
@@ -235,7 +243,8 @@ class Inspector {
     return of_kind(singular ? Cause::Kind::kSingular : Cause::Kind::kReach);
   }
 
-  /// The limit that the continuation of a node into the next layer is beyond, by the shortest move there; none where there is none.
+  /// Returns the joint limit that the shortest continuation of q into the next layer exceeds the
+  /// most; none if it exceeds none or does not converge.
   std::optional<Cause> limit_ahead(int layer, Config q) {
     const Chain& chain = lattice_.chain();
     const Pose& pose = lattice_.path().layer(layer + 1).tool;
@@ -260,7 +269,8 @@ class Inspector {
     return worst;
   }
 
-  /// The nodes that closed form and limits take out of the layer whose nodes blocked() has listed.
+  /// Counts the causes of the layer's slots without a node: reach, singularity and joint limits.
+  /// blocked() must have listed the layer's nodes.
   void add_missing(int layer, Counts& causes) {
     auto node = nodes_.begin();
     for (int slot = 0; slot < lattice_.slots(layer); ++slot) {
@@ -277,7 +287,8 @@ class Inspector {
     }
   }
 
-  /// What removes edges from valid nodes of `layer` to the nodes `left` of the next.
+  /// Returns what removes edges from valid nodes of `layer` to the nodes `left` of the next layer,
+  /// with counts.
   Counts removed_edges(int layer, const std::vector<Lattice::Node>& left) {
     Counts causes;
     if (left.empty()) return causes;
@@ -286,7 +297,8 @@ class Inspector {
     std::vector<Lattice::Node> before;
     rows_of(layer, before);
     blockers_before_.start(layer);
-    constexpr int kMostEdges = 300;  // collision checks of edges are the slow part of a report
+    // Collision checks of edges are the slow part of a report.
+    constexpr int kMostEdges = 300;
     int edges = 0;
     std::vector<Lattice::SlotRun> runs;
     for (const Lattice::Node& a : before) {
@@ -312,7 +324,7 @@ class Inspector {
   }
 
  private:
-  /// The nodes of a layer that have rows, with their rows' joints.
+  /// Lists the nodes of a layer that have an exact configuration, with its joints.
   void rows_of(int layer, std::vector<Lattice::Node>& out) {
     lattice_.layer_nodes(layer, out);
     if (!lattice_.has_own_rows()) return;
@@ -324,7 +336,8 @@ class Inspector {
     });
   }
 
-  /// Takes out, and counts, what the user's check refuses of nodes that nothing else blocks.
+  /// Removes the nodes that the user's check refuses, and counts them; nothing else may block the
+  /// nodes.
   void keep_allowed(std::vector<Lattice::Node>& nodes, Counts& causes) {
     if (!constraints_.check()) return;
     states_.clear();
@@ -351,7 +364,7 @@ class Inspector {
   double spent_before_us_ = 0;
 };
 
-/// Adds a layer to the run that it goes on, or begins one.
+/// Adds an empty layer to the last run of layers with the same cause, or begins a new run.
 void add_empty(const Lattice& lattice, int layer, const Cause& cause, std::vector<EmptyLayers>& runs) {
   const PathLayer& at = lattice.path().layer(layer);
   if (runs.empty() || runs.back().last + 1 != layer || !runs.back().cause.same_thing(cause))
@@ -390,7 +403,7 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
     if ((!diagnosis.unreachable || at.waypoint >= 0) && lattice.proved_unreachable(layer))
       diagnosis.unreachable = {layer, at.s, at.waypoint};
   }
-  diagnosis.layers_known = next;  // those before have a node: a path leads through them
+  diagnosis.layers_known = next;  // the layers before have a node: a path passes through them
   Inspector inspector(lattice, world, rule, budget, check);
 
   std::vector<Lattice::Node> left;
@@ -409,13 +422,15 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   } else if (empty) {
     diagnosis.cause = *empty;
   }
-  if (!diagnosis.without_it && deepest >= 0 && lattice.along(deepest, path.back(), 1) < 0)  // no node is listed that continues it
+  // No node is listed that continues the path.
+  if (!diagnosis.without_it && deepest >= 0 && lattice.along(deepest, path.back(), 1) < 0)
     if (const auto limit = inspector.limit_ahead(deepest, *lattice.row(deepest, path.back())))
       diagnosis.cause = *limit, answer.emplace();
   inspector.begin_layers();
   Counts edges;
   if (!empty && (layers || !answer)) edges = inspector.removed_edges(deepest, left);
-  if (check && diagnosis.cause.kind != Cause::Kind::kCheck) {  // it was not asked about what other rules refuse
+  // The check was not called about what other rules refuse.
+  if (check && diagnosis.cause.kind != Cause::Kind::kCheck) {
     diagnosis.without_it.reset();
     diagnosis.without_it_s.reset();
   }

@@ -26,7 +26,7 @@ Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptio
 
 namespace {
 
-/// The beginning of a path that is proved.
+/// Returns the leading part of a path whose nodes and edges are proved valid.
 SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Validity& validity) {
   SlotPath proved;
   for (const int slot : path) {
@@ -46,9 +46,10 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   Stopwatch watch;
   Found found;
   SearchCounters searched;
-  // Fixed, so that what is asked (and counted) does not depend on the number of threads. Threads share questions, and hardly
-  // anything of what comes between two paths. A check of the caller's is asked about many at once, since calling it may cost more
-  // than its answers.
+  // Batch sizes are fixed, so that what is asked (and counted) does not depend on the number of
+  // threads. Threads share the questions, and hardly anything of the work between two paths. A
+  // caller's check is asked about many states at once, because calling it may cost more than its
+  // answers.
   PathFirstOptions path_first_options{.batch = 8};
   if (options.hooks.check)
     path_first_options.batch = 32;
@@ -67,7 +68,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
     if (found.outcome.path.empty()) {
       cost_to_go.budget().tell(Stage::kReach);
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
-      if (*found.deepest >= 0) found.valid_path = searched.candidate;  // which was tried last, and found valid
+      if (*found.deepest >= 0) found.valid_path = searched.candidate;  // the path tried last, which is valid
       time_ms["reach"] = watch.lap();
     }
   } catch (const Stopped&) {

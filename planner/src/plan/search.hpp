@@ -13,26 +13,32 @@
 
 namespace swivel {
 
-/// Whether lower bounds, sweeps and what comes between two questions take long enough to be shared.
+/// Returns true if the lattice is so large that lower bounds, sweeps and the work between two
+/// batches of questions are worth sharing between threads.
 [[nodiscard]] inline bool shares_work(const Lattice& lattice) {
-  return lattice.nodes() >= 150'000;  // some milliseconds
+  return lattice.nodes() >= 150'000;  // each takes some milliseconds then
 }
 
-/// What a search found, by whichever planner.
+/// The result of a search by any of the planners.
 struct Found {
-  bool decided = false;  ///< whether there is a path; else it was stopped before
+  bool decided = false;  ///< false: stopped before it was known whether there is a path
   SearchOutcome outcome;
-  std::optional<int> deepest;  ///< where there is no path: of the layers reached; none where that was not found in time
-  /// Valid from layer 0 on, as far as it goes: the path, or where there is none the way to the deepest layer, or what was proved of
-  /// one before the search was stopped.
+  /// if there is no path: the last layer that a valid path reaches; unset if it was not found in
+  /// time
+  std::optional<int> deepest;
+  /// A valid path from layer 0: the whole path; if there is none, the one to the deepest layer; if
+  /// the search was stopped, the part that was proved.
   SlotPath valid_path;
 };
 
-/// The planners eager and eager_dp.
+/// Searches with the eager planner or eager_dp (options.planner), which validate the whole lattice
+/// first. Fills `counters`.
 [[nodiscard]] Found search_eagerly(const Lattice& lattice, Validity& validity, const PlanOptions& options, const Budget& budget,
                                    Counters& counters);
-/// The planners lazy and parallel. `swept`: the cost-to-go is that of the lattice without removals; else `suspects` are asked about
-/// before it is swept.
+/// Searches with the lazy planner or the parallel one (options.planner). `swept`: cost_to_go holds
+/// the values of the lattice without removals; otherwise `suspects` are validated before it is
+/// swept. `first` are failures of earlier searches, which are tested first. Fills `counters` and
+/// the times of the stages, ms.
 [[nodiscard]] Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first,
                                   std::span<const Suspect> suspects, const PlanOptions& options, Counters& counters,
                                   std::map<std::string, double>& time_ms);

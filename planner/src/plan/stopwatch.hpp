@@ -4,9 +4,10 @@
 
 namespace swivel {
 
+/// Measures the time of consecutive parts of a computation.
 class Stopwatch {
  public:
-  /// Milliseconds since construction or the last lap.
+  /// Returns the time since construction or the last lap, ms, and starts the next lap.
   double lap() {
     const auto now = Clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - last_).count();

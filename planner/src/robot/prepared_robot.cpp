@@ -18,7 +18,7 @@ bool same(const AttachedBody& a, const AttachedBody& b) {
   return a.name == b.name && a.shape == b.shape && a.pose.matrix() == b.pose.matrix() && a.link == b.link;
 }
 
-/// The robot of a problem that makes sense.
+/// Returns the robot of a problem. Throws for what validate() refuses.
 const Robot& checked(const Problem& problem) {
   validate(problem);
   validate(*problem.model);

@@ -12,7 +12,8 @@ namespace swivel {
 
 namespace {
 
-/// Calls the hook when it is this plan's turn.
+/// Calls the hook, and first waits until no other plan calls it, unless it is concurrent. Throws
+/// Stopped.
 template <class Call>
 void in_turn(Hook& hook, const Budget& budget, const Call& call) {
   budget.poll();
@@ -46,7 +47,7 @@ std::span<const bool> AskedCheck::motions(std::span<const StateCheck::Motion> mo
 
 void AskedCost::costs(std::span<const Config> states, std::span<double> costs) {
   if (states.empty()) return;
-  std::fill(costs.begin(), costs.end(), std::numeric_limits<double>::quiet_NaN());  // what is not filled in is found
+  std::fill(costs.begin(), costs.end(), std::numeric_limits<double>::quiet_NaN());  // so that a missing value is detected
   in_turn(*cost_, budget_, [&] { cost_->costs(states, costs); });
   const double most = 1000 * lattice_->cost_unit();
   for (std::size_t k = 0; k < states.size(); ++k) {

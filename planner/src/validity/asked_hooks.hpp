@@ -11,18 +11,25 @@
 
 namespace swivel {
 
-/// A check of the user's as one plan asks it: in turn with other plans, and no longer than the budget allows. Everything is allowed
-/// where there is none. Throws Stopped, and what the check throws.
+/// A user's check as one plan calls it: while no other plan does, unless it is concurrent, and no
+/// longer than the budget allows. Without a check everything is allowed. Throws Stopped, and what
+/// the check throws.
 class AskedCheck {
  public:
   AskedCheck(std::shared_ptr<StateCheck> check, const Budget& budget) : check_(std::move(check)), budget_(budget) {}
 
+  /// Returns true if there is a check.
   [[nodiscard]] explicit operator bool() const { return check_ != nullptr; }
+  /// Returns true if there is a check that tests motions as well as states.
   [[nodiscard]] bool checks_motions() const { return check_ && check_->checks_motions(); }
+  /// Returns the name of the check, which must exist.
   [[nodiscard]] std::string name() const { return check_->name(); }
 
-  /// Whether each is allowed: one call for all, and none for none. Valid until the next call.
+  /// Returns by state whether it is allowed, by one call of the check for all states, or none for
+  /// an empty span. Valid until the next call.
   [[nodiscard]] std::span<const bool> states(std::span<const Config> states);
+  /// Returns by motion whether it is allowed, by one call of the check for all motions, or none for
+  /// an empty span. Valid until the next call.
   [[nodiscard]] std::span<const bool> motions(std::span<const StateCheck::Motion> motions);
 
  private:
@@ -35,14 +42,17 @@ class AskedCheck {
   std::size_t capacity_ = 0;
 };
 
-/// The same of a cost. What is no cost is InvalidArgument.
+/// A user's cost of states as one plan calls it: while no other plan does, unless it is concurrent,
+/// and no longer than the budget allows. Throws Stopped, what the cost throws, and InvalidArgument
+/// for a value outside 0 to 1000 cost units.
 class AskedCost {
  public:
   AskedCost(std::shared_ptr<StateCost> cost, const Lattice& lattice, const Budget& budget)
       : cost_(std::move(cost)), lattice_(&lattice), budget_(budget) {}
 
   [[nodiscard]] explicit operator bool() const { return cost_ != nullptr; }
-  /// Fills in the rounded costs: spans of equal size.
+  /// Fills in the cost of each state, rounded by Lattice::rounded_cost(). The spans have equal
+  /// size.
   void costs(std::span<const Config> states, std::span<double> costs);
 
  private:

@@ -21,7 +21,8 @@ BodyPair pair_of(FailureId failure) {
 
 void ClearanceMemory::begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world,
                             const std::vector<SceneObject>& scene) {
-  // Far more than a search asks about; a planner that runs for days in a changing scene must not grow for days.
+  // This is far more than a search tests. It bounds the memory of a planner that runs for days in a
+  // changing scene.
   constexpr std::size_t kMost = 1'000'000;
   if (nodes_.size() + edges_.size() > kMost) {
     nodes_.clear();
@@ -63,13 +64,13 @@ double ClearanceMemory::moved_since(std::uint64_t plan) {
 
 void ClearanceMemory::object_removed(int object) {
   learn();
-  changed_.clear();  // their numbers are others now
+  changed_.clear();  // their numbers have changed
   stood_.clear();
   const int body = robot_bodies_ + object;
   const auto renumber = [&](auto& findings) {
     for (auto& [key, finding] : findings) {
       if (finding.valid || finding.pair.b < body) continue;
-      // Of the rest of the bodies nothing is known: as if no plan had found anything.
+      // Nothing is known about the other pairs: as if no plan had found anything.
       if (finding.pair.b == body)
         finding = {{0, true, kNoPair, finding.listed}};
       else

@@ -9,53 +9,65 @@
 
 namespace swivel {
 
-/// A pair of bodies as the searches know it, and back.
+/// Returns the number by which searches identify the failure of a pair of bodies.
 [[nodiscard]] FailureId failure_of(const BodyPair& pair);
+/// Returns the pair of bodies that failure_of() has numbered.
 [[nodiscard]] BodyPair pair_of(FailureId failure);
 
-/// What earlier plans found about nodes and edges of one lattice. It holds as long as limits and robot do; where a scene object has
-/// moved since, it holds of all other pairs of bodies. Plans are numbered from 1 on.
+/// Remembers what earlier plans found about nodes and edges of one lattice. Findings hold as long
+/// as limits and robot stay; if a scene object has moved since, they hold for all other pairs of
+/// bodies. Plans are numbered from 1 on.
 class ClearanceMemory {
  public:
-  /// No pair: manipulability, or the tool's path.
+  /// Stands for a failure without a pair of bodies: manipulability, or the tool's path.
   static constexpr BodyPair kNoPair{-1, -1};
+  /// A verdict on a node or an edge.
   struct Finding {
-    std::uint64_t plan = 0;  ///< that found it, or found it again
+    std::uint64_t plan = 0;  ///< that found it, or confirmed it
     bool valid = false;
-    BodyPair pair = kNoPair;  ///< of a failure
-    bool listed = false;      ///< among the failures, maybe valid by now
-    /// Of a valid one: it stays so while none of the objects that had changed when it was found moves by as much, m.
+    BodyPair pair = kNoPair;  ///< that fails; kNoPair if valid
+    bool listed = false;      ///< in the list of failures, although it may be valid by now
+    /// If valid: it stays valid as long as none of the objects that had changed when it was found
+    /// moves by this much, m.
     double spare = -1;
   };
   struct NodeFinding : Finding {
     Config q;
     NodeAnswer answer;
   };
-  /// How much of a finding holds.
+  /// How much of a finding holds for the present plan.
   enum class Holds {
     kNothing,
-    kUnlessChanged,  ///< valid, but for pairs with the objects that have changed since the last plan
+    kUnlessChanged,  ///< valid, except for pairs with objects changed since the last plan
     kAll,
   };
 
-  /// A plan begins, of `scene` in `world`. met[k]: the first plan that met scene object k as it is now. The world serves until the
-  /// next plan begins.
+  /// Begins a plan of `scene` in `world`. met[k] is the first plan that met scene object k where it
+  /// is now. The world must live until the next plan begins.
   void begin(std::uint64_t plan, std::vector<std::uint64_t> met, const World& world, const std::vector<SceneObject>& scene);
-  /// Objects that the last plan did not meet as they are now.
+  /// Returns the scene objects that the plan before this one did not meet where they are now.
   [[nodiscard]] const std::vector<int>& changed() const { return changed_; }
 
-  /// Objects after this one are numbered one less from now on.
+  /// Removes a scene object: those after it are numbered one less from now on.
   void object_removed(int object);
 
+  /// Returns what is known about a node; null if nothing is.
   [[nodiscard]] const NodeFinding* node(int layer, int slot) const;
+  /// Returns what is known about the edge from slot a of `layer` to slot b of the next layer; null
+  /// if nothing is.
   [[nodiscard]] const Finding* edge(int layer, int a, int b) const;
+  /// Returns how much of a finding holds for the present plan.
   [[nodiscard]] Holds holds(const Finding& finding);
+  /// Stores the answer about a node. `pair` is the pair that fails, or kNoPair; `spare` is
+  /// Finding::spare.
   void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double spare);
+  /// Stores the answer about an edge. `pair` is the pair that fails, or kNoPair; `spare` is
+  /// Finding::spare.
   void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double spare);
 
-  /// All failures, in the order in which they were found.
+  /// Returns all nodes and edges that fail, in the order in which they were found.
   [[nodiscard]] AskedFirst failures() const;
-  /// The nodes among them, with those of the last plan.
+  /// Returns the nodes that fail by a pair of bodies, those of the last plan included.
   [[nodiscard]] std::vector<Suspect> suspects();
 
  private:
@@ -80,26 +92,31 @@ class ClearanceMemory {
     return static_cast<std::uint64_t>(layer) << 32 | static_cast<std::uint32_t>(slot);
   }
 
-  /// How far the changed objects have moved since a plan of the same run, m.
+  /// Returns how far the changed objects have moved since a plan of the same run, m: the most of
+  /// any of them.
   [[nodiscard]] double moved_since(std::uint64_t plan);
-  /// Enters what the last plan noted. A plan only notes, so that one that is never followed by another pays little.
+  /// Enters what the last plan noted. A plan only notes its findings, so that a plan that is never
+  /// followed by another pays little.
   void learn();
 
   std::uint64_t plan_ = 0;
-  std::uint64_t unchanged_since_ = 0;  // of all objects but the changed ones: the last plan that met one of them for the first time
+  // the last plan that met one of the unchanged objects for the first time
+  std::uint64_t unchanged_since_ = 0;
   std::vector<std::uint64_t> met_;
   std::vector<int> changed_;
-  // A run of plans between which the same objects changed: the first of them, and where these stood in each.
+  // A run is a sequence of plans between which only the same objects changed. The first plan of the
+  // run, and where these objects stood in each:
   std::uint64_t run_ = 0;
   std::vector<std::vector<Pose>> stood_;
-  std::vector<double> moved_since_;  // moved_since() by plan of the run; less than 0 where it is not known yet
+  // moved_since() by plan of the run; negative until it is computed
+  std::vector<double> moved_since_;
   const World* world_ = nullptr;
   int robot_bodies_ = 0;
   std::unordered_map<std::uint64_t, NodeFinding, NodeHash> nodes_;
   std::unordered_map<EdgeKey, EdgeFinding, EdgeHash> edges_;
   std::vector<std::pair<std::uint64_t, NodeFinding>> noted_nodes_;
   std::vector<std::pair<EdgeKey, EdgeFinding>> noted_edges_;
-  std::vector<std::uint64_t> failed_nodes_;  // once each, also where they are valid by now
+  std::vector<std::uint64_t> failed_nodes_;  // each once, even if valid by now
   std::vector<EdgeKey> failed_edges_;
 };
 

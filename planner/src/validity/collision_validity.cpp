@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::size_t kMostRows = 8192, kRowsOfLayer = 8, kSlotsApart = 67;
 
-/// Beside the pairs of bodies.
+/// The failure of nodes below the least manipulability; failures that are pairs of bodies are not
+/// negative.
 constexpr FailureId kManipulability = -2;
 
 }  // namespace
@@ -43,7 +44,7 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
 std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {
   if (!lattice_->has_own_rows()) return q;
   auto& rows = rows_[static_cast<std::size_t>(worker)];
-  // Neighbours along the path and along the coordinate must not share a place.
+  // Neighbours along the path and along the coordinate must not share a place in the cache.
   const auto place = (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) % rows.size();
   Row& row = rows[place];
   if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->row(layer, slot, q)};
@@ -151,8 +152,9 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
   return failure(*pair, shared(*pair));
 }
 
-/// A row takes seven equations. Where the bodies are too near by more than it can move them, the node fails whether it has one or
-/// not, and so do those that are alike.
+/// Computing the exact configuration means solving seven equations. If the bodies are too near by
+/// more than it can move them, the node fails whether it has one or not, and so do the nodes at
+/// which the bodies have the same poses.
 bool CollisionValidity::fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
   const double margin = row_margin_.from_node(question.layer, question.q, pair);
   return std::isfinite(margin) && query.surely_below(question.q, pair, Level(Keep::kNode, -margin));
@@ -165,12 +167,13 @@ unsigned groups_of(const World& world, const BodyPair& pair) {
       const int group = world.bodies()[static_cast<std::size_t>(body)].group;
       groups |= group > static_cast<int>(kDof) ? Lattice::kFollowers : 1u << group;
     }
-  return groups & ~1u;  // group 0 stands still
+  return groups & ~1u;  // group 0 does not move
 }
 
-/// Other nodes' bodies stand where these do only up to rounding, or to how far their rows move them, so the verdict is shared only
-/// where the pair is too near by more than that and than FCL can err: then every planner, asking FCL about each of those nodes,
-/// hears the same.
+/// At other nodes the bodies have these poses only up to rounding, or to the difference of exact
+/// configurations. The verdict is therefore shared only if the pair is too near by more than that
+/// and than FCL can err: then every planner that asks FCL about one of those nodes gets the same
+/// verdict.
 bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query, int layer,
                const Config& node, const Config& row, const BodyPair& pair) {
   if (!lattice.stand_alike(groups_of(world, pair))) return false;
@@ -220,7 +223,8 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
   return !blocked;
 }
 
-/// Every row between is asked as a node is, every move from row to row as an edge.
+/// Tests every configuration between the layers as a node, and every move from one to the next as
+/// an edge.
 bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb, Open& open, World::Query& query) {
   Lattice::Between between = lattice_->between(x.layer, x.a, qa, x.b, qb);
   if (between.fault != Lattice::Between::Fault::kNone) return false;

@@ -13,14 +13,16 @@
 
 namespace swivel {
 
-/// The costly predicates of docs/model.md, asked of the collision world on the executor's threads.
-/// A batch is asked in partitions, so many runs of consecutive questions, and what a partition keeps from one
-/// posture to the next (World::Query::next_below) depends on its own questions alone. So counters are the same at any number of
-/// threads.
+/// Validates nodes and edges by the costly predicates of docs/model.md, with collision queries on
+/// the executor's threads. A batch is cut into a fixed number of contiguous partitions, each with
+/// its own query cache (World::Query::next_below()). What a partition caches depends on its own
+/// questions alone, so that counters do not depend on the number of threads.
 class CollisionValidity final : public Validity {
  public:
-  /// `partitions` 0: each question is shared out for itself. `memory`: what is known of the same lattice, robot and limits, and of
-  /// `changed`, the pairs with objects that moved since (null: none did); null for none.
+  /// Creates a validity for a lattice in a world. If `partitions` is 0, each question is shared out
+  /// by itself, with a cache for each worker. `memory`, or null, holds what earlier plans found
+  /// about the same lattice, robot and limits; `changed` is then the world of only those pairs
+  /// whose objects have moved since (null: none has). References and pointers must outlive it.
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode, Certificates certificates,
                     Executor& executor, int partitions, const Budget& budget, ClearanceMemory* memory = nullptr,
                     const World* changed = nullptr);
@@ -31,10 +33,11 @@ class CollisionValidity final : public Validity {
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
 
-  /// Of those that were not known.
+  /// Returns how many nodes were tested, because the memory did not answer for them.
   [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
+  /// Returns how many edges were tested, because the memory did not answer for them.
   [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
-  /// Of all workers.
+  /// Returns the collision counters of all workers and partitions.
   [[nodiscard]] CollisionCounters counters() const;
 
  private:
@@ -42,32 +45,36 @@ class CollisionValidity final : public Validity {
     World::Query whole;
     std::optional<World::Query> changed;
   };
-  /// A question that the memory does not answer in full.
+  /// A question that the memory does not answer, or answers only for the pairs whose objects have
+  /// not changed.
   struct Open {
     std::size_t index = 0;
     bool only_changed = false;
-    BodyPair pair = ClearanceMemory::kNoPair;  ///< of the failure; before: the likely
-    double spare = -1;                         ///< of ClearanceMemory::Finding
+    BodyPair pair = ClearanceMemory::kNoPair;  ///< on entry the pair to test first; then the pair that fails
+    double spare = -1;                         ///< see ClearanceMemory::Finding
   };
   [[nodiscard]] Queries make_queries() const;
-  /// ask(open, worker, queries) for what is open, on the executor's threads; beside `work`, unless it is null.
+  /// Calls ask(open, worker, queries) for each open question on the executor's threads; beside
+  /// `work`, unless it is null.
   template <class Ask>
   void ask_open(const Ask& ask, const std::function<void()>* work = nullptr);
   void ask_nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers, const std::function<void()>* work);
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
-  /// Whether the pair is too near in the node's row, wherever that is.
+  /// Returns true if the pair is proved to be too near at the node's exact configuration, without
+  /// computing that.
   [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;
   [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
   [[nodiscard]] bool edge_of_layers(const EdgeQuestion& question, const Config& qa, const Config& qb, Open& open,
                                     World::Query& query);
-  /// Lattice::row, remembered by each worker for a while: a path's nodes are asked about, and then its edges.
+  /// Returns the exact configuration of a node (Lattice::row). Each worker caches recent ones,
+  /// since a path's nodes are tested first and then its edges.
   [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q, int worker);
 
   const Lattice* lattice_;
   const World* world_;
   RowMargin row_margin_;
   EdgeRule rule_;
-  EdgeRule changed_rule_;  // of the changed objects' pairs, of which none is the robot's own
+  EdgeRule changed_rule_;  // for the pairs with changed objects, none of them a robot pair
   EdgeMode edge_mode_;
   Certificates certificates_;
   Executor* executor_;
@@ -81,14 +88,17 @@ class CollisionValidity final : public Validity {
     int layer = -1, slot = -1;
     std::optional<Config> q;
   };
-  std::vector<std::vector<Row>> rows_;  // [worker], at a place that layer and slot give; empty where nodes are their own rows
+  // [worker], at a place given by layer and slot; empty if nodes are exact configurations
+  // themselves
+  std::vector<std::vector<Row>> rows_;
   std::int64_t nodes_checked_ = 0, edges_checked_ = 0;
 };
 
-/// The groups of a pair's bodies, as NodeAnswer has them.
+/// Returns the bits of the joint groups that move a pair's bodies, as NodeAnswer::groups has them.
 [[nodiscard]] unsigned groups_of(const World& world, const BodyPair& pair);
-/// Whether the failure of a pair, which the query has just named at the row of a node of the layer, is one of every node at which
-/// its bodies stand alike.
+/// Returns true if the failure of a pair at a node applies to every node of the layer at which its
+/// bodies have the same poses (Lattice::stand_alike). `node` holds the node's joints, `row` its
+/// exact configuration, at which `query` has just named the pair.
 [[nodiscard]] bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query,
                              int layer, const Config& node, const Config& row, const BodyPair& pair);
 

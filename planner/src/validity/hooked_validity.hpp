@@ -7,11 +7,11 @@
 
 namespace swivel {
 
-/// The user's hooks after the validity that comes first: the check is asked about what that one allows, in one call for each batch
-/// of it. What nodes cost is what the lattice and the user say.
+/// Applies the user's hooks after another validity: the check is called about what that one allows,
+/// once for each batch. The cost of a node is the lattice's cost plus the user's.
 class HookedValidity final : public Validity {
  public:
-  /// `lattice` and `first` must outlive it.
+  /// Wraps the validity `first`. `lattice` and `first` must outlive it.
   HookedValidity(const Lattice& lattice, Validity& first, const Hooks& hooks, const Budget& budget)
       : lattice_(&lattice), first_(&first), check_(hooks.check, budget), cost_(hooks.cost, lattice, budget) {}
 
@@ -25,7 +25,8 @@ class HookedValidity final : public Validity {
 
  private:
   void check_layers_between(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers);
-  /// What the caller's hooks see of a node: its row (Lattice::row), where it has one.
+  /// Returns the state that hooks are given for a node: its exact configuration (Lattice::row) if
+  /// it has one of its own, else its joints.
   [[nodiscard]] Config state(int layer, int slot, const Config& node) const {
     return lattice_->has_own_rows() ? lattice_->row(layer, slot, node).value_or(node) : node;
   }

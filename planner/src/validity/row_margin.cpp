@@ -29,7 +29,7 @@ double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
   for (const int body : {pair.a, pair.b}) {
     if (body >= static_cast<int>(bodies.size())) continue;
     const Body& moving = bodies[static_cast<std::size_t>(body)];
-    // What follows a joint is moved by two.
+    // A body on a follower is moved by two joints, for which no bound is known.
     if (moving.group > static_cast<int>(kDof)) return std::numeric_limits<double>::infinity();
     if (moving.group > 0) sum += shift(moving.group).of(moving.radius);
   }

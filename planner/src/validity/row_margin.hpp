@@ -8,15 +8,20 @@
 
 namespace swivel {
 
-/// How much the clearance of two bodies may differ where a lattice knows the poses of bodies only so well. The bodies are measured
-/// when this is first asked: most plans whose paths meet no obstacle never ask. Threads may ask at once.
+/// Bounds how much the clearance of two bodies may differ between configurations that a lattice
+/// treats as placing them equally. The bodies are measured when this is first asked, because most
+/// plans whose paths meet no obstacle never ask. Safe to call from many threads.
 class RowMargin {
  public:
   RowMargin(const Lattice& lattice, const World& world) : lattice_(&lattice), world_(&world) {}
-  /// Between the joints q of a node and its row (Lattice::row_shift), m; 0 where nodes are their own rows, infinite where nothing
-  /// is known.
+  /// Returns an upper bound, m, of how much the clearance of a pair may differ between the joints q
+  /// of a node and the node's exact configuration (Lattice::row_shift). 0 if nodes are exact
+  /// configurations themselves, infinite if nothing is known.
   [[nodiscard]] double from_node(int layer, const Config& q, const BodyPair& pair) const;
-  /// The same, between rows of nodes at which the bodies stand alike (Lattice::rows_apart).
+  /// Returns an upper bound, m, of how much the clearance of a pair may differ between the exact
+  /// configurations of two nodes at which its bodies have the same poses (Lattice::rows_apart). `q`
+  /// holds the joints of either node. 0 if nodes are exact configurations themselves, infinite if
+  /// nothing is known.
   [[nodiscard]] double between_rows(int layer, const Config& q, const BodyPair& pair) const;
 
  private:
@@ -25,13 +30,13 @@ class RowMargin {
 
   struct Body {
     int group = 0;
-    double radius = 0;  ///< m, of its farthest point from where PoseShift is about
+    double radius = 0;  ///< m, from the centre of its PoseShift to its farthest point
   };
   [[nodiscard]] std::vector<Body> measured() const;
 
   const Lattice* lattice_;
   const World* world_;
-  Lazy<std::vector<Body>> bodies_;  // of the robot; empty where nodes are their own rows
+  Lazy<std::vector<Body>> bodies_;  // of the robot; empty if nodes are exact configurations themselves
 };
 
 }  // namespace swivel

@@ -14,24 +14,28 @@ class PreparedRobot;
 struct Problem;
 struct PlanView;
 
-/// Why a planner's problem has no path, as a certificate that check_cut() verifies: the fewest layers, as near to the path's end
-/// as can be, that nothing leads through. `check`: the one that was planned with. Throws InvalidArgument where the last plan found
-/// a path; Stopped.
+/// Returns a certificate that the last plan's problem has no path, which check_cut() verifies: a
+/// band of layers that no path crosses, as near to the path's end as possible. `check` must be the
+/// StateCheck that the plan used, or null. Throws InvalidArgument if the last plan found a path,
+/// and Stopped.
 [[nodiscard]] Cut find_cut(const PlanView& view, const Budget& budget = {}, const std::shared_ptr<StateCheck>& check = nullptr);
 
-/// What a certificate proves, or what is wrong with it.
+/// The verdict on a certificate of infeasibility: what it proves, or what is wrong with it.
 struct CutCheck {
   bool passed = false;
-  std::string failure;                ///< one line: the first thing that is wrong, with layer and slot; empty where it passed
-  std::array<double, 2> s{0, 0};      ///< m along the path: the layers that nothing leads through, first and last
-  bool complete = true;               ///< all solutions of the arm are known; else the proof is about those that were found
-  std::int64_t nodes = 0, edges = 0;  ///< witnesses asked
+  std::string failure;            ///< one line: the first fault, with layer and slot; empty if passed
+  std::array<double, 2> s{0, 0};  ///< m along the path: first and last layer of the band
+  /// true: all IK solutions of the arm are known; else the proof covers only those that were found
+  bool complete = true;
+  std::int64_t nodes = 0, edges = 0;  ///< tests of witnesses
 };
 
-/// Verifies a certificate from the problem alone: makes the nodes of its layers again, asks every witness about every node and edge
-/// that it is said to remove, by FCL without the planners' certificates, and that no other edge leads on. Knows nothing of
-/// planners. Throws InputError where the problem is laid out otherwise (resolution, edges, layers); InvalidArgument as
-/// check_trajectory(); Stopped.
+/// Verifies a certificate of infeasibility from the problem alone. Builds the nodes of its layers
+/// anew, tests for every node and edge that the certificate calls removed whether its witness
+/// removes it, by FCL without the planners' distance proofs, and tests that no other edge leads on.
+/// Uses no planner. `check` must be the StateCheck that was planned with, or null. Throws
+/// InputError if the problem's lattice differs from the certificate's (resolution, edges, layers),
+/// InvalidArgument as check_trajectory() does, and Stopped.
 [[nodiscard]] CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut& cut, const Budget& budget = {},
                                  const std::shared_ptr<StateCheck>& check = nullptr);
 

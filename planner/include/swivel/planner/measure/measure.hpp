@@ -10,9 +10,11 @@ namespace swivel {
 
 class PreparedRobot;
 
-/// What plan() says of its own trajectory, of any: exact clearances, tool-path error, manipulability, distance from the joints'
-/// limits, tool speed. `rows`: one at each layer of the problem's path, in order, valid or not (check_trajectory() judges). Throws
-/// InvalidArgument for another number of rows or a robot that was not prepared for the problem, InputError as plan() does, Stopped.
+/// Measures any trajectory as plan() measures its own: exact clearances, tool-path error,
+/// manipulability, distance from the joint limits, tool speed. `rows` holds one row at each layer
+/// of the problem's path, in order, valid or not (check_trajectory() judges). `wanted` selects what
+/// is computed. Throws InvalidArgument for another number of rows or a robot that was not prepared
+/// for the problem, InputError as plan() does, and Stopped.
 [[nodiscard]] Measures measure(const PreparedRobot& robot, const Problem& problem, const std::vector<TrajectoryRow>& rows,
                                const Evidence& wanted = Evidence::all(), const Budget& budget = {});
 

@@ -4,10 +4,11 @@
 
 namespace swivel {
 
-/// The problem with what motions assume where it says nothing: the tool rounds corners (PathSmoothing's defaults), and pairs keep
-/// between layers what they keep at them, Limits::clearance in place of half of it; where self_clearance is set, halves stay.
+/// Returns the problem with the defaults that timed motions use for keys it leaves unset: the tool
+/// rounds corners (PathSmoothing's defaults), and keep_clearance_between_layers() is applied.
 [[nodiscard]] Problem with_motion_defaults(Problem problem);
-/// The second of these alone.
+/// Sets limits.edge_clearance to limits.clearance, so that pairs keep between layers what they keep
+/// at layers, instead of half of it. Does nothing if edge_clearance or self_clearance is set.
 void keep_clearance_between_layers(Limits& limits);
 
 }  // namespace swivel

@@ -5,12 +5,13 @@
 
 namespace swivel {
 
-/// The chain that plans, and how its self-motion is explored.
+/// The kinematic chain that is planned, and its class, which says how its self-motion is computed.
 struct PlanningArm {
   ArmModel model;
   ArmClass kind;
 };
-/// Throws InputError as PreparedRobot does.
+/// Builds the chain of a robot and classifies it. Throws InputError for an unknown link or an arm
+/// that is not supported.
 [[nodiscard]] PlanningArm planning_arm(const Robot& robot);
 
 }  // namespace swivel

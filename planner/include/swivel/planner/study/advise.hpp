@@ -7,14 +7,17 @@
 
 namespace swivel {
 
-/// What would help a problem that has no path, found by planning it: a free start, one limit less strict (by bisection, the
-/// strictest value of those tried that solves), half the lattice's steps, an object that stands in the way up to 20 mm elsewhere,
-/// or gone. What the verdict's cause suggests is tried first. Each is tried alone.
+/// Returns changes that would help a problem that has no path, each planned alone: a free start, a
+/// tool that may turn freely about its axis, one limit relaxed (by bisection, the strictest value
+/// of those tried that solves), deeper allowed contact, half the lattice's steps, an object moved
+/// by up to 20 mm, or an object removed. What the verdict's cause suggests comes first.
 ///
-/// In the order of trust: what solves, in the order in which it was tried; what comes further, the furthest first; what does not
-/// help; what was not tried or not decided. `planner` holds the problem, `result` is its verdict; planners, hooks and threads are
-/// those of `options`, whose time-out is that of all trials together (none: a second). Empty unless infeasible. Throws as
-/// Planner::plan(). The same at any number of threads but for what the time allows.
+/// The order is by outcome: changes that solve the problem; those whose path comes further, the
+/// furthest first; those that do not help; those that were not tried or not decided. Equal outcomes
+/// stay in the order in which they were suggested. `planner` holds the problem, `result` is its
+/// verdict; planner kind, hooks and threads are those of `options`, whose time-out covers all
+/// trials together (one second if unset). Empty unless the verdict is infeasible. Throws as
+/// Planner::plan() does. The number of threads changes the result only through the time.
 [[nodiscard]] std::vector<Advice> advise(const Planner& planner, const PlanResult& result, PlanOptions options = {});
 
 }  // namespace swivel

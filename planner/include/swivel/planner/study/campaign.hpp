@@ -8,20 +8,25 @@
 
 namespace swivel {
 
+/// Options of run_campaign().
 struct CampaignOptions {
-  std::uint64_t episodes = 100;  ///< of the whole campaign
+  std::uint64_t episodes = 100;  ///< in the whole campaign, all shards together
   std::uint64_t seed = 1;
   Shard shard;
-  std::uint64_t skip = 0;  ///< episodes of the shard that are answered already, from its first on
-  PlanOptions plan;        ///< threads: episodes planned at once, each by one thread; evidence and progress are ignored
-  /// Called by the planning threads, several at a time and in any order, with every answer, before its row.
+  std::uint64_t skip = 0;  ///< leading episodes of the shard that are answered already
+  /// threads: episodes planned at once, each by one thread. Evidence and progress are ignored.
+  PlanOptions plan;
+  /// Called with every answer before its row is delivered, from the planning threads, several at a
+  /// time and in any order.
   std::function<void(std::uint64_t episode, const PlanResult& result)> planned;
 };
 
-/// Plans the episodes of a shard and delivers their rows in episode order, one call at a time. Stops when cancelled or timed out;
-/// what was delivered is then a beginning of the shard, without a gap. An internal error of an episode is its row, of status
-/// kError, without a call of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws InvalidArgument
-/// as plan() does, InputError where an episode makes no sense, and for a problem without `vary` and more than one episode.
+/// Plans the episodes of a shard and calls row_done with their rows in episode order, one call at a
+/// time. Stops when cancelled or timed out; the rows delivered are then the beginning of the shard,
+/// without a gap. An internal error of an episode becomes its row, of status kError, without a call
+/// of `planned`. Exceptions of the callbacks end the campaign and reach the caller. Throws
+/// InvalidArgument as plan() does; InputError for an episode whose problem is invalid, and for a
+/// problem without `vary` if there is more than one episode.
 void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done);
 

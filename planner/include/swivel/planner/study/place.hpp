@@ -10,7 +10,8 @@
 
 namespace swivel {
 
-/// A placement to be planned.
+/// A placement to be planned: the cell's number in the grid, and the offset of the thing that is
+/// placed.
 struct PlacementCell {
   std::uint64_t cell = 0;
   Offset offset{};
@@ -19,28 +20,32 @@ struct PlacementCell {
 /// The plan of a placement that has one.
 struct PlacedPlan {
   PlacementCell cell;
-  std::vector<SceneObject> scene;  ///< as it stands then
+  std::vector<SceneObject> scene;  ///< with the objects where they are in this placement
   std::vector<TrajectoryRow> trajectory;
 };
 
-/// Plans placements of one thing, each by one thread with a planner that remembers those before. A row hangs on its placement
-/// alone: on no other cell, and not on the number of threads.
+/// Plans placements of one thing, each on one thread by a planner that reuses what earlier
+/// placements computed. A row depends on its placement alone, not on other cells or on the number
+/// of threads.
 class PlacementPlanner {
  public:
-  /// `options`: threads are cells planned at once; evidence, hooks and progress are ignored; the time-out is that of all calls
-  /// together, from now on. Throws as the Planner of a prepared robot does, and InvalidArgument for an unknown object.
+  /// Prepares to plan placements of `thing` in `problem`. options.threads is the number of cells
+  /// planned at once; evidence, hooks and progress are ignored; the time-out covers all calls
+  /// together, from now on. Throws as the Planner of a prepared robot does, and InvalidArgument for
+  /// an unknown object.
   PlacementPlanner(std::shared_ptr<const PreparedRobot> robot, Problem problem, Movable thing, PlanOptions options);
   ~PlacementPlanner();
 
-  /// Rows in the order of `cells`, without those that were not answered in time. An internal error of a cell is its row, of status
-  /// kError. `done` is called from the planning threads, one call at a time, as rows come. Throws InputError, which names the cell,
-  /// where a placed problem makes no sense.
+  /// Plans the cells and returns their rows in the order of `cells`, without those that were not
+  /// answered in time. An internal error of a cell becomes its row, of status kError. `done` is
+  /// called from the planning threads, one call at a time, as each row is finished. Throws
+  /// InputError, which names the cell, if a placed problem is invalid.
   std::vector<PlacementRow> plan(const std::vector<PlacementCell>& cells,
                                  const std::function<void(const PlacementRow&)>& done = {});
-  /// The trajectories behind rows, which do not hold them: planned once more, in the order of `cells`, without those that have no
-  /// path or were not answered in time.
+  /// Plans the cells again and returns their trajectories, which rows do not hold, in the order of
+  /// `cells`, without those that have no path or were not answered in time.
   [[nodiscard]] std::vector<PlacedPlan> trajectories(const std::vector<PlacementCell>& cells);
-  /// Whether the time was up, or work was cancelled: rows may be missing.
+  /// Returns true if the time ran out or work was cancelled; rows may then be missing.
   [[nodiscard]] bool stopped() const;
 
  private:
