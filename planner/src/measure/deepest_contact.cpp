@@ -9,7 +9,7 @@ namespace swivel {
 
 namespace {
 
-constexpr double kBetween = 0.5e-3;      // m, how much deeper than found a contact may be between postures, at most
+constexpr double kBetween = 0.5e-3;      // m, how much deeper a contact between postures may be than the one found
 constexpr double kTouching = 1e-6;       // m
 constexpr double kShortest = 1. / 1024;  // of a move
 
@@ -40,7 +40,8 @@ class Search {
     }
   }
 
-  /// How deep a contact is to be proved not to be, m: no deeper than allowed, where what was found leaves room for that.
+  /// Returns the depth that contacts are to be proved not to exceed, m: the allowed one, if what
+  /// was found leaves room for that.
   [[nodiscard]] double to_prove(const AllowedPair& allowed) const {
     const double most = deepest_ + kBetween;
     return allowed.depth ? std::max(deepest_ + kVerdictBand, std::min(most, *allowed.depth)) : most;
@@ -55,7 +56,8 @@ class Search {
     return depth;
   }
 
-  /// Settles how deep two bodies come on the move from a row to the next, between two shares of that move.
+  /// Bounds how deep two bodies come on the move from a row to the next, between two shares of that
+  /// move.
   void settle(const AllowedPair& allowed, std::size_t row, double from, double to) {
     budget_.poll();
     const Config &first = rows_[row], &next = rows_[row + 1];
@@ -79,8 +81,8 @@ class Search {
   const std::vector<Config>& rows_;
   const Budget& budget_;
   World::Query query_;
-  bool is_bounded_ = true;   // of the pair at hand
-  bool is_complete_ = true;  // of all pairs so far
+  bool is_bounded_ = true;   // for the present pair
+  bool is_complete_ = true;  // for all pairs so far
   double deepest_ = kTouching, beyond_ = 0;
   std::optional<DeepestContact> found_;
 };

@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kNever = -std::numeric_limits<double>::infinity();
 
-/// What certificates leave open of rows and of the moves between them, pair by pair. A pair that is clear at a row by more than it
-/// must keep is so as far along the rows as its bodies can have used that up: one proof serves many rows, and a far pair has few.
+/// The rows, and moves between them, that distance proofs leave open, pair by pair. A pair that is
+/// clear at a row by more than it must keep stays clear along the rows until its bodies can have
+/// used up the difference: one proof serves many rows, and a far pair needs few.
 class OpenParts {
  public:
   std::vector<bool> rows, moves;  ///< a row; the move from it to the next
@@ -48,21 +49,23 @@ class OpenParts {
  private:
   struct Pair {
     int a = 0, b = 0;               // bodies
-    double row = 0, move = kNever;  // what is asked of its clearance, m
-    int moving = 0;                 // of the two bodies
-    int first_joint = 0, last = 0;  // that move them against each other
+    double row = 0, move = kNever;  // required clearances, m
+    int moving = 0;                 // how many of the two bodies move
+    int first_joint = 0, last = 0;  // joints that move them against each other
     [[nodiscard]] double both() const { return std::max(row, move); }
     [[nodiscard]] double least() const { return move < 0 ? row : std::min(row, move); }
   };
-  /// Of one pair: all moves from one row to another are open, and the rows between, not those two. Clearances at both are at
-  /// least these.
+  /// A run of rows of one pair, from row `first` to row `last`, of which all moves are open and the
+  /// rows between the two, but not these two. The pair's clearances at both are at least
+  /// clear_first and clear_last, m.
   struct OpenRun {
     std::size_t pair, first, last;
     double clear_first, clear_last;
   };
 
-  /// How far bodies come from row to row: on the chord, and off it by no more than an eighth of the acceleration, which is at most
-  /// 2 sum |dq_j| sum |dq_j| R_j, of all joints that move a body, followers of the chain among them.
+  /// Sums up how far bodies come from row to row: on the chord, and off the chord by no more than
+  /// an eighth of the acceleration, which is at most 2 sum |dq_j| sum |dq_j| R_j over all joints
+  /// that move a body, followers of the chain included.
   void add_travel(const World& world, const EdgeRule& rule) {
     bodies_ = world.bodies().size();
     for (std::size_t k = 0; k < joints_->size(); ++k) {
@@ -115,13 +118,15 @@ class OpenParts {
       way += turned_[to][j] - turned_[from][j];
     return way;
   }
-  /// No point of the pair's bodies comes nearer to the other by more than this, anywhere between two rows.
+  /// Returns an upper bound, m, of how much nearer the pair's bodies come anywhere between two
+  /// rows.
   [[nodiscard]] double travel(std::size_t pair, std::size_t from, std::size_t to) const {
     const Pair& p = pairs_[pair];
     const double chords = moved(p.a, from, to) + moved(p.b, from, to) + p.moving * (off_chords_[to] - off_chords_[from]);
     return std::min(chords, turned(p, from, to));
   }
-  /// How far along the rows the pair stays clear that is clear by so much at the first of them.
+  /// Returns the last row up to which the pair stays clear if its clearance at `first` is `clear`,
+  /// m.
   [[nodiscard]] std::size_t forward(std::size_t pair, std::size_t first, std::size_t last, double clear) const {
     std::size_t far = first, open = last + 1;
     while (open - far > 1) {
@@ -140,7 +145,8 @@ class OpenParts {
     return far;
   }
 
-  /// The pair's clearance at a row is at least this; looked for no further than serves for `need` of travel.
+  /// Returns a lower bound of the pair's clearance at q, m, which is sought no further than a
+  /// travel of `need`, m, requires.
   double clear_at(std::size_t pair, const Config& q, double need) {
     constexpr double kFurthest = 0.1;  // m; between meshes a large clearance takes long to prove
     const Pair& p = pairs_[pair];
@@ -155,7 +161,7 @@ class OpenParts {
     return at_row(pair, row, travel(pair, std::min(row, other), std::max(row, other)));
   }
 
-  /// Closes runs, or parts of them, that lie between these two rows.
+  /// Closes runs, or parts of runs, that lie between these two rows; marks what stays open.
   void settle(std::size_t first, std::size_t last, const std::vector<OpenRun>& runs) {
     if (runs.empty()) return;
     budget_->poll();
@@ -182,7 +188,7 @@ class OpenParts {
     settle(middle, last, after);
   }
 
-  /// Of a run of one move.
+  /// Returns true if distance proofs close a run of one move.
   bool closes(const OpenRun& s) {
     const std::size_t k = s.first;
     if (reaches(s.pair, k, 1, s.clear_first, s.clear_last)) return true;
@@ -202,11 +208,12 @@ class OpenParts {
     return clear >= pairs_[pair].move && closes(pair, k, from, middle, clear_from, clear) &&
            closes(pair, k, middle, to, clear, clear_to);
   }
-  /// Whether the clearances at both ends of a share of a move prove the pair to keep what it must on all of it.
+  /// Returns true if the clearances at both ends of a share of a move prove that the pair keeps
+  /// what it must on all of it.
   [[nodiscard]] bool reaches(std::size_t pair, std::size_t k, double share, double clear_from, double clear_to) const {
     const Pair& p = pairs_[pair];
     const double spare = clear_from + clear_to - 2 * p.move;
-    const double off_chord = 2 * p.moving * (off_chords_[k + 1] - off_chords_[k]);  // both ends may lie off it
+    const double off_chord = 2 * p.moving * (off_chords_[k + 1] - off_chords_[k]);  // both ends may lie off the chord
     return spare >= share * turned(p, k, k + 1) || spare >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
   }
 
@@ -216,7 +223,7 @@ class OpenParts {
   bool asks_moves_;
   std::size_t bodies_ = 0;  // of the robot
   std::vector<Pair> pairs_;
-  // Up to each row. moved_: of each body in turn; turned_: by each joint, of any point.
+  // Sums up to each row: moved_ by body, turned_ by joint for any point.
   std::vector<double> moved_, off_chords_;
   std::vector<std::array<double, kDof>> turned_;
 };

@@ -9,16 +9,18 @@
 
 namespace swivel {
 
+/// A pair of bodies that comes too near, and where.
 struct TooNear {
   std::size_t row = 0;
   BodyPair pair;
-  bool between = false;  ///< on the way from the row before
+  bool between = false;  ///< on the way from the row before to `row`
 };
 
-/// The first of these rows at which a pair comes too near (PairKeeps::node), or on the way to which one does
-/// (PairKeeps::motion, with `edges: continuous`; joints move straight from row to row). Certificates answer where they can, and
-/// many rows at once: all from one row to another are free where the middle one is clear by as much as anything moves from there.
-/// `rule` and `limits` are those of the world. Throws Stopped.
+/// Returns the first of these rows at which a pair comes too near (PairKeeps::node), or on the way
+/// to which a pair does (PairKeeps::motion, with `edges: continuous`; joints move straight from row
+/// to row); none if there is none. Distance proofs answer if they can, and for many rows at once:
+/// all rows from one to another are free if the middle one is clear by as much as the bodies move
+/// from there. `rule` and `limits` are those of the world. Throws Stopped.
 [[nodiscard]] std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
                                                     const std::vector<Config>& rows, const Budget& budget);
 

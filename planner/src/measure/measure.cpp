@@ -84,12 +84,12 @@ std::optional<NearestLimit> nearest_limit(const Chain& chain, const std::vector<
 }
 
 std::optional<TopToolSpeed> top_tool_speed(const Chain& chain, const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
-  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed of its own
+  const std::size_t joints = chain.roll ? kDof - 1 : kDof;  // the roll has no speed limit
   double speed = std::numeric_limits<double>::infinity();
   std::size_t row = 0, joint = 0;
   for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
     const double length = path.layer(static_cast<int>(i)).step_length;
-    if (length <= 0) continue;  // a turn in place asks for no speed
+    if (length <= 0) continue;  // a turn in place bounds no speed
     for (std::size_t k = 0; k < joints; ++k) {
       const double velocity = chain.limit[k].velocity;
       if (velocity <= 0) return std::nullopt;

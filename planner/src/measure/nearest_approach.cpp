@@ -9,7 +9,8 @@ namespace swivel {
 std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
                                                 const Budget& budget, const std::optional<NearestApproach>& so_far,
                                                 std::vector<double>* proved) {
-  constexpr int kStride = 8;  // rows far apart come first, so that one of them is near the nearest
+  // Rows far apart come first, so that one of them is near the nearest.
+  constexpr int kStride = 8;
   const int count = static_cast<int>(rows.size());
   World::Query query(world, Certificates::kOn);
   std::optional<NearestApproach> nearest = so_far;

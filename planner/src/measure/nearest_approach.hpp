@@ -9,17 +9,19 @@
 
 namespace swivel {
 
-/// How near bodies come to each other in a trajectory's rows, exact as FCL.
+/// The nearest approach of bodies in a trajectory's rows, as exact as FCL.
 struct NearestApproach {
-  World::Query::Clearance clearance;  ///< of the row with the least margin, the first that has it
+  World::Query::Clearance clearance;  ///< at the first row with the least margin
   int row = 0;
-  double least = 0;  ///< of all pairs and rows, m; of kMargin not known
+  double least = 0;  ///< clearance of all pairs and rows, m; not known with Seek::kMargin
 };
-/// Whether the least clearance is sought besides the least margin.
+/// What is sought: the least margin alone, or the least clearance of all pairs too.
 enum class Seek { kMargin, kMarginAndLeast };
-/// Of these rows and of `so_far`, which is of the same rows and of other pairs. None where there are no pairs or no rows. Rows that
-/// are proved to be further than the nearest so far are not measured: most, after the first few. Throws Stopped.
-/// `proved`, of kMargin: by row, what its margin is known to be at least, which spares it the proof; raised where it is proved.
+/// Returns the nearest approach of these rows and of `so_far`, which is that of the same rows for
+/// other pairs. None if there are no pairs or no rows. Rows that are proved to be further than the
+/// nearest so far, which are most after the first few, are not measured. `proved`, for
+/// Seek::kMargin only, holds by row a lower bound of its margin, m, which saves the proof; it is
+/// raised by what is proved. Throws Stopped.
 [[nodiscard]] std::optional<NearestApproach> nearest_approach(const World& world, const std::vector<TrajectoryRow>& rows, Seek seek,
                                                               const Budget& budget,
                                                               const std::optional<NearestApproach>& so_far = std::nullopt,

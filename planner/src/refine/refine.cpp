@@ -25,9 +25,9 @@ namespace swivel {
 
 namespace {
 
-constexpr double kFarthest = 1;  // rad, that a coordinate may move
+constexpr double kFarthest = 1;  // rad, the most that a coordinate may move
 
-/// Every so many layers of another solver, its first and its last among them.
+/// Every stride-th layer of another solver, its first and its last included.
 class EveryFew final : public LayerSolver {
  public:
   EveryFew(const LayerSolver& all, int stride) : all_(&all) {
@@ -36,7 +36,7 @@ class EveryFew final : public LayerSolver {
   }
   [[nodiscard]] int layers() const override { return static_cast<int>(layer_.size()); }
   [[nodiscard]] int layer(int k) const { return layer_[static_cast<std::size_t>(k)]; }
-  /// The last of the few that is no later than a layer.
+  /// Returns the index of the last chosen layer at or before a layer of the other solver.
   [[nodiscard]] int no_later(int layer) const {
     return static_cast<int>(std::upper_bound(layer_.begin(), layer_.end(), layer) - layer_.begin()) - 1;
   }
@@ -48,8 +48,9 @@ class EveryFew final : public LayerSolver {
   std::vector<int> layer_;
 };
 
-/// Where the minimum of all layers is sought from: the minimum of every few of them, straight in between. Paths of fine lattices
-/// are jagged, and Newton's method gives up on their teeth one by one.
+/// Returns a start for the minimum over all layers: the minimum over every few of them, straight in
+/// between. Paths of fine lattices are jagged, and Newton's method would have to smooth one tooth
+/// after the other.
 std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObjective& objective,
                                    const std::vector<CoordinateBox>& boxes, std::vector<double> x, const Budget& budget) {
   constexpr double kStep = 0.005;  // m
@@ -80,7 +81,8 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   return x;
 }
 
-/// The verdicts of docs/model.md on nodes and edges off the grid, and the margins that refinement keeps besides.
+/// Validates nodes and edges off the grid by the rules of docs/model.md and the additional margins
+/// of refinement.
 class Judge {
  public:
   Judge(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, const RefineOptions& options,
@@ -96,16 +98,17 @@ class Judge {
         between_(world_, Certificates::kOn),
         budget_(budget) {}
 
-  /// `given`: the joints of the path given, whose distances from limits and singularities need not be exceeded. `jumps`: the path
-  /// leads through a singularity to or from there, so that it had better be near.
+  /// Returns true if the node is valid with the margins of refinement. `given` holds the joints of
+  /// the given path, whose distances from limits and singularities need not be exceeded. `jumps`:
+  /// the path passes through a singularity at this node, so that it should be near one.
   [[nodiscard]] bool node(int layer, const Config& q, const Config& given, bool jumps = false) {
     if (!valid(layer, q, given, jumps) || at_.next_below(q, Level(Keep::kNode, extra_))) return false;
-    // What the motions from and to it will have to keep: a node that is bisected ends where it should, a motion that fails only
-    // where it had better.
+    // The motions from and to the node will have to keep this: failing here, the node's bisection
+    // ends at the right place, whereas a failing motion only shrinks roughly.
     if (problem_->limits.edges == EdgeMode::kContinuous && at_.next_below(q, Keep::kMidpoint)) return false;
     return check_.states({&q, 1})[0];
   }
-  /// Without any clearance besides.
+  /// Returns true if the node is valid without the margins of refinement.
   [[nodiscard]] bool bare_node(int layer, const Config& q) {
     return valid(layer, q, q, false) && !at_.next_below(q, Keep::kNode) && check_.states({&q, 1})[0];
   }
@@ -134,12 +137,12 @@ class Judge {
   std::int64_t nodes_asked = 0, edges_asked = 0;
 
  private:
-  /// But for collisions.
+  /// Returns true if the node is valid, apart from collisions and the user's check.
   [[nodiscard]] bool valid(int layer, const Config& q, const Config& given, bool jumps) {
     budget_.poll();
     ++nodes_asked;
     if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1])) return false;
-    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may leave it between layers
+    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may exceed it between layers
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
     if (!jumps && redundancy_->singular_sine(q) <
                       std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
@@ -179,7 +182,8 @@ double cost_of(const Lattice& lattice, const std::vector<TrajectoryRow>& rows) {
   return sum;
 }
 
-/// The largest second divided difference over the travel, rad/m^2.
+/// Returns the largest norm of the second divided difference of the joints over the travel,
+/// rad/m^2.
 double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows) {
   double most = 0;
   for (int i = 1; i + 1 < path.size(); ++i) {
@@ -190,10 +194,10 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
   return most;
 }
 
-/// One path given, whose nodes are valid, refined at one weight of smoothness.
+/// Refines one given path, whose nodes are valid, at one weight of smoothness.
 class Refinery {
  public:
-  /// Whether the edges of the path given are known to be valid too.
+  /// Whether the edges of the given path are known to be valid too.
   enum class Edges { kValid, kUnknown };
   Refinery(const Redundancy& redundancy, Judge& judge, const std::vector<TrajectoryRow>& given, Edges edges, bool fixed_start,
            const Budget& budget)
@@ -209,7 +213,8 @@ class Refinery {
       jumps_[static_cast<std::size_t>(jump)] = jumps_[static_cast<std::size_t>(jump) + 1] = true;
   }
 
-  /// Valid rows, or none within the rounds, or where an edge given is not valid and its nodes cannot move.
+  /// Returns refined rows that are valid; none if the rounds do not suffice, a layer has no
+  /// solution, or an edge of the given path is invalid and its nodes cannot move.
   std::optional<std::vector<TrajectoryRow>> run(const SmoothObjective& objective, int& rounds) {
     constexpr int kRounds = 40;
     const std::size_t n = given_.size();
@@ -261,7 +266,7 @@ class Refinery {
   std::vector<TrajectoryRow> rows_at(const std::vector<double>& x) const {
     std::vector<TrajectoryRow> rows = given_;
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (x[i] == given_[i].phi) continue;  // verbatim
+      if (x[i] == given_[i].phi) continue;  // unchanged
       const auto q = solver_->joints(static_cast<int>(i), x[i]);
       if (!q) return {};
       rows[i].phi = x[i];
@@ -270,7 +275,8 @@ class Refinery {
     return rows;
   }
 
-  /// The node at x fails: the interval ends at the furthest coordinate that is found valid. Returns it.
+  /// Ends the interval of a layer, whose node at x fails, at the furthest coordinate that is found
+  /// valid, and returns that.
   double shrink(std::size_t i, double x, CoordinateBox& box) {
     constexpr int kQueries = 10;
     double good = given_[i].phi, bad = x;
@@ -283,8 +289,8 @@ class Refinery {
     return good;
   }
 
-  /// The motion between the nodes i and i + 1 at x fails: their intervals end where one is found valid that is as far from the one
-  /// given at both.
+  /// Ends the intervals of layers i and i + 1, between whose nodes at x the motion fails, where a
+  /// motion is found valid. Both nodes keep the same share of their way from the given path.
   void give_way(std::size_t i, const std::vector<double>& x, std::vector<CoordinateBox>& boxes) {
     constexpr int kQueries = 4;
     constexpr double kLeast = 1e-5;  // rad
@@ -308,21 +314,21 @@ class Refinery {
   }
 
   Judge* judge_;
-  std::vector<TrajectoryRow> given_;  // phi: the coordinate
+  std::vector<TrajectoryRow> given_;  // phi holds the coordinate
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
   bool fixed_start_;
   const Redundancy* redundancy_;
-  std::vector<bool> jumps_;  // by layer: to it or from it
+  std::vector<bool> jumps_;  // by layer: the path jumps to it or from it
   Budget budget_;
 };
 
-/// Moves rows to the nearest nodes that keep what refinement keeps besides, or are valid at least; false where one has neither
-/// nearby. Edges are not asked.
+/// Moves rows to the nearest nodes that keep the margins of refinement, or are at least valid;
+/// returns false if a row has neither nearby. Edges are not tested.
 bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
-  int left = 1000;  // nodes to ask: in a narrow passage no layer has one
+  int left = 1000;  // nodes to test: in a narrow passage no layer has a valid one
   const auto moved_clear = [&](int layer, TrajectoryRow& row) {
     for (int step = 1; step <= kSteps; ++step)
       for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
@@ -344,28 +350,31 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
   return true;
 }
 
-/// A path of a lattice that is up to four times as coarse along the path and finer in its coordinate, laid over the layers; its
-/// nodes are valid, its edges need not be. None where there is none, where even its optimum without obstacles is not cheaper than
-/// `to_beat`, and where a layer has no valid node nearby.
+/// Returns a path of a lattice that is up to four times as coarse along the path and finer in its
+/// coordinate, with a row at each layer of the problem; its nodes are valid, its edges need not be.
+/// None if there is no such path, if even its optimum without obstacles is not cheaper than
+/// `to_beat`, or if a layer has no valid node nearby.
 std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem,
                                                       const Redundancy& redundancy, Judge& judge, const SmoothObjective& objective,
                                                       double to_beat, const Budget& budget) {
   Problem coarse = problem;
-  // Longer steps than 20 mm reach so many angles that the search takes longer than it is worth.
+  // Steps longer than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
   const double times = std::min(kMostTimes, kLongest / problem.resolution.ds);
   if (times < 2) return std::nullopt;
   coarse.resolution.ds *= times;
   coarse.resolution.dalpha *= times;  // so that travels are the same
   coarse.resolution.dphi = std::min(problem.resolution.dphi, kAngle);
-  // It is a seed alone, and asked about on the layers themselves: what moves between its own are asked takes most of the time.
+  // The path is only a seed, and is validated on the problem's own layers: validating motions
+  // between the coarse layers would take most of the time.
   coarse.limits.edges = EdgeMode::kNodes;
   coarse.limits.tool_path_error.reset();
   coarse.limits.tool_angle_error.reset();
   coarse.limits.step_error.reset();
   coarse.limits.joint_step *= times;
   const ToolPath path = problem_path(coarse, robot.arm().chain, budget);
-  // Each waypoint is a layer: where these are dense the nodes are those of the first path, as far as they are not of a finer grid.
+  // Each waypoint is a layer: where waypoints are dense, the nodes are those of the first path,
+  // unless the grid is finer.
   if (!redundancy.has_grid() && 4 * path.size() > 3 * redundancy.lattice().layers()) return std::nullopt;
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
@@ -407,7 +416,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   return rows;
 }
 
-/// Along one coordinate.
+/// Refines a path along one coordinate.
 Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
                      const std::vector<TrajectoryRow>& rows, const RefineOptions& options, bool second_seed, const Budget& budget) {
   const Lattice& lattice = redundancy.lattice();
@@ -419,7 +428,7 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
   SmoothObjective objective;
   objective.weights = lattice.cost_scale();
   objective.most_change = 0.98 * redundancy.most_change();
-  // The other metrics are largest moves. A power of 32 takes twice as long for 0.2 % less.
+  // The other metrics are largest moves. A power of 32 would take twice as long for 0.2 % less.
   constexpr int kNearLargest = 16;
   if (lattice.cost().metric != CostMetric::kL2) objective.power = kNearLargest;
   objective.roll_is_coordinate = redundancy.is_roll();
@@ -432,7 +441,7 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
     objective.jumps = redundancy.jumps(from);
-    // Less smoothness where that alone makes a path dearer than the lattice's.
+    // Try less smoothness if smoothness alone makes the path dearer than the lattice's.
     const int attempts = result.refined ? 1 : 3;
     for (int attempt = 0; attempt < attempts; ++attempt, objective.bending /= 10) {
       auto refined = refinery.run(objective, result.rounds);
@@ -461,7 +470,7 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
   return result;
 }
 
-/// Whether the tool turns no faster along the rows of a path than limits.roll_slope allows.
+/// Returns true if the tool turns no faster along the rows of a path than limits.roll_slope allows.
 bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& rows, const Limits& limits) {
   const std::vector<double> rolls = rolls_of(rows);
   for (std::size_t i = 0; i + 1 < rolls.size(); ++i) {
@@ -471,7 +480,8 @@ bool keeps_roll_slope(const ToolPath& path, const std::vector<TrajectoryRow>& ro
   return true;
 }
 
-/// Of a path along which joint 7 rests: as it does, where the tool then turns no faster than it may.
+/// Refines a path along which joint 7 rests, and keeps it at rest. None if joint 7 does not rest,
+/// or if the tool would then turn faster than it may.
 std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
                                       const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
   constexpr double kRests = 1e-3;  // rad; rows of arms that are not exact are not quite at rest
@@ -483,7 +493,8 @@ std::optional<Refined> refine_coaxial(const PreparedRobot& robot, const Problem&
   return keeps_roll_slope(path, refined.rows, problem.limits) ? std::optional(std::move(refined)) : std::nullopt;
 }
 
-/// Of an arm with two coordinates: along one, then the other, for as long as that is worth it.
+/// Refines a path of an arm with two coordinates: along one, then the other, for as long as that is
+/// worth it.
 Refined refine_by_turns(const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
                         const std::vector<TrajectoryRow>& rows, const RefineOptions& options, const Budget& budget) {
   constexpr int kMostTurns = 4;

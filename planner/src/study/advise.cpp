@@ -19,7 +19,7 @@ namespace {
 using Change = Advice::Change;
 using Outcome = Advice::Outcome;
 
-/// A limit of a problem by name, as a number that may be unset.
+/// Access to a limit of a problem, as a number that may be unset.
 struct LimitPlace {
   std::function<std::optional<double>(const Limits&)> get;
   std::function<void(Limits&, double)> set;
@@ -64,14 +64,14 @@ LimitPlace place_of(Change change) {
   }
 }
 
-/// Whether a limit is relaxed by making it less.
+/// Returns true if a smaller value relaxes the limit.
 bool relaxed_downwards(Change change) {
   return change == Change::kClearance || change == Change::kJointMargin || change == Change::kManipulability ||
          change == Change::kToolSpeed || change == Change::kToolTurnSpeed;
 }
 
-/// In what order changes are tried, the dear ones last: those that leave the lattice as large as it is, a tool that may turn, more
-/// edges, more nodes, and more edges by far.
+/// Returns the rank in which changes are tried, the expensive ones last: changes that leave the
+/// lattice as large as it is, a tool that may turn, more edges, more nodes, far more edges.
 int dearness(Change change) {
   switch (change) {
     case Change::kFreeRoll:
@@ -109,7 +109,7 @@ class Adviser {
     for (const SceneObject& object : problem_.scene)
       if (object.name != problem_.path_frame) try_once({.change = Change::kWithoutObject, .object = object.name});
     move(problem_.path_frame);
-    // Last, since it says something about the process, too.
+    // Last, because it changes the process as well.
     if (!problem_.roll && !problem_.limits.step_error && trial_.prepare().arm_class().srs) try_once({.change = Change::kFreeRoll});
     try_all();
     std::stable_sort(advice_.begin(), advice_.end(), [](const Advice& a, const Advice& b) {
@@ -122,8 +122,8 @@ class Adviser {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// What by_cause() and run() have proposed: the dear trials last, and each for a third of the time that is left at most, so that
-  /// no one trial keeps others from being tried.
+  /// Tries what by_cause() and run() have proposed, the expensive trials last, each for at most a
+  /// third of the time that is left, so that no trial keeps others from being tried.
   void try_all() {
     std::vector<std::size_t> order(advice_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -199,7 +199,7 @@ class Adviser {
     }
   }
 
-  /// What stands in the way of the given rolls may not stand in that of others.
+  /// Proposes a free roll: what blocks the given rolls may not block others.
   void free_roll() {
     if (problem_.roll && !problem_.roll->circle() && !problem_.start) try_once({.change = Change::kFreeRoll});
   }
@@ -211,10 +211,10 @@ class Adviser {
     return std::any_of(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
   }
 
-  /// How long the trial that is being planned may still take, s.
+  /// Returns how long the present trial may still take, s.
   [[nodiscard]] double seconds_left() const { return std::chrono::duration<double>(trial_end_ - Clock::now()).count(); }
 
-  /// Plans the problem with the change; an outcome of kUnknown where the time is up.
+  /// Plans the problem with the change. The outcome is kUnknown if the time is up.
   void plan_changed(Advice& advice) {
     advice.outcome = Outcome::kUnknown;
     advice.cost.reset();
@@ -254,13 +254,14 @@ class Adviser {
     }
     PlanResult found;
     try {
-      if (advice.change == Change::kFreeRoll) {  // another arm, whose roll has other limits
+      if (advice.change == Change::kFreeRoll) {  // another arm: its roll has other limits
         found = Planner(std::move(changed)).plan(options_);
       } else {
         trial_.set_problem(std::move(changed));
         found = trial_.plan(options_);
       }
-    } catch (const InputError&) {  // too fine for the memory; a start that does not fit the path that moved
+      // The lattice is too fine for the memory, or a start does not fit the moved path.
+    } catch (const InputError&) {
       advice.outcome = Outcome::kNoHelp;
       return;
     }
@@ -293,19 +294,20 @@ class Adviser {
     propose(std::move(advice), &Adviser::plan_relaxed);
   }
 
-  /// Proposes that the cause's bodies may be deeper in each other, where that is what ends the paths.
+  /// Proposes that the cause's bodies may be deeper in each other, if their depth is what ends the
+  /// paths.
   void deepen(const Cause& cause) {
     for (const std::string& name : cause.bodies)
       if (is_object(name))
         propose({.change = Change::kDepth, .object = name, .from = cause.over.value_or(-*cause.limit)}, &Adviser::plan_relaxed);
   }
-  /// The object, whose bodies that may touch it to a depth may be `factor` times as deep in it.
+  /// Returns the object with all allowed depths multiplied by `factor`.
   [[nodiscard]] static SceneObject deeper(SceneObject object, double factor) {
     for (Allowed& allowed : object.allow)
       if (allowed.depth) *allowed.depth *= factor;
     return object;
   }
-  /// The largest factor up to 8 by which bodies can come deeper into the object at all.
+  /// Returns the largest factor tried, up to 8, by which bodies can be deeper in the object at all.
   [[nodiscard]] double most_deeper(const std::string& name) const {
     const auto object =
         std::find_if(problem_.scene.begin(), problem_.scene.end(), [&](const SceneObject& o) { return o.name == name; });
@@ -318,7 +320,8 @@ class Adviser {
     return 1.1;
   }
 
-  /// First the limit as far off as makes sense; where that solves, the strictest value that does, to a sixteenth of the way.
+  /// Plans with the limit relaxed as far as is sensible; if that solves the problem, bisects for
+  /// the strictest value that does, to a sixteenth of the way.
   void plan_relaxed(Advice& advice) {
     constexpr double kFactor = 8;
     const Change change = advice.change;
@@ -347,7 +350,8 @@ class Adviser {
     propose({.change = Change::kMoveObject, .object = name}, &Adviser::plan_moved);
   }
 
-  /// The shortest way along an axis of the base by which the object helps: 5, 10, 20 mm.
+  /// Finds the shortest move of the object by 5, 10 or 20 mm along an axis of the base frame that
+  /// helps.
   void plan_moved(Advice& best) {
     for (double way = Advice::kMostMove / 4; way <= Advice::kMostMove && best.outcome != Outcome::kSolved; way *= 2)
       for (int axis = 0; axis < 3; ++axis)
@@ -361,7 +365,7 @@ class Adviser {
                                (moved.outcome == Outcome::kSolved ? moved.cost < best.cost : moved.reached_s > best.reached_s));
           if (better) best = std::move(moved);
         }
-    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();  // of no one way
+    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();  // no single move is to be named
   }
 
   const Problem& problem_;
@@ -369,7 +373,7 @@ class Adviser {
   PlanOptions options_;
   Planner trial_;
   Clock::time_point end_, trial_end_;
-  std::vector<Advice> advice_;  // in the order in which those that do as well are told
+  std::vector<Advice> advice_;  // equal outcomes are reported in this order
   std::vector<Trial> trials_;   // of each
 };
 

@@ -16,7 +16,7 @@ namespace swivel {
 
 namespace {
 
-/// Holds rows back until all before them have been delivered.
+/// Delivers rows in order: holds a row back until all before it have been delivered.
 class InOrder {
  public:
   InOrder(std::uint64_t first, const std::function<void(const EpisodeRow&)>& row_done) : next_(first), row_done_(row_done) {}
@@ -24,7 +24,7 @@ class InOrder {
   void add(std::uint64_t k, EpisodeRow row) {
     const std::lock_guard lock(mutex_);
     waiting_.emplace(k, std::move(row));
-    // A row whose delivery throws stays first: those after it would leave a gap.
+    // A row whose delivery throws stays first, because rows delivered after it would leave a gap.
     for (; !waiting_.empty() && waiting_.begin()->first == next_ && !failed_; ++next_, waiting_.erase(waiting_.begin())) {
       failed_ = true;
       row_done_(waiting_.begin()->second);
@@ -44,7 +44,7 @@ class InOrder {
 
 void run_campaign(const PreparedRobot& robot, const Problem& problem, const CampaignOptions& options,
                   const std::function<void(const EpisodeRow&)>& row_done) {
-  // Not owned: it outlives this call.
+  // Not owned: `robot` outlives this call.
   const std::shared_ptr<const PreparedRobot> prepared(std::shared_ptr<void>(), &robot);
   const Planner checked(prepared, problem);
   if (problem.vary.empty() && options.episodes > 1)
@@ -68,8 +68,8 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
     row.offsets = episode_offsets(problem.vary, options.seed, row.episode);
     in_order.add(k, std::move(row));
   };
-  // Taken from a counter and not from the executor's index, which starts threads far apart: rows would wait for long, and be lost
-  // when killed.
+  // Episodes come from a counter and not from the executor's index, which starts threads far apart:
+  // rows would wait for long, and be lost if the process is killed.
   std::atomic<std::uint64_t> next{options.skip};
   std::atomic<bool> stopped{false};
   executor.for_each(static_cast<int>(size - options.skip), [&](int, int worker) {
@@ -93,7 +93,8 @@ void run_campaign(const PreparedRobot& robot, const Problem& problem, const Camp
       const bool answered = result.status == PlanStatus::kSolved
                                 ? result.evidence.tool_path_error
                                 : result.status == PlanStatus::kInfeasible && result.diagnosis.complete;
-      if (!answered) {  // it was stopped, maybe with its verdict known and its columns not
+      // The plan was stopped, maybe with its verdict known and its columns not.
+      if (!answered) {
         stopped = true;
         return;
       }

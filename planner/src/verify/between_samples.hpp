@@ -7,8 +7,9 @@
 
 namespace swivel {
 
-/// The problem as it is asked of samples, from which joints move straight to the next: they are so near each other that motions
-/// are proved within the band by which clearances may be missed.
+/// Returns the problem that samples of a timed motion are checked against: completed by
+/// with_motion_defaults(), with an edge tolerance of at most kVerdictBand. Samples are so near each
+/// other that motions between them can be proved with the band by which clearances may be missed.
 inline Problem problem_of_samples(const Problem& problem) {
   Problem of_samples = with_motion_defaults(problem);
   of_samples.limits.edge_tolerance = std::min(problem.limits.edge_tolerance, kVerdictBand);

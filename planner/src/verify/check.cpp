@@ -33,7 +33,7 @@ namespace {
 constexpr double kPose = 1e-6;                    // m and rad
 constexpr double kLimit = 1e-9;                   // rad
 constexpr double kSame = 1e-9;                    // m along the path
-constexpr double kNear = 1e-3;                    // of a step: at a layer, or at the same place
+constexpr double kNear = 1e-3;                    // of a step: as near as this is at a layer, or the same place
 constexpr double kArmAngle = 1e-3;                // rad
 constexpr PoseDistance kAtWaypoints{1e-3, 0.02};  // where the problem sets no tolerance
 
@@ -41,12 +41,13 @@ double angle_between(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-/// Distance of two poses, m or rad, whichever is more.
+/// Returns the distance of two poses, m or rad, whichever is more.
 double apart(const Pose& a, const Pose& b) {
   return std::max((a.translation() - b.translation()).norm(), angle_between(a, b));
 }
 
-/// What each joint may move on each step of a path, added up: entry i is the sum before layer i.
+/// Returns what each joint may move on the steps of a path, summed up: entry i is the sum over the
+/// steps before layer i, rad. Throws InputError if a speed limit that is needed is missing.
 std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, const ToolPath& path) {
   const Limits& limits = problem.limits;
   const bool timed = limits.tool_speed || limits.tool_turn_speed;
@@ -72,14 +73,16 @@ std::vector<Config> allowed_moves(const Problem& problem, const Chain& chain, co
   return allowed;
 }
 
-/// Every question about collisions.
+/// All collision queries of a check.
 class Contacts {
  public:
-  /// `like`: a world of the same robot.
+  /// Builds the world of the problem, which forgives kVerdictBand, with the shapes of `like`, a
+  /// world of the same robot.
   Contacts(const PreparedRobot& robot, const Problem& problem, const World& like, const Budget& budget)
       : world_(like, problem, budget, kVerdictBand), query_(world_), rule_(world_.edge_rule(robot.radii())), budget_(&budget) {}
   std::optional<World::Query::Clearance> clearance(const Config& q) { return query_.clearance(q); }
-  /// A pair that may touch and is deeper than it may be, and how deep it is at least.
+  /// Returns a pair that is allowed to touch and is deeper than allowed, with a lower bound of its
+  /// depth, m; none if there is none.
   std::optional<std::pair<AllowedPair, double>> too_deep(const Config& q) {
     for (const AllowedPair& allowed : world_.allowed()) {
       if (!allowed.depth) continue;
@@ -113,7 +116,8 @@ class Contacts {
 
 class Check {
  public:
-  /// `like`: a world of the robot. `timed`: the same rows in time, or null.
+  /// Prepares the check of `rows`. `like` is a world of the robot; `timed` holds the same rows with
+  /// times, or is null.
   Check(const PreparedRobot& robot, const Problem& problem, const World& like, const std::vector<TrajectoryRow>& rows,
         const CheckOptions& options, const std::vector<TimedRow>* timed = nullptr)
       : problem_(problem),
@@ -170,10 +174,10 @@ class Check {
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();
-  /// A place of the path that a row can be at.
+  /// A place of the path that a row may be at.
   struct Candidate {
     double place = 0;
-    std::size_t before = 0;  // candidate of the row before that leads here
+    std::size_t before = 0;  // the candidate of the row before from which this one is reached
   };
 
   void fail(const std::string& line) {
@@ -187,7 +191,7 @@ class Check {
     va_end(arguments);
   }
 
-  /// The tool as the path has it: where it stands turned about its own axis, as the row says, turned back.
+  /// Returns the tool's pose without the roll that the row states, as the path has it.
   [[nodiscard]] Pose tool_of(const TrajectoryRow& row) const {
     const Pose tool = chain_.tool(row.q);
     return chain_.free_roll ? rolled(tool, -row.roll) : tool;
@@ -202,7 +206,7 @@ class Check {
   [[nodiscard]] double place(std::size_t k) const { return candidates_[k][chosen_[k]].place; }
   [[nodiscard]] const char* joint_name(std::size_t j) const { return chain_.joint_names[j].c_str(); }
 
-  /// Values and limits of a row.
+  /// Examines the values and joint limits of a row; returns false if it fails.
   bool sound(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
     const bool rates_finite =
@@ -232,7 +236,8 @@ class Check {
     return inside;
   }
 
-  /// The places at a row's s at which the path has the tool's pose, in order. Fails the row where there is none.
+  /// Returns the places at a row's s at which the path has the tool's pose, in order. Fails the row
+  /// if there are none.
   std::vector<Candidate> places_of(std::size_t k) {
     const double s = rows_[k].s;
     const double begin = path_.layer(0).s, end = path_.layer(path_.size() - 1).s;
@@ -253,7 +258,8 @@ class Check {
     };
     const auto at_s = [&](int layer) { return std::abs(path_.layer(layer).s - s) <= kSame; };
     for (int i = first_step_to(s - kSame); i + 1 < path_.size() && path_.layer(i).s <= s + kSame; ++i) {
-      // The tool's place on the step, as far as s leaves it open: all of it where the step only turns. Layers are met exactly.
+      // The tool's place on the step, within what s leaves open: all of it if the step only turns.
+      // Layers are tried first and exactly.
       bool at_layer = at_s(i) && try_place(i);
       if (at_s(i + 1)) at_layer = try_place(i + 1) || at_layer;
       if (at_layer) continue;
@@ -273,7 +279,8 @@ class Check {
     return found;
   }
 
-  /// Where on a rounded step the pose is nearest: by secants, from what a straight step would say.
+  /// Returns the share of a rounded step at which it is nearest to the pose, by secants from the
+  /// answer t for a straight step.
   [[nodiscard]] double nearest_on_curve(int i, double t, const Pose& tool) const {
     const double weight = path_.layer(i).step_angle > 0 ? path_.layer(i).step_angle : 1;
     const auto off = [&](const Pose& from, const Pose& to) {
@@ -293,7 +300,7 @@ class Check {
     return t;
   }
 
-  /// The first step that ends at s or later.
+  /// Returns the first step that ends at s or later.
   [[nodiscard]] int first_step_to(double s) const {
     int low = 0, high = path_.size() - 2;
     while (low < high) {
@@ -306,8 +313,9 @@ class Check {
     return low;
   }
 
-  /// Matches rows to places such that no move fails, where that can be. A row has one place, save where the path comes back to a
-  /// pose while s stands still: of its places those are kept that can be reached from the row before.
+  /// Matches rows to places so that no move fails, if that is possible. A row has one place, unless
+  /// the path returns to a pose while s stands still: then the places are kept that can be reached
+  /// from the row before.
   void choose_places() {
     chosen_.assign(rows_.size(), 0);
     jumps_.assign(rows_.size(), false);
@@ -327,7 +335,8 @@ class Check {
     }
   }
 
-  /// Of the places of row k keeps those that a move leads to which passes; where there is none, that one goes forward to; else all.
+  /// Keeps those places of row k to which a move leads that passes; if there are none, those to
+  /// which a move goes forward; else all.
   void keep_reachable(std::size_t before, std::size_t k) {
     enum Verdict { kPasses, kFails, kGoesBack };
     const std::vector<Candidate>& from = candidates_[before];
@@ -353,7 +362,8 @@ class Check {
       for (std::size_t c = 0; c < to.size(); ++c) {
         const bool stands = neighbours && timed_ && may_rest(begin) && has_same_pose(k) && std::abs(ends[c] - begin) <= kNear;
         const Verdict verdict = stands || (c >= later && reached[c - later]) ? kPasses : ends[c] < begin ? kGoesBack : kFails;
-        // Of equally good places to come from the last one: the way is the shortest.
+        // Among equally good places to come from, the last one counts: from there the way is the
+        // shortest.
         if (verdict <= best[c]) best[c] = verdict, to[c].before = f;
       }
     }
@@ -364,18 +374,19 @@ class Check {
     to.swap(kept);
   }
 
-  /// From row k - 1 to row k.
+  /// Returns the tool's motion from row k - 1 to row k.
   [[nodiscard]] ToolMotion motion_to(std::size_t k) const {
     const std::array<double, 2> rolls{-rows_[k - 1].roll, -rows_[k - 1].roll - roll_change(k)};
     return tool_motion(chain_, rows_[k - 1].q, rows_[k].q, {tools_[k - 1], tools_[k]}, at_waypoints_, options_.margins ? 4 : 1,
                        chain_.free_roll ? rolls : std::array<double, 2>{});
   }
-  /// From a layer to the next.
+  /// Returns true if the move is a step from a layer to the next.
   static bool is_step(double begin, double end) { return std::floor(begin) == begin && end == begin + 1; }
   static bool within(const PoseDistance& deviation, const PoseDistance& tolerance) {
     return deviation.position <= tolerance.position + kPose && deviation.angle <= tolerance.angle + kPose;
   }
-  /// What the lattice's rule bounds on the move from row k - 1, at a layer, to row k, at the next.
+  /// Returns the deviation that the lattice's rule bounds, on the move from row k - 1, at a layer,
+  /// to row k, at the next layer.
   [[nodiscard]] PoseDistance step_deviation(std::size_t k, double layer) const {
     const auto most = [](const std::array<double, 3>& deviation) { return *std::max_element(deviation.begin(), deviation.end()); };
     const Config &from = rows_[k - 1].q, move = rows_[k].q - from;
@@ -384,11 +395,12 @@ class Check {
   }
 
   struct Excess {
-    double by = -kNone;  // rad, beyond what is allowed
+    double by = -kNone;  // rad, above what is allowed
     double share = 0;    // of what is allowed
     std::size_t joint = 0;
   };
-  /// What a joint moves beyond the sum over the steps between two places; a step that is touched counts whole.
+  /// Returns by how much the worst joint moves more than the steps between two places allow in sum;
+  /// a step that is touched counts whole.
   [[nodiscard]] Excess excess(const Config& move, double from, double to) const {
     const auto first = static_cast<std::size_t>(std::min(std::floor(from), path_.size() - 2.0));
     const auto last = std::max(first + 1, static_cast<std::size_t>(std::ceil(to)));
@@ -413,7 +425,7 @@ class Check {
       const double w = chain_.manipulability(row.q);
       if (!(w >= limits_.manipulability - 1e-9)) fail("row %zu: manipulability %.3g is below %.3g", k, w, limits_.manipulability);
     }
-    if (!options_.margins) return;  // all rows at once, later
+    if (!options_.margins) return;  // examine_clearance() tests all rows at once
     if (const auto deep = contacts_.too_deep(row.q))
       fail("row %zu: %s are %.3f mm deep in each other: allowed are %.3f mm", k, contacts_.names(deep->first.pair).c_str(),
            1e3 * deep->second, 1e3 * *deep->first.depth);
@@ -429,7 +441,7 @@ class Check {
            contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.keeps(clearance->pair).node);
   }
 
-  /// Of all rows, whose joints and moves are known to be sound.
+  /// Examines the clearance of all rows and moves, whose joints have passed.
   void examine_clearance() {
     std::vector<Config> joints;
     for (const TrajectoryRow& row : rows_) joints.push_back(row.q);
@@ -444,10 +456,11 @@ class Check {
            found->row, contacts_.names(found->pair).c_str(), 1e3 * std::abs(keeps.node));
   }
 
-  /// By how much rolls may leave what they should keep, rad.
+  /// Returns by how much rolls may exceed their bounds, rad.
   [[nodiscard]] double roll_slack() const { return timed_ ? std::max(kPose, path_.rounding()) : kPose; }
 
-  /// The tool stands turned as far as the waypoints allow; arm angle and branch of a row are those of its joints.
+  /// Examines the labels of a row: the roll, which its waypoints bound, and arm angle and branch,
+  /// which must be those of its joints.
   void examine_labels(std::size_t k) {
     const TrajectoryRow& row = rows_[k];
     if (chain_.tool_may_turn()) {
@@ -472,7 +485,8 @@ class Check {
       fail("row %zu: branch is %d, that of the joints %d", k, row.branch, arm_->branch(row.q));
   }
 
-  /// From row k - 1 to row k. A move that its joints may not make is not examined further.
+  /// Examines the move from row k - 1 to row k. A move that its joints may not make is not examined
+  /// further.
   void examine_move(std::size_t k) {
     const Config &from = rows_[k - 1].q, &to = rows_[k].q;
     const double begin = place(k - 1), end = place(k);
@@ -493,7 +507,7 @@ class Check {
     if (const auto pair = contacts_.on_the_way(from, to)) fail_move(k, *pair);
   }
 
-  /// Fails the move to row k, on which two bodies come too near.
+  /// Fails the move to row k, on which the two bodies come too near.
   void fail_move(std::size_t k, const BodyPair& pair) {
     const double keeps = contacts_.keeps(pair).motion;
     fail(keeps < 0 ? "rows %zu-%zu: %s may come more than %.3f mm deep into each other"
@@ -501,11 +515,12 @@ class Check {
          k - 1, k, contacts_.names(pair).c_str(), 1e3 * std::abs(keeps));
   }
 
-  /// Whether the tool has the same pose at row k - 1 and at row k; it may have turned away and come back between.
+  /// Returns true if the tool has the same pose at row k - 1 and at row k; it may have turned away
+  /// and come back between.
   [[nodiscard]] bool has_same_pose(std::size_t k) const {
     return std::abs(rows_[k].s - rows_[k - 1].s) <= kSame && apart(tools_[k - 1], tools_[k]) <= 1e-9;
   }
-  /// At the ends of the path and at its corners.
+  /// Returns true for a place at one of the ends of the path or at a corner.
   [[nodiscard]] bool may_rest(double place) const {
     const auto near = [&](int layer) { return std::abs(place - layer) <= kNear; };
     return near(0) || near(path_.size() - 1) ||
@@ -557,7 +572,8 @@ class Check {
       return follows(motion, path_, begin, ends, along, waypoints)[0];
     };
     if (passes(along_, at_waypoints_)) return;
-    // By how much: the least tolerance of the position, then of the angle, with which it would pass.
+    // How far it strays: the least tolerance of the position, then of the angle, with which the
+    // move would pass.
     const auto needed = [](double allowed, auto pass) {
       double low = 0, high = allowed;
       while (!pass(high) && high < 1e3) low = high, high *= 2;
@@ -569,7 +585,7 @@ class Check {
     stray(k, {needed(at_waypoints_.position, position), needed(at_waypoints_.angle, angle)});
   }
 
-  /// By how much the tool leaves its pose of row k - 1 on the move to row k, at its farthest.
+  /// Returns how far the tool leaves its pose of row k - 1 on the move to row k, at its farthest.
   [[nodiscard]] PoseDistance sway(std::size_t k) const {
     const ToolMotion motion = motion_to(k);
     PoseDistance most{0, 0};
@@ -580,7 +596,8 @@ class Check {
     return {most.position - motion.error.position, most.angle - motion.error.angle};  // errors of the motion are forgiven
   }
 
-  /// The tool rests at a waypoint. The joints may move all the same, straight from row k - 1 to row k, as long as it stays there.
+  /// Examines a move while the tool rests at a waypoint. The joints may move straight from row k -
+  /// 1 to row k as long as the tool stays there.
   void examine_rest(std::size_t k) {
     const PoseDistance off = sway(k);
     if (options_.margins) {
@@ -609,9 +626,9 @@ class Check {
       fail("rows %zu-%zu: step error %.6g is above %.6g", k - 1, k, error, *limits_.step_error);
   }
 
-  /// Many small moves in one step could add up to a large one. So between any two rows a joint, and the roll of a tool that may
-  /// stand turned, may come no further than the steps touched allow, and one step more, since it may overshoot inside the first and
-  /// the last.
+  /// Examines how far a joint, and the roll of a tool that may turn, comes between any two rows:
+  /// many small moves within one step could add up to a large one. It may come no further than the
+  /// touched steps allow, plus one step, since it may overshoot inside the first and the last.
   void examine_travel() {
     for (std::size_t j = 0; j < kDof; ++j) {
       const auto joint = static_cast<Eigen::Index>(j);
@@ -620,21 +637,21 @@ class Check {
           [&](std::size_t k) { return rows_[k].q[joint]; }, [&](std::size_t layer) { return allowed_[layer][joint]; });
     }
     if (!chain_.free_roll) return;
-    std::vector<double> rolls;  // without jumps of whole turns
+    std::vector<double> rolls;  // unwrapped
     for (std::size_t k = 0; k < rows_.size(); ++k) rolls.push_back(k == 0 ? rows_[k].roll : rolls.back() + roll_change(k));
     examine_travel(
         "the roll", "roll_slope", kArmAngle, [&](std::size_t k) { return rolls[k]; },
         [&](std::size_t layer) { return limits_.roll_slope * path_.layer(static_cast<int>(layer)).travel; });
   }
-  /// `value`: of a row. `allowed`: the way that is allowed up to a layer.
+  /// Examines value(row) by the greatest travel allowed(layer) up to a layer.
   template <class Value, class Allowed>
   void examine_travel(const std::string& what, const char* limits, double forgiven, const Value& value, const Allowed& allowed) {
     for (const double sign : {1.0, -1.0}) {
-      double least = kNone;  // of sign * value less what was allowed up to there
+      double least = kNone;  // least of sign * value minus what was allowed up to there
       std::size_t since = 0;
       for (std::size_t k = 0; k < rows_.size(); ++k) {
         if (!examined(k)) continue;
-        if (jumps_[k]) least = kNone;  // said already
+        if (jumps_[k]) least = kNone;  // reported already
         const auto first = static_cast<std::size_t>(std::min(std::floor(place(k)), path_.size() - 2.0));
         const auto last = static_cast<std::size_t>(std::ceil(place(k)));
         const double at = sign * value(k), step = allowed(first + 1) - allowed(first);
@@ -662,7 +679,8 @@ class Check {
     return problem_.cost.metric == CostMetric::kL2 ? std::sqrt(l2) : most;
   }
 
-  /// Of each row for half of the path to the rows before and after it.
+  /// Returns the cost of the rolls: each row's, weighted with half of the path to the rows before
+  /// and after it.
   [[nodiscard]] double cost_of_roll() const {
     double sum = 0;
     for (std::size_t k = 1; k < rows_.size(); ++k)
@@ -676,7 +694,7 @@ class Check {
   const CheckOptions& options_;
   const Limits& limits_;
   const Chain& chain_;
-  const SrsArm* arm_;  // null: the arm has no arm angle, and phi and branch of rows are for reports alone
+  const SrsArm* arm_;  // null: no arm angle; phi and branch of rows are for reports alone
   const std::vector<TrajectoryRow>& rows_;
   const std::vector<TimedRow>* timed_;
   ToolPath path_;
@@ -685,7 +703,7 @@ class Check {
   std::optional<SrsLattice> lattice_;  // for the estimate of the step error alone
   Contacts contacts_;
   PoseDistance along_, at_waypoints_;
-  std::vector<Pose> tools_;                         // of rows whose joints are finite
+  std::vector<Pose> tools_;                         // identity for rows whose joints are not finite
   std::vector<std::vector<Candidate>> candidates_;  // empty: the row is not examined
   std::vector<std::size_t> chosen_;
   std::vector<bool> jumps_;  // the move to the row is too large for its joints
@@ -701,7 +719,8 @@ CheckResult check_trajectory(const PreparedRobot& robot, const Problem& problem,
   CheckResult result = Check(robot, problem, robot.world(), rows, options).run();
   const bool on_path = result.worst_position <= kPose && result.worst_angle <= kPose;
   if (result.passed || on_path || problem.smooth) return result;
-  // What was planned to be made a motion of follows the rounded path of motions.
+  // Trajectories from which motions are to be made follow the rounded path of
+  // with_motion_defaults().
   const Problem of_motions = with_motion_defaults(problem);
   try {
     CheckResult rounded = Check(robot, of_motions, robot.world(), rows, options).run();

@@ -13,8 +13,9 @@ namespace swivel {
 
 namespace {
 
-/// A motion's samples in time, as a controller takes them that moves joints straight from each to the next: speeds are steady
-/// between samples and change at them. Joints rest before the first sample and after the last.
+/// A motion's samples in time, as executed by a controller that moves joints straight from each to
+/// the next: speeds are constant between samples and change at them. Joints rest before the first
+/// sample and after the last.
 class Samples {
  public:
   explicit Samples(const std::vector<TimedRow>& rows) : rows_(&rows), n_(static_cast<std::ptrdiff_t>(rows.size())) {
@@ -25,7 +26,8 @@ class Samples {
       if (!((rows[k].row.q - rows[k - 1].row.q).lpNorm<Eigen::Infinity>() <= kStill)) sorted.push_back(steps.back());
     }
     if (sorted.empty()) sorted = steps;
-    // Messages state times in whole nanoseconds, and doubles of late times are coarse: steps within that are equal ones.
+    // Messages state times in whole nanoseconds, and doubles of late times are coarse: steps that
+    // differ by no more than that count as equal.
     const double same =
         2e-9 + 4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(rows.front().t), std::abs(rows.back().t));
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -43,32 +45,36 @@ class Samples {
   [[nodiscard]] const TimedRow& at(std::ptrdiff_t k) const {
     return (*rows_)[static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(k, 0, n_ - 1))];
   }
-  /// The median of the steps in which a joint moves, s.
+  /// Returns the median of the steps in which a joint moves, s.
   [[nodiscard]] double usual_step() const { return usual_; }
-  /// From sample k - 1 to sample k, s.
+  /// Returns the time from sample k - 1 to sample k, s.
   [[nodiscard]] double step(std::ptrdiff_t k) const { return k < 1 || k >= n_ ? usual_ : steps_[static_cast<std::size_t>(k)]; }
-  /// From sample k - 1 to sample k.
+  /// Returns the speed from sample k - 1 to sample k, rad/s.
   [[nodiscard]] Config speed(std::ptrdiff_t k) const { return (at(k).row.q - at(k - 1).row.q) / step(k); }
-  /// The usual step at sample k, s: that of the motion, or what steps on one side of the sample usually take where that is less
-  /// than half of it, as where a motion of few samples goes on with many.
+  /// Returns the usual step at sample k, s: that of the motion, or the median of the steps on one
+  /// side of the sample if that is less than half of it, as where a motion of few samples goes on
+  /// with many.
   [[nodiscard]] double usual_step(std::ptrdiff_t k) const {
     return k < 0 || k >= n_ ? usual_ : usual_at_[static_cast<std::size_t>(k)];
   }
-  /// At sample k: the change of speed there, made within the time from the middle of the step before to the middle of the step
-  /// after, or within a usual step where that is less. So a gap in time leaves no more time for a change than any step does.
+  /// Returns the acceleration at sample k, rad/s^2: the change of speed there, made within the time
+  /// from the middle of the step before to the middle of the step after, or within a usual step if
+  /// that is less. So a gap in time leaves no more time for a change than any step does.
   [[nodiscard]] Config acceleration(std::ptrdiff_t k) const {
     return (speed(k + 1) - speed(k)) / std::min((step(k) + step(k + 1)) / 2, usual_step(k));
   }
-  /// Between samples k and k + 1: the change of acceleration, made within the mean of the three steps about them or a usual step.
+  /// Returns the jerk between samples k and k + 1, rad/s^3: the change of acceleration, made within
+  /// the mean of the three steps around it, or within a usual step if that is less.
   [[nodiscard]] Config jerk(std::ptrdiff_t k) const {
     const double usual = std::min(usual_step(k), usual_step(k + 1));
     return (acceleration(k + 1) - acceleration(k)) / std::min((step(k) + step(k + 1) + step(k + 2)) / 3, usual);
   }
-  /// At sample k, over both steps beside it.
+  /// Returns the mean speed over both steps beside sample k, rad/s.
   [[nodiscard]] Config mean_speed(std::ptrdiff_t k) const { return (at(k + 1).row.q - at(k - 1).row.q) / (step(k) + step(k + 1)); }
 
  private:
-  /// The median of three steps on either side of sample k, the shorter one, where it is less than half of the motion's usual step.
+  /// Returns the median of three steps on the side of sample k where it is shorter, s, if that is
+  /// less than half of the motion's usual step; else the usual step.
   [[nodiscard]] double usual_about(std::ptrdiff_t k) const {
     const auto median = [&](std::ptrdiff_t first) {
       const double a = step(first), b = step(first + 1), c = step(first + 2);
@@ -85,7 +91,7 @@ class Samples {
   double usual_ = 0;
 };
 
-/// Whether times ascend.
+/// Returns true if times ascend; otherwise calls `fail` for each pair that does not.
 bool ascend(const std::vector<TimedRow>& rows, const std::function<void(const std::string&)>& fail) {
   bool all = true;
   for (std::size_t k = 1; k < rows.size(); ++k) {

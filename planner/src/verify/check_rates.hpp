@@ -10,18 +10,20 @@
 
 namespace swivel {
 
-/// Proves the rates of a motion of at least two rows, as check_motion() says, or calls `fail` with one line for each that is not
-/// kept. `tools`: the tool at each row. None where times do not ascend: nothing can be said of rates then. Throws InputError as
-/// joint_rates() does.
+/// Proves the rates of a motion of at least two rows, as check_motion() says, and returns them.
+/// Calls `fail` with one line for each rate that is not kept. `tools` holds the tool's pose at each
+/// row, base frame. Returns none if times do not ascend, because then there are no rates. Throws
+/// InputError as joint_rates() does.
 [[nodiscard]] std::optional<CheckResult::Motion> examine_rates(const Chain& chain, const Limits& limits, const std::string& source,
                                                                const std::vector<TimedRow>& rows, const std::vector<Pose>& tools,
                                                                const std::function<void(const std::string&)>& fail);
 
-/// Speed and acceleration at each row of a motion of at least two, rad/s and rad/s^2, as its joints and times say: what
-/// examine_rates() holds those that are stated against. Times must ascend.
+/// The speed and acceleration of the joints at one row, rad/s and rad/s^2.
 struct RowRates {
   Config v, a;
 };
+/// Returns speed and acceleration at each row of a motion of at least two rows, by its joints and
+/// times. examine_rates() compares the stated ones with these. Times must ascend.
 [[nodiscard]] std::vector<RowRates> rates_of_joints(const std::vector<TimedRow>& rows);
 
 }  // namespace swivel

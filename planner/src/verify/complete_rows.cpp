@@ -33,7 +33,8 @@ template <class... Values>
 
 class Completion {
  public:
-  /// `of_motion`: rows are samples in time, which stand anywhere between layers.
+  /// Finds the places of the rows. `of_motion`: rows are samples in time, which may be anywhere
+  /// between layers. Throws InputError if the last joint is not stated and is not the roll.
   Completion(const PreparedRobot& robot, const Problem& problem, std::vector<TrajectoryRow> rows, const Stated& stated,
              bool of_motion, const Budget& budget)
       : stated_(stated),
@@ -53,16 +54,16 @@ class Completion {
   Completion(const Completion&) = delete;
   Completion& operator=(const Completion&) = delete;
 
-  /// Rows whose tool is nowhere on the path.
+  /// Returns the number of rows whose tool is nowhere on the path.
   [[nodiscard]] std::ptrdiff_t off_path() const { return std::count(on_path_.begin(), on_path_.end(), false); }
 
-  /// The rows with what was not stated.
+  /// Returns the rows, completed with what was not stated. Call once.
   std::vector<TrajectoryRow> rows() {
     label();
     return std::move(rows_);
   }
 
-  /// The same at layers: see rows_at_layers().
+  /// Returns completed rows at the layers of the path, as rows_at_layers() describes. Call once.
   std::vector<TrajectoryRow> at_layers() {
     for (std::size_t k = 0; k < rows_.size(); ++k) {
       if (!on_path_[k]) {
@@ -85,7 +86,7 @@ class Completion {
     if (at_layers) return std::move(rows_);
     std::vector<TrajectoryRow> laid;
     std::vector<std::size_t> made;
-    std::size_t k = 0;  // the last row at the layer or before it
+    std::size_t k = 0;  // the last row at or before the layer
     for (int layer = 0; layer <= last; ++layer) {
       budget_.poll();
       while (k + 1 < rows_.size() && place_[k + 1] <= layer) ++k;
@@ -109,7 +110,7 @@ class Completion {
     std::ptrdiff_t before = -1;
   };
 
-  /// The tool without what the file states of its turn.
+  /// Returns the tool's pose without the turn that the file states.
   [[nodiscard]] Pose tool_of(const TrajectoryRow& row) const {
     Config q = row.q;
     if (!stated_.last_joint) q[kDof - 1] = 0;
@@ -130,7 +131,7 @@ class Completion {
       on_path_[k] = !fits[k].empty();
     }
     const std::vector<bool> in_order = match(fits);
-    // The others between those beside them.
+    // The other rows get places between those of their neighbours.
     const double end = path_.size() - 1;
     std::vector<double> next(n + 1, end);
     for (std::size_t k = n; k-- > 0;) next[k] = in_order[k] ? place_[k] : next[k + 1];
@@ -144,7 +145,7 @@ class Completion {
       if (on_path_[k]) {
         const auto beyond = [&](double place) { return std::max({before - place, place - next[k], 0.0}); };
         place_[k] = *std::min_element(fits[k].begin(), fits[k].end(), [&](double a, double b) { return beyond(a) < beyond(b); });
-        // By rounding alone.
+        // The place may be out of order by rounding alone.
         const double inside = std::clamp(place_[k], before, next[k]);
         if (std::abs(places_.s_at(inside) - places_.s_at(place_[k])) <= kSameS && places_.fits_at(tools_[k], inside))
           before = place_[k] = inside;
@@ -158,11 +159,12 @@ class Completion {
       if (on_path_[k]) move_to_layer(k);
   }
 
-  /// Gives as many rows as can be places that never go back along the path: the longest non-decreasing sequence with at most one of
-  /// the places of each row. Of several, each row as early on the path as can be. Returns which rows these are.
+  /// Gives as many rows as possible places that never go back along the path: the longest
+  /// non-decreasing sequence with at most one of the places of each row. If there are several, each
+  /// row comes as early on the path as possible. Returns which rows have got places.
   std::vector<bool> match(const std::vector<std::vector<double>>& fits) {
     std::vector<Link> links;
-    std::vector<std::ptrdiff_t> ends;  // of sequences of each length, the one that ends earliest
+    std::vector<std::ptrdiff_t> ends;  // for each length, the end of the sequence that ends earliest
     for (std::size_t k = 0; k < fits.size(); ++k)
       for (auto place = fits[k].rbegin(); place != fits[k].rend(); ++place) {
         const auto end = std::upper_bound(ends.begin(), ends.end(), *place, [&](double value, std::ptrdiff_t link) {
@@ -184,8 +186,8 @@ class Completion {
     return in_order;
   }
 
-  /// A row that has a layer's pose stands at the layer, unless it is of a motion, or other rows are so near that they might as
-  /// well.
+  /// Moves row k to a layer whose pose its tool has, unless the row belongs to a timed motion or
+  /// other rows are so near that they could be at the layer as well.
   void move_to_layer(std::size_t k) {
     const double layer = std::round(place_[k]);
     if (place_[k] == layer || !places_.fits_at(tools_[k], layer)) return;
@@ -205,7 +207,8 @@ class Completion {
     return path_.layer(i).travel + (place - i) * (path_.layer(i + 1).travel - path_.layer(i).travel);
   }
 
-  /// The row at a layer between row k and the next.
+  /// Returns a row at a layer between row k and the next row. Throws InputError if Newton's method
+  /// finds no joints near those between the two.
   [[nodiscard]] TrajectoryRow between(std::size_t k, int layer) const {
     const double begin = travel(place_[k]), share = (travel(layer) - begin) / (travel(place_[k + 1]) - begin);
     TrajectoryRow row = rows_[k];
@@ -230,7 +233,8 @@ class Completion {
            path_.layer(layer).s);
   }
 
-  /// The image of an angle by whole turns that is nearest to another, within bounds where there is one.
+  /// Returns the angle plus the number of whole turns that brings it nearest to `other`, within
+  /// bounds if there are any.
   [[nodiscard]] static double image_near(double angle, double other, const std::optional<Roll>& bounds) {
     const double nearest = other + wrap_angle(angle - other);
     if (!bounds) return nearest;
@@ -265,7 +269,7 @@ class Completion {
     label_posture(k);
   }
 
-  /// Arm angle and branch, where they are not stated.
+  /// Fills in arm angle and branch, if they are not stated.
   void label_posture(std::size_t k) {
     TrajectoryRow& row = rows_[k];
     if (class_.srs) {
@@ -291,7 +295,8 @@ class Completion {
   const ArmClass& class_;
   std::vector<TrajectoryRow> rows_;
   ToolPath path_;
-  double first_turn_;  // rad, near which the last joint begins where it is worked out
+  // rad; if the last joint is not stated, its first value is the one nearest to this
+  double first_turn_;
   bool any_turn_;
   PlacesOnPath places_;
   std::vector<Pose> tools_;
@@ -304,7 +309,8 @@ class Completion {
 
 namespace {
 
-/// On the problem's own path; or on the rounded one of motions, where more of the rows are on that.
+/// Returns the rows placed on the problem's own path, or on the rounded path of
+/// with_motion_defaults() if more of the rows are on that.
 std::unique_ptr<Completion> completion_of(const PreparedRobot& robot, const Problem& problem,
                                           const std::vector<TrajectoryRow>& rows, const Stated& stated, bool of_motion,
                                           const Budget& budget) {

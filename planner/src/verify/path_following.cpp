@@ -10,14 +10,14 @@ namespace {
 
 constexpr double kForgiven = 1e-6;  // m and rad
 
-/// Values of a parameter in [0, 1]; empty where low > high.
+/// An interval of a parameter in [0, 1]; empty if low > high.
 struct Interval {
   double low = 1, high = 0;
   [[nodiscard]] bool empty() const { return !(low <= high); }
   void cut(const Interval& other) { low = std::max(low, other.low), high = std::min(high, other.high); }
 };
 
-/// Where |a + u (b - a)| <= radius.
+/// Returns the u in [0, 1] with |a + u (b - a)| <= radius.
 Interval where_within(const Vector3d& a, const Vector3d& b, double radius) {
   const Vector3d d = b - a;
   const double dd = d.squaredNorm(), ad = a.dot(d), rest = a.squaredNorm() - radius * radius;
@@ -28,14 +28,15 @@ Interval where_within(const Vector3d& a, const Vector3d& b, double radius) {
   return {std::max(0.0, (-ad - root) / dd), std::min(1.0, (-ad + root) / dd)};
 }
 
-/// Axis times angle from a to b, in a's frame.
+/// Returns the rotation vector (axis times angle, rad) from a to b, in a's frame.
 Vector3d rotation_between(const Pose& a, const Pose& b) {
   const Eigen::AngleAxisd turn(a.linear().transpose() * b.linear());
   return turn.angle() * turn.axis();
 }
 
-/// Where the straight motion from a to b is within the tolerance of a fixed pose. It turns by 0.1 rad at most, so that the rotation
-/// from the fixed pose is linear in the parameter.
+/// Returns the part of the straight motion from a to b that is within the tolerance of a fixed
+/// pose. The motion may turn by 0.1 rad at most, so that the rotation from the fixed pose is linear
+/// in the parameter.
 Interval where_within(const Pose& fixed, const Pose& a, const Pose& b, const PoseDistance& tolerance) {
   Interval free{0, 1};
   if (std::isfinite(tolerance.position))
@@ -52,11 +53,12 @@ PoseDistance widened(const PoseDistance& tolerance, const PoseDistance& error) {
   return {tolerance.position + error.position + kForgiven, tolerance.angle + error.angle + kForgiven};
 }
 
-/// Goes along a path from a place on, by straight pieces that turn little and end with each step.
+/// Iterates over a path from a place on, by straight pieces that turn little and end with each
+/// step.
 class Pieces {
  public:
   Pieces(const ToolPath& path, double begin) : path_(&path), to_(begin), end_(pose_at(path, begin)) {}
-  /// False at the end of the path.
+  /// Goes to the next piece; returns false at the end of the path.
   bool next() {
     const int step = static_cast<int>(std::floor(to_));
     if (step + 1 >= path_->size()) return false;
@@ -79,7 +81,7 @@ class Pieces {
   }
 
  private:
-  /// Whether a corner at one of the step's ends is rounded.
+  /// Returns true if a corner at one of the step's ends is rounded.
   [[nodiscard]] bool rounded_near(int step) const {
     const auto& corners = path_->corners();
     const auto first = std::lower_bound(corners.begin(), corners.end(), step,
@@ -106,8 +108,9 @@ ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to,
                        const PoseDistance& tolerance, int fewest, const std::array<double, 2>& rolls) {
   constexpr double kMost = 2048;
   const Config move = (to - from).cwiseAbs();
-  // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j| reach_j, that of its angle half
-  // of (sum |dq_i|)^2; a chord is off by an eighth of it.
+  // The tool stays within reach_j of axis j, so its acceleration is at most sum |dq_i| sum |dq_j|
+  // reach_j, and that of its angle half of (sum |dq_i|)^2. A chord is off by an eighth of the
+  // acceleration.
   double reach = (chain.home.translation() - chain.point[kDof - 1]).norm(), swept = 0;
   for (std::size_t j = kDof; j-- > 0;) {
     swept += move[static_cast<Eigen::Index>(j)] * reach;
@@ -134,8 +137,10 @@ std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double
   const PoseDistance on_the_way = widened(between, motion.error), at_waypoint = widened(waypoints, motion.error);
   std::vector<bool> reached(ends.size(), false);
   const std::size_t parts = motion.poses.size() - 1;
-  // Columns are pieces of the path, cells the parts of the motion in them. left, right: of each part, what can be reached where the
-  // piece starts, ends; below, above: of the piece, what can be reached where the part starts, ends.
+  // The free-space diagram of Alt & Godau. Columns are pieces of the path, cells the parts of the
+  // motion in them. `left` and `right` hold for each part the interval that can be reached where
+  // the piece starts and ends; `below` and `above` hold for the piece the interval that can be
+  // reached where the part starts and ends.
   std::vector<Interval> left(parts), right(parts);
   left[0] = {0, 0};
   bool alive = true;
@@ -176,7 +181,7 @@ PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, d
     for (std::size_t m = 0; m < count; ++m) {
       const Pose& tool = motion.poses[m];
       const Vector3d offset = tool.translation() - start, rotation = rotation_between(piece.start(), tool);
-      // Where the path only turns, the nearest point is that of the nearest orientation.
+      // If the path only turns, the nearest point is the one of the nearest orientation.
       const double length2 = along.squaredNorm(), angle2 = turn.squaredNorm();
       double u = 0;
       if (length2 > 1e-18)

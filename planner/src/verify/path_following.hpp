@@ -10,34 +10,39 @@
 
 namespace swivel {
 
-/// How far two poses are apart, or may be: m and rad; infinite where nothing is asked.
+/// A distance of two poses, or a tolerance of it: m and rad. Infinite stands for no bound.
 struct PoseDistance {
   double position = std::numeric_limits<double>::infinity();
   double angle = std::numeric_limits<double>::infinity();
 };
 
-/// The tool during a joint-linear move, as poses so close together that straight motions between them are within `error` of it.
+/// The tool's motion during a joint-linear move, as poses so close together that straight motions
+/// between them are within `error` of it.
 struct ToolMotion {
   std::vector<Pose> poses;
   PoseDistance error;
 };
-/// Cuts the move so that the error stays below 1 % of the tolerance (but 1e-6 m and rad, and 2,048 parts, are fine enough).
-/// `ends`: the tool's poses at both. `fewest` parts, for those who measure. `rolls`: by which the tool is turned about its own z
-/// axis besides, at both.
+/// Returns the tool's motion during a joint-linear move, cut so finely that the error stays below 1
+/// % of the tolerance, or 1e-6 m and rad, with at most 2,048 parts. `ends` are the tool's poses at
+/// both ends; `fewest` is the least number of parts. At both ends `rolls`, rad, turn the tool about
+/// its own z axis; they are interpolated in between and already contained in `ends`.
 [[nodiscard]] ToolMotion tool_motion(const Chain& chain, const Config& from, const Config& to, const std::array<Pose, 2>& ends,
                                      const PoseDistance& tolerance, int fewest = 4, const std::array<double, 2>& rolls = {});
 
-/// A place on a tool path is a layer's number plus the fraction of the step from it: 3.5 is half way from layer 3 to layer 4.
+/// Returns the tool pose at a place on a path. A place is a layer's number plus the fraction of the
+/// step from it: 3.5 is half way from layer 3 to layer 4.
 [[nodiscard]] Pose pose_at(const ToolPath& path, double place);
 
-/// For each of the places `ends` (ascending, none before `begin`): whether tool and path can be run through together, neither ever
-/// going back, from (first pose, begin) to (last pose, end), such that they are always within `between` of each other, and within
-/// `waypoints` where the path passes a waypoint on the way. That is whether their Frechet distance is that small: Alt & Godau 1995.
-/// Errors of the motion and 1e-6 m and rad are forgiven.
+/// Returns for each of the places `ends` (ascending, none before `begin`) whether tool and path can
+/// be traversed together, neither ever going back, from (first pose, begin) to (last pose, end),
+/// always within `between` of each other, and within `waypoints` where the path passes a waypoint
+/// on the way. That is whether their Frechet distance is that small: Alt & Godau 1995. Errors of
+/// the motion and 1e-6 m and rad are forgiven.
 [[nodiscard]] std::vector<bool> follows(const ToolMotion& motion, const ToolPath& path, double begin, std::span<const double> ends,
                                         const PoseDistance& between, const PoseDistance& waypoints);
 
-/// The largest distance of the motion's poses from the path between two places, and the largest angle at the nearest points.
+/// Returns the largest distance of the motion's poses from the path between two places, and the
+/// largest angle at the nearest points.
 [[nodiscard]] PoseDistance largest_deviation(const ToolMotion& motion, const ToolPath& path, double begin, double end);
 
 }  // namespace swivel

@@ -21,7 +21,8 @@ PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, b
   while (leaves_ * kLeaf < steps) leaves_ *= 2;
   const double infinity = std::numeric_limits<double>::infinity();
   boxes_.assign(2 * leaves_, {Vector3d::Constant(infinity), Vector3d::Constant(-infinity)});
-  // Layers lie on the curve, which leaves the polyline by `rounding`; so does what lies between them.
+  // Layers lie on the curve, which leaves the polyline by up to `rounding`, and so does the curve
+  // between them.
   const Vector3d aside = Vector3d::Constant(aside_);
   for (std::size_t i = 0; i < steps; ++i)
     for (const std::size_t layer : {i, i + 1}) {
@@ -35,7 +36,7 @@ PlacesOnPath::PlacesOnPath(const ToolPath& path, bool curved, double rounding, b
                     boxes_[2 * node].high.cwiseMax(boxes_[2 * node + 1].high)};
 }
 
-/// A lower bound on the distance of a point from a step of the path, m.
+/// Returns a lower bound of the distance of a point from a step of the path, m.
 double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
   const Vector3d from = path_->layer(step).tool.translation(), along = path_->layer(step + 1).tool.translation() - from;
   const double length2 = along.squaredNorm();
@@ -43,7 +44,7 @@ double PlacesOnPath::least_distance(int step, const Vector3d& point) const {
   return (point - from - t * along).norm() - aside_;
 }
 
-/// What takes a pose to the tool, m and rad.
+/// Returns the displacement from a pose to the tool: translation, m, and rotation vector, rad.
 PlacesOnPath::Vector6 PlacesOnPath::off(const Pose& there, const Pose& tool) const {
   const Eigen::AngleAxisd turn(there.linear().transpose() * (any_turn_ ? rolled(tool, -roll_between(there, tool)) : tool).linear());
   Vector6 d;
@@ -56,7 +57,8 @@ bool PlacesOnPath::fits_at(const Pose& tool, double place) const {
   return d.head<3>().norm() <= kOnPath && d.tail<3>().norm() <= kOnPath;
 }
 
-/// Where on a step, between two shares of it, the tool is nearest: Gauss-Newton, from what a straight step would say.
+/// Returns the share of a step, between `low` and `high`, at which the path is nearest to the tool,
+/// by Gauss-Newton from the answer for a straight step.
 double PlacesOnPath::share_of(int step, const Pose& tool, double low, double high) const {
   const PathLayer& from = path_->layer(step);
   const Vector3d along = path_->layer(step + 1).tool.translation() - from.tool.translation();
@@ -86,7 +88,7 @@ void PlacesOnPath::search(std::size_t node, const Vector3d& point, const Reaches
     for (int i = first; i < first + static_cast<int>(kLeaf) && i + 1 < path_->size(); ++i) visit(i);
     return;
   }
-  // The nearer half first.
+  // The nearer half comes first.
   const bool swapped = boxes_[2 * node + 1].distance(point) < boxes_[2 * node].distance(point);
   search(2 * node + (swapped ? 1 : 0), point, reaches, visit);
   search(2 * node + (swapped ? 0 : 1), point, reaches, visit);

@@ -7,32 +7,37 @@
 
 namespace swivel {
 
-/// Finds where on a path a tool stands. A place is a layer's number plus the fraction of the step from it, as of pose_at().
+/// Finds the places on a path at which a tool is. A place is a layer's number plus the fraction of
+/// the step from it, as for pose_at().
 class PlacesOnPath {
  public:
-  /// m and rad: a tool this near to the path is on it.
+  /// A tool this near to the path, m and rad, is on it.
   static constexpr double kOnPath = 1e-6;
 
-  /// `curved`: the path is rounded, by at most `rounding` metres from its polyline. `any_turn`: the turn of the tool about its own
-  /// z axis does not count.
+  /// Builds the search tree of a path, which must outlive it. `curved`: the corners of the path are
+  /// rounded, by at most `rounding`, m, from its polyline. `any_turn`: the turn of the tool about
+  /// its own z axis does not matter.
   PlacesOnPath(const ToolPath& path, bool curved, double rounding, bool any_turn);
 
-  /// All places at which the path has the tool's pose, ascending; where s is given, those that have it within 1e-9 m.
+  /// Returns all places at which the path has the tool's pose, ascending; if s, m, is given, only
+  /// those within 1e-9 m of it.
   [[nodiscard]] std::vector<double> fits(const Pose& tool, double s = std::numeric_limits<double>::quiet_NaN()) const;
-  /// The place between two places that comes nearest to the tool; metres and radians count alike.
+  /// Returns the place between `from` and `to` that comes nearest to the tool; metres and radians
+  /// count alike.
   [[nodiscard]] double nearest(const Pose& tool, double from, double to) const;
-  /// Whether the path has the tool's pose there.
+  /// Returns true if the path has the tool's pose at the place.
   [[nodiscard]] bool fits_at(const Pose& tool, double place) const;
-  /// m along the path.
+  /// Returns the distance along the path at a place, m.
   [[nodiscard]] double s_at(double place) const;
-  /// A place that has this s: the first, where the path turns on the spot.
+  /// Returns the place at distance s, m, along the path; the first one if the path turns on the
+  /// spot there.
   [[nodiscard]] double place_at(double s) const;
 
  private:
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   struct Box {
     Vector3d low, high;
-    /// From the tool's position to the box, m.
+    /// Returns the distance of a point from the box, m.
     [[nodiscard]] double distance(const Vector3d& point) const { return (point - point.cwiseMax(low).cwiseMin(high)).norm(); }
   };
   [[nodiscard]] Vector6 off(const Pose& there, const Pose& tool) const;
