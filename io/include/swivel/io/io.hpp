@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files in and out. Every loader throws InputError: one line with file, key or row, what is wrong and what is allowed.
+// Reads and writes files. Every loader throws InputError: one line with file, key or row, what is
+// wrong and what is allowed.
 #pragma once
 #include "swivel/io/files/files.hpp"
 #include "swivel/io/meshes/mesh.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are read, and files that a command writes: all of them, or none.
+// Notes the files that are read, and writes the files of a command: all of them, or none.
 #pragma once
 #include <compare>
 #include <cstdint>
@@ -14,37 +14,41 @@
 
 namespace swivel::io {
 
-/// Writes text beside the target and renames it over; a device or pipe is written to.
+/// Writes text to a file beside the target and renames it over the target; a device or pipe is
+/// written to directly. Throws InputError if it cannot be written.
 void write_file(const std::filesystem::path& file, const std::string& text);
 
-/// Which file a name means, through links and whatever folder it is named from: by device and inode, and for a file that is not
-/// there yet by its folder's and its own name.
+/// Identifies the file that a name means, through links and from any folder: by device and inode,
+/// or, for a file that does not exist yet, by its folder's device and inode and its own name.
 struct FileIdentity {
   std::uint64_t device = 0, inode = 0;
-  std::string name;  ///< empty for a file that is there
+  std::string name;  ///< empty for a file that exists
   friend auto operator<=>(const FileIdentity&, const FileIdentity&) = default;
 };
 
-/// Notes every file that the loaders above read on this thread while it lives: what no output may replace, and what a campaign's
-/// rows hang on. One at a time on a thread.
+/// Notes every file that the loaders of this library read on this thread while it lives: files that
+/// no output may replace, and that determine the rows of a campaign. There may be one at a time on
+/// a thread; the constructor throws std::logic_error for a second.
 class InputFiles {
  public:
-  /// Contents: whether to take them in as well, which costs a pass over every file.
+  /// Whether to hash the contents of the files too, which costs a pass over every file.
   enum class Contents { kIgnore, kHash };
   explicit InputFiles(Contents contents = Contents::kIgnore);
   ~InputFiles();
   InputFiles(const InputFiles&) = delete;
   InputFiles& operator=(const InputFiles&) = delete;
 
+  /// A file that was read.
   struct File {
     std::filesystem::path name;            ///< as it was opened
     std::optional<FileIdentity> identity;  ///< unset for pipes and devices
-    std::uint64_t hash = 0;                ///< FNV-1a, 64 bits
+    std::uint64_t hash = 0;                ///< FNV-1a, 64 bits; 0 with Contents::kIgnore
   };
-  /// In the order they were read; a file that was read twice is here once.
+  /// Returns the files in the order in which they were first read; a file that was read twice is
+  /// listed once.
   [[nodiscard]] const std::vector<File>& files() const { return files_; }
 
-  /// For loaders: the file was read, and this was in it.
+  /// Notes that a file was read, whose contents are `text`. Loaders call it.
   static void note(const std::filesystem::path& file, std::string_view text);
 
  private:
@@ -52,45 +56,55 @@ class InputFiles {
   Contents contents_;
 };
 
-/// Standard output is a pipe that nobody reads any more, as behind `| head`. Who prints ends then, silently.
+/// Thrown when standard output is a pipe that nobody reads any more, as behind `| head`. A program
+/// then ends silently.
 class ReaderLeft : public InputError {
  public:
   ReaderLeft() : InputError("standard output: nobody reads it any more: allowed is one that takes what is printed") {}
 };
-/// True where standard output is a pipe or socket whose reader has left.
+/// Returns true if standard output is a pipe or socket whose reader has closed it.
 [[nodiscard]] bool reader_has_left();
 
-/// The files that a command writes: all of them, or none. Names are judged before the work begins; afterwards stage() lays the
-/// texts beside their targets and writes to pipes and devices, so that a full disk shows, and commit() renames. A link is followed
-/// and what it points to is replaced. Pipes and character devices are written to, never replaced nor removed; the name - is
-/// standard output.
+/// The files that a command writes: all of them, or none. Names are tested before the work begins.
+/// Afterwards stage() writes the texts beside their targets and to pipes and devices, so that a
+/// full disk shows, and commit() renames. A link is followed and its target replaced. Pipes and
+/// character devices are written to, never replaced nor removed. The name - means standard output.
 class OutputFiles {
  public:
-  /// `inputs`: what no output may replace.
+  /// Creates an empty list of outputs. `inputs` are the files that no output may replace.
   explicit OutputFiles(std::vector<InputFiles::File> inputs = {}) : inputs_(std::move(inputs)) {}
-  /// Removes what was staged and not committed.
+  /// Removes the files that were staged and not committed.
   ~OutputFiles();
   OutputFiles(const OutputFiles&) = delete;
   OutputFiles& operator=(const OutputFiles&) = delete;
 
-  /// `option` names the output here and in messages; an empty file name is no output. Throws InputError where the file cannot be
-  /// written, is one of the inputs, or is an output already.
+  /// Adds an output. `option` names it here and in messages; an empty file name means no output.
+  /// Throws InputError if the file cannot be written, is one of the inputs, or is an output
+  /// already.
   void add(const std::string& option, const std::filesystem::path& file);
-  /// After all of these: a folder, which need not be there, for files that are written while the work goes on, outside of this
-  /// class; `is_one` tells their names. Throws InputError where it is no folder, or where one of them is, or would be, one of the
+  /// Tests a folder, which need not exist, for files that are written outside of this class while
+  /// the work goes on. `is_one` tells by name which files these are. Call it after every add().
+  /// Throws InputError if it is not a folder, or if one of these files is, or would be, one of the
   /// inputs or outputs.
   void add_folder(const std::string& option, const std::filesystem::path& folder,
                   const std::function<bool(const std::string&)>& is_one) const;
+  /// Returns true if the option has an output.
   [[nodiscard]] bool wants(const std::string& option) const;
-  /// Whether one of them goes to standard output, by whatever name, so that nothing else should be printed there.
+  /// Returns true if an output goes to standard output, by whatever name, so that nothing else
+  /// should be printed there.
   [[nodiscard]] bool takes_standard_output() const;
-  /// What the file is to hold; nothing where the option has no file. A file without a text is left as it is.
+  /// Sets the text of an output; does nothing if the option has none. A file without a text stays
+  /// as it is.
   void write(const std::string& option, std::string text);
-  /// An earlier file of that name is to go: it would be taken for the answer.
+  /// Marks an earlier file of that name for removal, because it would be mistaken for the answer.
+  /// Pipes and devices stay.
   void remove(const std::string& option);
 
+  /// Writes the texts: those of files beside their targets, then those of pipes and devices. Throws
+  /// InputError if one cannot be written, and ReaderLeft.
   void stage();
-  /// After stage(). Returns the files that were removed. Throws InputError, like stage().
+  /// Renames the staged files to their targets, and removes the files marked for removal, whose
+  /// names it returns. Call it after stage(). Throws InputError if that fails.
   std::vector<std::filesystem::path> commit();
 
  private:
@@ -99,7 +113,7 @@ class OutputFiles {
     std::filesystem::path name, target, staged;
     FileIdentity identity;
     bool stream = false;  ///< a pipe or a device
-    int descriptor = -1;  ///< one of the process's own, for a stream that is its standard output or error
+    int descriptor = -1;  ///< the process's own, if it is standard output or error; else -1
     std::optional<std::string> text;
     bool remove = false;
   };

@@ -9,10 +9,12 @@
 
 namespace swivel::io {
 
-/// STL, OBJ, DAE, PLY, at most 2 million triangles within 1000 m: vertices as stored (no up-axis rotation, as ROS reads them), node
-/// transforms and units applied, all meshes of the file merged; scale per axis, negative mirrors. The same file and scale loaded
-/// twice shares one mesh within `cache`.
+/// Meshes that were loaded before, by canonical file name and scale.
 using MeshCache = std::map<std::string, MeshPtr>;
+/// Loads a mesh from an STL, OBJ, DAE or PLY file of at most 2 million triangles within 1000 m.
+/// Vertices are as stored (no up-axis rotation, as ROS reads them), node transforms and units are
+/// applied, and all meshes of the file are merged. `scale` has a factor for each axis; a negative
+/// one mirrors. If `cache` has this file with this scale, that mesh is returned. Throws InputError.
 [[nodiscard]] MeshPtr load_mesh(const std::filesystem::path& file, const Vector3d& scale, MeshCache& cache);
 
 }  // namespace swivel::io

@@ -8,16 +8,20 @@
 
 namespace swivel::io {
 
-/// Tool path: header x,y,z,qw,qx,qy,qz; at least two rows. Quaternions as written, of length 1 within 1e-3.
+/// Loads a tool path from a CSV file with the header x,y,z,qw,qx,qy,qz, optionally followed by
+/// roll_min,roll_max, and at least two rows; m and rad. Quaternions stay as written and must have
+/// length 1 within 1e-3. Throws InputError.
 [[nodiscard]] std::vector<Waypoint> load_path(const std::filesystem::path& csv);
 
-/// PROBLEM.yaml, docs/formats.md. Unknown keys are errors with the nearest known key named.
+/// Loads a problem file and the files that it names, docs/formats.md. Throws InputError; for an
+/// unknown key it names the nearest known key.
 [[nodiscard]] Problem load_problem(const std::filesystem::path& yaml);
 
-/// The text of a problem file in which the objects of the scene stand as in `placed`, and nothing else is changed: comments, order
-/// and layout stay. Reading it gives the poses of `placed` bit for bit. Throws InputError, in the name of `problem.source`, where
-/// the text does not say a pose in a way that can be edited in place, and where more than objects have moved: waypoints in the
-/// base frame.
+/// Returns the text of a problem file with the scene objects at the poses that they have in
+/// `placed` and nothing else changed: comments, order and layout stay. Loading it gives the poses
+/// of `placed` bit for bit. `text` is the text that `problem` was loaded from. Throws InputError,
+/// in the name of `problem.source`, if the text states a pose in a way that cannot be edited in
+/// place, and if waypoints in the base frame have moved.
 [[nodiscard]] std::string with_poses(const std::string& text, const Problem& problem, const Problem& placed);
 
 }  // namespace swivel::io

@@ -14,26 +14,30 @@
 
 namespace swivel::io {
 
-/// RESULT.json as text, docs/formats.md. Cost, tool-path error and manipulability are null unless solved.
+/// Returns RESULT.json as text, docs/formats.md. Cost, tool-path error and manipulability are null
+/// unless the problem is solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
-/// CERTIFICATE.json, docs/formats.md: a line for each layer.
+/// Returns CERTIFICATE.json as text, docs/formats.md, with a line for each layer.
 [[nodiscard]] std::string to_json(const Cut& cut);
+/// Loads CERTIFICATE.json. Throws InputError for a file that is none. check_cut() verifies what it
+/// says.
 [[nodiscard]] Cut load_cut(const std::filesystem::path& json);
-/// RESULT.json after an internal error: its status is "error".
+/// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
-/// The timeline in Chrome's trace event format, which Perfetto and speedscope open.
+/// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.
 [[nodiscard]] std::string to_trace_json(const Timeline& timeline);
 
-/// What became of a plan's path: null where it was not asked for, or where there is no path.
+/// What followed a plan. A pointer is null if it was not asked for or does not exist.
 struct Aftermath {
   const Refined* refinement = nullptr;
   const TimingResult* motion = nullptr;
-  TimingOptions timing;                         ///< what the motion was asked to keep
-  const std::vector<Advice>* advice = nullptr;  ///< of a problem that has no path
-  const Cut* cut = nullptr;                     ///< that there is no path
-  std::size_t cut_bytes = 0;                    ///< of its file
+  TimingOptions timing;                         ///< the options that the motion was timed with
+  const std::vector<Advice>* advice = nullptr;  ///< for a problem that has no path
+  const Cut* cut = nullptr;                     ///< the certificate that there is no path
+  std::size_t cut_bytes = 0;                    ///< size of the certificate's file
 };
-/// to_json(result) with the keys `refinement`, `motion`, `advice` and `certificate` filled in. docs/formats.md "Result".
+/// Returns RESULT.json as text, as to_json(result) does, with the keys `refinement`, `motion`,
+/// `advice` and `certificate` filled in. docs/formats.md "Result".
 [[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
 
 }  // namespace swivel::io

@@ -11,34 +11,39 @@
 
 namespace swivel::io {
 
-/// What a robot model has of its URDF.
+/// Options for loading a robot model from its URDF.
 struct RobotOptions {
-  std::vector<std::string> without;  ///< links left out, with all that they carry
-  bool soft_limits = true;           ///< joints keep the soft limits of their <safety_controller>, where these are narrower
+  std::vector<std::string> without;  ///< links to leave out, with all that they carry
+  /// joints keep the soft limits of their <safety_controller>, if these are narrower
+  bool soft_limits = true;
 };
 
-/// URDF 1.0 to 1.2 (+ SRDF when not empty). Meshes through package:// (`packages`: name -> folder; else walk up from the URDF),
-/// file://, absolute or relative names. Every element and attribute that states geometry, limits or which joints move is read or
-/// refused; names that the formats do not have are warned of elsewhere (RobotModel::warnings). Visuals, materials, inertias and
-/// what simulators and drivers keep in the file are not read, and may be as wrong as they like.
+/// Loads a robot from a URDF 1.0 to 1.2, and an SRDF if not empty. Meshes have package:// names
+/// (`packages`: name -> folder; else walk up from the URDF), or file://, absolute or relative ones.
+/// Every element and attribute that states geometry, limits or which joints move is read or
+/// refused; elsewhere names that the formats do not have give a warning (RobotModel::warnings).
+/// Visuals, materials, inertias and the data of simulators and drivers are not read, and may be
+/// wrong. Throws InputError.
 [[nodiscard]] std::shared_ptr<const RobotModel> load_robot(const std::filesystem::path& urdf,
                                                            const std::filesystem::path& srdf = {},
                                                            const std::map<std::string, std::filesystem::path>& packages = {},
                                                            const RobotOptions& options = {});
 
-/// The same of texts, as a program holds them: relative names of meshes are those of the current folder.
+/// Loads a robot from the text of a URDF, and of an SRDF if not empty, as load_robot() does from
+/// files. Relative names of meshes are relative to the current folder. Throws InputError.
 [[nodiscard]] std::shared_ptr<const RobotModel> parse_robot(const std::string& urdf, const std::string& srdf = {},
                                                             const std::map<std::string, std::filesystem::path>& packages = {},
                                                             const RobotOptions& options = {});
 
-/// What a URDF has of shapes.
+/// Counts the shapes of a URDF.
 struct ShapeSurvey {
   std::size_t collision = 0;                ///< <collision> elements
   std::size_t visual_meshes = 0;            ///< meshes in <visual> elements
-  std::vector<std::string> missing_meshes;  ///< a message for each mesh of a <collision> that is not found
+  std::vector<std::string> missing_meshes;  ///< a message for each mesh in a <collision> that is not found
 };
 
-/// Links and joints of a URDF (+ SRDF when not empty) without shapes: meshes are not read.
+/// Loads links and joints of a URDF, and an SRDF if not empty, without shapes: meshes are not read.
+/// Fills in `shapes`. Throws InputError.
 [[nodiscard]] std::shared_ptr<const RobotModel> load_kinematics(const std::filesystem::path& urdf,
                                                                 const std::filesystem::path& srdf,
                                                                 const std::map<std::string, std::filesystem::path>& packages,

@@ -10,21 +10,23 @@
 
 namespace swivel::io {
 
-/// Of each of a link's shapes, in their order, what takes its place, in the link's frame; empty: the shape is taken as it is.
+/// By link, for each of its shapes in their order, the shapes that take its place, in the link's
+/// frame; if these are empty, the shape stays.
 using ShapesInstead = std::map<std::string, std::vector<std::vector<PlacedShape>>>;
 
-/// Of which elements the shapes are.
+/// Which elements of a link the shapes replace: <collision>, or <visual>.
 enum class ShapesOf { kCollision, kVisual };
 
-/// The text of a URDF with spheres and capsules in place of some collision shapes, all else as it was; with kVisual, of links whose
-/// visual shapes are given, with collision shapes beside these. A capsule is written as a cylinder between two spheres, which
-/// readers of URDF 1.0 know; robot_bodies() make it one again. Relative names of meshes are made those of `folder`, where the text
-/// is to lie. Throws InputError.
+/// Returns the text of a URDF with spheres and capsules in place of some collision shapes and all
+/// else unchanged. With kVisual, links whose visual shapes are given get collision shapes beside
+/// these. A capsule is written as a cylinder between two spheres, which readers of URDF 1.0 know;
+/// robot_bodies() joins them again. Relative names of meshes are rewritten for `folder`, where the
+/// text is to be stored. Throws InputError.
 [[nodiscard]] std::string urdf_with_shapes(const std::filesystem::path& urdf, const ShapesInstead& instead,
                                            const std::filesystem::path& folder, ShapesOf of = ShapesOf::kCollision);
 
-/// The robot of a URDF with the visual shapes of the links that have no collision shape, as if they were these, and no other
-/// shapes. Throws InputError.
+/// Loads the robot of a URDF with the visual shapes of those links that have no collision shape, as
+/// if they were collision shapes, and with no other shapes. Throws InputError.
 [[nodiscard]] std::shared_ptr<const RobotModel> load_visual_shapes(const std::filesystem::path& urdf,
                                                                    const std::map<std::string, std::filesystem::path>& packages);
 

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What files may say, for editors, validators and the documentation: made of the schema that the reader of problem files asks.
+// Schemas of files, for editors, validators and the documentation, made from the schema that the
+// reader of problem files uses.
 #pragma once
 #include <string>
 
 namespace swivel::io {
 
-/// JSON Schema, draft 7, of a problem file. What takes several values or other files to judge is the reader's alone.
+/// Returns the JSON Schema, draft 7, of a problem file. Conditions on several values or on other
+/// files are not in it; only the reader tests them.
 [[nodiscard]] std::string problem_json_schema();
-/// The same of RESULT.json.
+/// Returns the JSON Schema, draft 7, of RESULT.json.
 [[nodiscard]] std::string result_json_schema();
-/// The same of the summary of a campaign.
+/// Returns the JSON Schema, draft 7, of the summary of a campaign.
 [[nodiscard]] std::string campaign_json_schema();
 
-/// The tables of docs/formats.md in Markdown, each between "<!-- schema NAME -->" and "<!-- /schema -->".
+/// Returns the tables of docs/formats.md in Markdown, each between "<!-- schema NAME -->" and "<!--
+/// /schema -->".
 [[nodiscard]] std::string schema_tables();
 
 }  // namespace swivel::io

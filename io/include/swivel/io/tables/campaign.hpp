@@ -11,34 +11,38 @@
 
 namespace swivel::io {
 
-/// What the rows of a campaign or of placements hang on. Rows of other settings must not be mixed with them.
+/// The settings that determine the rows of a campaign or of placements: version, options, and the
+/// contents of all input files. Rows of other settings must not be mixed with them.
 struct RunSettings {
-  std::vector<std::pair<std::string, std::string>> values;   ///< as "seed", "1"
+  std::vector<std::pair<std::string, std::string>> values;   ///< name and value, such as "seed", "1"
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
-  std::vector<std::string> coordinates;                      ///< whose offsets the rows have: a column each
+  std::vector<std::string> coordinates;                      ///< whose offsets the rows have, a column each
 };
 
-/// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs: they are appended to RESULTS.csv.part as they come, so
-/// that a killed campaign goes on from there. The first line of that file holds the settings.
+/// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs. They are appended to
+/// RESULTS.csv.part as they come, so that a killed campaign can continue from there. The first line
+/// of that file holds the settings.
 class CampaignFile {
  public:
-  /// Opens or creates the .part file and locks it against a second process. A torn last line is dropped.
-  /// Throws InputError, which says what differs, where it is of other settings, or its rows are not the first ones of the shard.
+  /// Opens or creates the .part file of `csv` and locks it against a second process. A torn last
+  /// line is dropped. Throws InputError if the file belongs to other settings, and says what
+  /// differs, or if its rows are not the first ones of the shard.
   CampaignFile(const std::filesystem::path& csv, const RunSettings& settings, const Shard& shard, std::uint64_t episodes);
-  /// Leaves the .part file, but not one without a row.
+  /// Closes the .part file; removes it if it has no row.
   ~CampaignFile();
   CampaignFile(const CampaignFile&) = delete;
   CampaignFile& operator=(const CampaignFile&) = delete;
 
-  /// Found at opening or appended since.
+  /// Returns the rows found at opening and those appended since.
   [[nodiscard]] const std::vector<EpisodeRow>& rows() const { return rows_; }
-  /// Forgets all rows but the first `count`.
+  /// Drops all rows but the first `count`, in the file as well. Throws InputError if that fails.
   void keep(std::size_t count);
-  /// The row is with the operating system when this returns.
+  /// Appends a row; the operating system has it when this returns. Throws InputError if it cannot
+  /// be written.
   void append(const EpisodeRow& row);
   /// The text of RESULTS.csv.
   [[nodiscard]] std::string csv() const;
-  /// RESULTS.csv is written: removes the .part file.
+  /// Removes the .part file; call it once RESULTS.csv is written. Throws InputError if that fails.
   void finish();
 
  private:
@@ -48,21 +52,25 @@ class CampaignFile {
   std::filesystem::path part_;
   std::vector<std::string> coordinates_;
   std::vector<EpisodeRow> rows_;
-  std::vector<std::size_t> ends_;  ///< where each row ends in the file, after the end of what stands before them
+  std::vector<std::size_t> ends_;  ///< ends of rows in the file, after the end of the header
   int descriptor_ = -1;
 };
 
-/// A finished RESULTS.csv of a whole campaign: those of shards are for load_shard().
+/// The contents of a finished RESULTS.csv of a whole campaign. load_shard() reads those of shards.
 struct EpisodeTable {
   std::vector<std::string> coordinates;  ///< whose offsets the rows have
   std::vector<EpisodeRow> rows;
 };
+/// Loads a finished RESULTS.csv of a whole campaign. Throws InputError for any other file, the
+/// results of a shard included.
 [[nodiscard]] EpisodeTable load_rows(const std::filesystem::path& csv);
 
-/// The text of RESULTS.csv. `coordinates`: whose offsets the rows have.
+/// Returns the text of RESULTS.csv. `coordinates` names the coordinates whose offsets the rows
+/// have.
 [[nodiscard]] std::string to_csv(const std::vector<EpisodeRow>& rows, const std::vector<std::string>& coordinates);
 
-/// The answer to `campaign --json -`.
+/// Returns the summary of a campaign as JSON, as `campaign --json` writes it. `held` are the joints
+/// that stood still.
 [[nodiscard]] std::string to_json(const CampaignSummary& summary, const std::vector<HeldJoint>& held);
 
 }  // namespace swivel::io

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Placements out: the table of all. docs/formats.md "Placements".
+// Writes the table of placements. docs/formats.md "Placements".
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace swivel::io {
 
-/// One line a placement, in the order given.
+/// Returns the CSV table of placements with its header, one line for each, in the given order.
 [[nodiscard]] std::string to_csv(const std::vector<PlacementRow>& rows);
 
 }  // namespace swivel::io
