@@ -102,7 +102,7 @@ TEST(ProblemFile, WindowsOfTheRoll) {
   refused("roll: free, ", ", roll: [-2, -1]", ", roll: [4, 5]", {"path.waypoints", "-2 to 5", "less than a turn"});
   refused("roll: free, ", ", roll: [1, 1]", ", roll: [1, 1]", {"path.waypoints", "more than one"});
 
-  // The same in a file.
+  // A problem file that states this.
   folder.folder().write("problems/turns.csv",
                         "x,y,z,qw,qx,qy,qz,roll_min,roll_max\n0.6,-0.1,0.9,1,0,0,0,-2,0.1\n0.6,0.1,0.9,1,0,0,0,0.2,0.2\n");
   const Problem file = folder.load({{"path", "{roll: [-0.5, 1], file: turns.csv}"}});

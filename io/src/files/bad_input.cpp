@@ -14,7 +14,7 @@ void bad_input(const std::string& where, const std::string& what, const std::str
     constexpr std::size_t kMost = 400;
     return text.size() <= kMost ? printable(text) : printable(std::string_view(text).substr(0, kMost)) + " ...";
   };
-  // A file's name at the beginning, a key's at the end; of the one and the other as much as tells them.
+  // A file's name is at the beginning, a key's at the end; enough of both is kept to tell them.
   const auto place = [](std::string_view text) {
     constexpr std::size_t kEach = 1000;
     if (text.size() <= 2 * kEach) return printable(text);

@@ -10,7 +10,7 @@ namespace swivel::io {
 /// Completes "allowed is ..." for sizes in metres (kMostMetres).
 inline constexpr const char* kLengthAllowed = "a number > 0, at most 1000";
 
-/// "<file>:<line>", or the file alone where the line is unknown (< 1).
+/// Returns "<file>:<line>", or the file alone if the line is unknown (< 1).
 [[nodiscard]] std::string at_line(const std::string& file, int line);
 
 }  // namespace swivel::io

@@ -72,7 +72,7 @@ std::vector<std::string> csv_fields(std::string_view line, std::size_t most) {
 
 namespace {
 
-/// The header is one of those known.
+/// Returns the requirement that the header is one of these.
 CsvTable::Header one_of(const std::vector<std::vector<std::string>>& headers) {
   std::string allowed;
   for (const std::vector<std::string>& header : headers) allowed += (allowed.empty() ? "" : " or ") + joined(header);

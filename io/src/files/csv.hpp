@@ -10,42 +10,46 @@
 
 namespace swivel::io {
 
-/// In quotes where it needs them.
+/// Returns a field, in quotes if it needs them.
 [[nodiscard]] std::string csv_field(const std::string& text);
-/// The same on one line, whatever is in it, so that the rows of a file that was cut off can be told apart.
+/// Returns a field, in quotes if it needs them, with control characters replaced by spaces: it
+/// stays on one line, so that a row that was cut off can be recognised.
 [[nodiscard]] std::string csv_line_field(std::string text);
-/// The shortest digits that read back as the same double; nothing where there is none.
+/// Returns the shortest digits that read back as the same double.
 [[nodiscard]] std::string csv_number(double value);
+/// Returns the shortest digits that read back as the same double; empty if there is no value.
 [[nodiscard]] std::string csv_number(const std::optional<double>& value);
 
-/// The fields of a line without its end (RFC 4180), without outer spaces that are not quoted; none where a quote is left open.
-/// Bytes behind a quoted field are part of it. Ends with the field after the first `most`: a field takes many times its bytes.
+/// Returns the fields of a line given without its end (RFC 4180), without outer spaces that are not
+/// quoted; none if a quote is left open. Bytes behind a quoted field belong to it. Stops after
+/// `most` + 1 fields, because a field takes many times its bytes.
 [[nodiscard]] std::vector<std::string> csv_fields(std::string_view line, std::size_t most);
 
 /// A comma-separated table of numbers with a header.
 class CsvTable {
  public:
-  /// Which headers a table may have.
+  /// The headers that a table may have.
   struct Header {
     std::string allowed;  ///< completes "allowed is ..." for an empty file
     /// Throws InputError, prefixed by `where`, for a header that is not allowed.
     std::function<void(const std::vector<std::string>& columns, const std::string& where)> require;
   };
-  /// Blank lines are skipped, spaces about fields and a byte-order mark ignored. Fewer than two rows and more than a million are
-  /// bad input.
+  /// Parses a table. Blank lines are skipped, spaces around fields and a byte-order mark ignored.
+  /// Throws InputError, also for fewer than two rows or more than a million.
   CsvTable(std::string file, std::string_view text, const Header& header);
   CsvTable(const std::filesystem::path& file, const std::vector<std::string>& header)
       : CsvTable(file, std::vector<std::vector<std::string>>{header}) {}
   CsvTable(const std::filesystem::path& file, const std::vector<std::vector<std::string>>& headers);
-  /// Which of the headers it has.
+  /// Returns the index of the table's header among those allowed.
   [[nodiscard]] std::size_t header() const { return header_; }
   [[nodiscard]] const std::vector<std::string>& columns() const { return columns_; }
   [[nodiscard]] std::size_t rows() const { return lines_.size(); }
-  /// One finite number a column.
+  /// Returns a row: one finite number for each column.
   [[nodiscard]] std::span<const double> row(std::size_t k) const {
     return std::span(values_).subspan(k * columns_.size(), columns_.size());
   }
-  /// "<file>:<line>: data row <n> (counted from 1 after the header)"
+  /// Returns the place of a row for messages: "<file>:<line>: data row <n> (counted from 1 after
+  /// the header)".
   [[nodiscard]] std::string where(std::size_t k) const;
 
  private:

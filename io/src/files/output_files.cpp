@@ -26,7 +26,7 @@ FileIdentity identity_of(const struct stat& status) {
   return {status.st_dev, status.st_ino, ""};
 }
 
-/// What a chain of links ends at, whether it is there or not.
+/// Returns the end of a chain of links, whether it exists or not.
 fs::path follow(fs::path file) {
   std::error_code error;
   for (int links = 0; links < 40 && fs::is_symlink(file, error); ++links) file = file.parent_path() / fs::read_symlink(file, error);
@@ -37,7 +37,8 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// A new file beside the target, under a name that no other process and no other thread uses; -1 and errno where there can be none.
+/// Creates a new file beside the target, under a name that no other process or thread uses, and
+/// returns its descriptor; -1 with errno if that fails.
 int open_beside(const fs::path& target, fs::path& name) {
   static std::atomic<unsigned> count{0};
   int descriptor = -1;
@@ -49,7 +50,7 @@ int open_beside(const fs::path& target, fs::path& name) {
   return descriptor;
 }
 
-/// The number of the first error, else 0.
+/// Writes the text and closes the file. Returns the number of the first error, else 0.
 int write_and_close(int descriptor, const std::string& text) {
   int error = write_all(descriptor, text);
   if (close(descriptor) != 0 && error == 0) error = errno;
@@ -104,7 +105,8 @@ void OutputFiles::add(const std::string& option, const fs::path& file) {
   const bool standard = file == "-";
   const bool exists = (standard ? fstat(STDOUT_FILENO, &status) : stat(file.c_str(), &status)) == 0;
   if (!exists && errno != ENOENT) bad_input(where, std::strerror(errno), kWritable);
-  // A file that is one of the process's own streams, as /dev/stdout may be, holds what is printed as well: it is not replaced.
+  // A file that is one of the process's own streams, as /dev/stdout may be, also holds what is
+  // printed: it is not replaced.
   for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
     struct stat own {};
     if (exists && output.descriptor < 0 && fstat(descriptor, &own) == 0 && identity_of(own) == identity_of(status))

@@ -7,7 +7,8 @@
 
 namespace swivel::io {
 
-/// A number that fills the whole word, in any locale; may be infinite or NaN where Value is a float.
+/// Returns the number that fills the whole word, in any locale; none if it does not. May be
+/// infinite or NaN if Value is a float.
 template <class Value>
 std::optional<Value> to_number(std::string_view word) {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
@@ -17,23 +18,23 @@ std::optional<Value> to_number(std::string_view word) {
   return value;
 }
 
-/// The words of a text, one after the other, with the line they stand in.
+/// Iterates over the words of a text and the lines that they are in.
 class Words {
  public:
   explicit Words(std::string_view text, int first_line = 1) : rest_(text), line_(first_line) {}
 
-  /// Empty at the end.
+  /// Returns the next word; empty at the end.
   std::string_view next() {
     skip_space();
     return take(std::min(rest_.find_first_of(kSpace), rest_.size()));
   }
-  /// The word that next() will return.
+  /// Returns the word that next() will return.
   [[nodiscard]] std::string_view peek() const { return Words(*this).next(); }
-  /// What is left of the current line.
+  /// Returns the rest of the current line, and skips it.
   std::string_view rest_of_line() { return take(std::min(rest_.find('\n'), rest_.size())); }
-  /// Everything that was not yet returned.
+  /// Returns everything that was not yet returned.
   [[nodiscard]] std::string_view rest() const { return rest_; }
-  /// Of the word returned last.
+  /// Returns the line of the word returned last.
   [[nodiscard]] int line() const { return line_; }
 
  private:

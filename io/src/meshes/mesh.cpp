@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Appends a surface as placed; vertices that no triangle uses are left out, since they bound nothing.
+/// Appends a placed surface to a mesh, without the vertices that no triangle uses.
 void append(const Surface& surface, const Eigen::Affine3d& placed, TriangleMesh& mesh, const MeshFile& file) {
   if (mesh.triangles.size() + surface.triangles().size() > kMostTriangles)
     file.fail(0, "too many triangles", "at most " + std::to_string(kMostTriangles));
@@ -49,7 +49,7 @@ bool has_area(const TriangleMesh& mesh) {
 
 using Reader = void (*)(const MeshFile&, const PlaceSurface&);
 
-/// By the end of the name, as everyone does; null where it is unknown.
+/// Returns the reader for a file name's ending; null if it is unknown.
 Reader reader_of(const fs::path& file) {
   std::string extension = file.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -67,7 +67,7 @@ MeshPtr read_mesh(const fs::path& path, Reader read, const Vector3d& scale) {
   mesh->source = file.name;
   std::size_t work = 0;
   read(file, [&](const Surface& surface, const Eigen::Affine3d& pose) {
-    // A surface that is placed often costs time even where it adds little.
+    // A surface that is placed often costs time even if it adds little.
     if ((work += surface.points().size()) > 10 * kMostTriangles) file.fail(0, "too many vertices", "fewer parts");
     append(surface, Eigen::Scaling(scale) * pose, *mesh, file);
   });

@@ -18,7 +18,8 @@ namespace {
 using Element = tinyxml2::XMLElement;
 using Eigen::Affine3d;
 
-/// COLLADA 1.4 and 1.5: the triangles and polygons that the scene shows. Names of formats are those of the specification.
+/// Reads COLLADA 1.4 and 1.5: the triangles and polygons that the scene shows. Names of elements
+/// are those of the specification.
 class DaeReader {
  public:
   DaeReader(const MeshFile& file, const PlaceSurface& place) : file_(file), place_(place) {}
@@ -47,13 +48,14 @@ class DaeReader {
     file_.fail(at.GetLineNum(), std::string("<") + at.Name() + "> " + what, allowed);
   }
 
-  /// Depth is bounded by the parser.
+  /// Collects the elements that have an id. The parser bounds the depth of the recursion.
   void index(const Element& element) {
     if (const char* id = element.Attribute("id")) by_id_.emplace(id, &element);
     for (auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) index(*child);
   }
 
-  /// The element that an attribute of the form "#id" names.
+  /// Returns the element that an attribute of the form "#id" names. Throws InputError if there is
+  /// none of this name.
   const Element& target(const Element& from, const char* attribute, std::string_view name) const {
     const char* const url = from.Attribute(attribute);
     const auto found = url == nullptr || *url != '#' ? by_id_.end() : by_id_.find(std::string_view(url + 1));
@@ -91,14 +93,15 @@ class DaeReader {
     return result;
   }
 
-  /// What is in a <node> or <visual_scene>, in its order: a transform of what follows, a node, or a surface.
+  /// A part of a <node> or <visual_scene>, in their order: a transform of what follows, a node, or
+  /// a surface.
   struct Part {
     Affine3d transform = Affine3d::Identity();
     const Element* node = nullptr;
     const Surface* surface = nullptr;
   };
 
-  /// Read once, however often the node is instanced.
+  /// Returns the parts of a node, which are read once, however often the node is instanced.
   const std::vector<Part>& parts_of(const Element& node) {
     const auto [at, fresh] = parts_.try_emplace(&node);
     std::vector<Part>& parts = at->second;
@@ -133,7 +136,8 @@ class DaeReader {
     }
   }
 
-  /// Of a skin or morph: what it deforms, as it is stored.
+  /// Returns the geometry of an instance; for a skin or morph the one that it deforms, as it is
+  /// stored. Null if there is none.
   const Element* geometry_of(const Element& instance) const {
     if (std::string_view(instance.Name()) == "instance_geometry") return &target(instance, "url", "geometry");
     const Element& controller = target(instance, "url", "controller");
@@ -250,7 +254,7 @@ class DaeReader {
     return *value;
   }
 
-  /// Appends the points of a source; returns the first and how many.
+  /// Appends the points of a source; returns the index of the first and their number.
   std::pair<std::int64_t, std::int64_t> read_positions(const Element& source, Surface& surface) {
     const Element* const common = source.FirstChildElement("technique_common");
     const Element* const accessor = common == nullptr ? nullptr : common->FirstChildElement("accessor");

@@ -19,14 +19,15 @@ bool is_file(const fs::path& file) {
   return fs::is_regular_file(file, error);
 }
 
-/// A package may be the folder itself or lie in it.
+/// Returns the file `rest` of a package in a folder; if `folder_is_package`, the folder itself may
+/// be the package. None if there is no such file.
 std::optional<fs::path> find_in(const fs::path& folder, const std::string& package, const fs::path& rest, bool folder_is_package) {
   if (is_file(folder / package / rest)) return folder / package / rest;
   if (folder_is_package && is_file(folder / rest)) return folder / rest;
   return std::nullopt;
 }
 
-/// As ROS has it, whatever the folder is called.
+/// Returns the name of the package that package.xml in a folder states; none if there is none.
 std::optional<std::string> name_of_package(const fs::path& folder) {
   tinyxml2::XMLDocument document;
   if (!is_file(folder / "package.xml") || document.LoadFile((folder / "package.xml").c_str()) != tinyxml2::XML_SUCCESS)
@@ -54,8 +55,8 @@ fs::path resolve_package(const std::string& name, const std::string& path, const
     if (const auto file = find_in(folder, package, rest, folder.filename() == package)) return *file;
     if (folder == folder.parent_path()) break;
   }
-  // The folder may have been renamed, as by a download. One that says that it is another package is not meant, and a bare file
-  // name says too little.
+  // The folder may have been renamed, as by a download. A folder that states the name of another
+  // package does not count, and a bare file name is too weak a clue.
   for (fs::path folder = start; fs::path(rest).has_parent_path(); folder = folder.parent_path()) {
     if (is_file(folder / rest) && name_of_package(folder).value_or(package) == package) return folder / rest;
     if (folder == folder.parent_path()) break;

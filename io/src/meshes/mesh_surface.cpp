@@ -68,7 +68,7 @@ void Surface::cut(std::vector<int> corners, const Vector3d& normal, int line) {
     }
     k = (k + (misses > 0 ? 1 : 0)) % corners.size();
   }
-  // What has no ear is not a simple polygon; a fan covers it as well as anything.
+  // A polygon without an ear is not simple; a fan covers it as well as anything.
   for (std::size_t j = 1; j + 1 < corners.size(); ++j) add_triangle(corners[0], corners[j], corners[j + 1], line);
 }
 

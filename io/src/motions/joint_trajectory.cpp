@@ -11,12 +11,12 @@ namespace swivel::io {
 
 namespace {
 
-/// In quotes, as JSON has it, which YAML reads too.
+/// Returns the text in the quotes of JSON, which YAML reads too.
 std::string quoted(const std::string& text) {
   return nlohmann::json(text).dump();
 }
 
-/// Of the joints that controllers move.
+/// Returns a list of the values of the joints that controllers move.
 std::string list(const TimedPath& motion, const Config& values) {
   std::string text;
   for (const double value : moved_joints(motion, values)) text += (text.empty() ? "[" : ", ") + format_double(value);

@@ -14,7 +14,7 @@ namespace swivel::io {
 
 namespace {
 
-/// Numbers little-endian, as MCAP and CDR have them.
+/// Collects bytes, with numbers little-endian as in MCAP and CDR.
 class Bytes {
  public:
   template <class Number>
@@ -31,7 +31,7 @@ class Bytes {
     text_ += text;
     return *this;
   }
-  /// Its length in 32 bits before it: MCAP's strings, arrays, maps.
+  /// Adds a text after its length in 32 bits, as for MCAP's strings, arrays and maps.
   Bytes& counted(std::string_view text) { return add(static_cast<std::uint32_t>(text.size())).raw(text); }
   [[nodiscard]] const std::string& text() const { return text_; }
   [[nodiscard]] std::uint64_t size() const { return text_.size(); }
@@ -44,7 +44,7 @@ std::string record(Opcode opcode, const Bytes& content) {
   return Bytes().add(static_cast<std::uint8_t>(opcode)).add(content.size()).raw(content.text()).text();
 }
 
-/// The message's definition with those it is made of.
+/// The definition of the message, with the definitions of its parts.
 constexpr const char* kJointState =
     "std_msgs/Header header\n"
     "string[] name\n"
@@ -60,7 +60,8 @@ constexpr const char* kJointState =
     "int32 sec\n"
     "uint32 nanosec\n";
 
-/// Common Data Representation, little-endian: every number stands at a multiple of its size.
+/// Collects a message in Common Data Representation, little-endian: every number is at a multiple
+/// of its size.
 class Cdr {
  public:
   template <class Number>
@@ -79,7 +80,7 @@ class Cdr {
     for (const double value : values) add(value);
     return *this;
   }
-  /// Behind the four bytes that name the representation.
+  /// Returns the message, after the four bytes that name the representation.
   [[nodiscard]] std::string message() const { return std::string(kLittleEndianCdr) + bytes_.text(); }
 
  private:

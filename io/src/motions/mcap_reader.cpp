@@ -14,7 +14,8 @@ namespace swivel::io {
 
 namespace {
 
-/// Little-endian values, one after the other. Throws InputError where the bytes end before a value does.
+/// Reads little-endian values, one after the other. Throws InputError if the bytes end before a
+/// value does.
 class Cursor {
  public:
   Cursor(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(&where) {}
@@ -39,10 +40,10 @@ class Cursor {
       return static_cast<Number>(bits);
     }
   }
-  /// MCAP's: a length in 32 bits before it.
+  /// Returns bytes after a length in 32 bits, as in MCAP.
   std::string_view counted() { return raw(number<std::uint32_t>()); }
 
-  // Common Data Representation: a value stands at a multiple of its size, and texts end with a zero.
+  // Common Data Representation: a value is at a multiple of its size, and texts end with a zero.
   template <class Number>
   Number aligned() {
     raw((sizeof(Number) - at_ % sizeof(Number)) % sizeof(Number));
@@ -67,7 +68,7 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-/// As MCAP has it: that of zlib.
+/// Returns the check sum of MCAP, which is that of zlib.
 std::uint32_t crc32(std::string_view bytes) {
   static const std::array<std::uint32_t, 256> table = [] {
     std::array<std::uint32_t, 256> made{};
@@ -102,7 +103,7 @@ class Log {
     bool joint_states = false;
   };
 
-  /// Returns what it was.
+  /// Reads a record and returns its opcode.
   std::uint8_t record(Cursor& cursor, bool in_chunk) {
     const auto opcode = cursor.number<std::uint8_t>();
     Cursor content(cursor.raw(cursor.number<std::uint64_t>()), file_);

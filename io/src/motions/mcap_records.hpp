@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of https://mcap.dev/spec is written and read.
+// The parts of https://mcap.dev/spec that are written and read.
 #pragma once
 #include <cstdint>
 #include <string_view>
@@ -10,7 +10,7 @@ inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 /// The four bytes before a message in Common Data Representation: little-endian, no options.
 inline constexpr std::string_view kLittleEndianCdr{"\0\1\0\0", 4};
 
-/// The byte that a record begins with.
+/// The first byte of a record, which tells its kind.
 enum Opcode : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,

@@ -6,7 +6,8 @@
 
 namespace swivel::io {
 
-/// Those of seven values, by joint, that a controller has: all but the roll of the tool.
+/// Returns those of seven values, by joint, that a controller has: all but the roll of the tool.
+/// Refers to `values`.
 template <class Values>
 auto moved_joints(const TimedPath& motion, const Values& values) {
   return std::span(values.data(), static_cast<std::size_t>(motion.roll ? kDof - 1 : kDof));

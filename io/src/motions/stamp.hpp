@@ -5,12 +5,12 @@
 
 namespace swivel::io {
 
-/// A time as ROS 2 writes it.
+/// A time in the form of ROS 2.
 struct Stamp {
   std::int32_t sec = 0;
   std::uint32_t nanosec = 0;
 };
-/// Of a time from 0 to 68 years, s; to the nearest nanosecond.
+/// Returns the stamp of a time from 0 to 68 years, s, to the nearest nanosecond.
 [[nodiscard]] inline Stamp stamp_of(double t) {
   const double whole = std::floor(t);
   const auto nanosec = static_cast<std::uint32_t>(std::llround((t - whole) * 1e9));

@@ -9,10 +9,10 @@
 
 namespace swivel::io {
 
-/// The columns that the schema of a row names: "JOINT" and "JOINT_v" stand for as many as there are joints. `roll`: that column,
-/// too.
+/// Returns the columns that the schema of a row names, with "JOINT" and "JOINT_v" replaced by one
+/// column for each joint; the column "roll" only if `roll` is true.
 [[nodiscard]] std::vector<std::string> csv_header(const Schema& row, const std::array<std::string, kDof>& joint_names, bool roll);
-/// What stands in the columns of a trajectory.
+/// Returns the fields of a trajectory row, separated by commas; the roll only if `roll` is true.
 [[nodiscard]] std::string trajectory_fields(const TrajectoryRow& row, bool roll);
 
 }  // namespace swivel::io

@@ -15,14 +15,15 @@ namespace swivel::io {
 
 namespace {
 
-/// Where in a table what a row may state stands.
+/// The columns of a table that hold the values of a row.
 struct Columns {
   using Place = std::optional<std::size_t>;
   Place t, s, phi, roll, branch;
   std::array<Place, kDof> q, v, a;
 };
 
-/// Names in the order in which Swivel writes them, so that names which joints share with other columns are told apart.
+/// Finds the columns. Names are tried in the order in which Swivel writes them, so that a joint may
+/// have the name of another column. Throws InputError.
 Columns columns_of(const std::vector<std::string>& header, const JointNames& names, const std::string& where) {
   Columns columns;
   std::vector<std::pair<std::string, Columns::Place*>> known{{"t", &columns.t}, {"s", &columns.s}, {"phi", &columns.phi}};
@@ -106,7 +107,7 @@ TrajectoryFile read_csv(const std::string& file, std::string_view text, const Jo
 
 enum class Format { kCsv, kJson, kYaml, kMcap };
 
-/// docs/formats.md "Trajectories that are read".
+/// Returns the format of a file by its contents, docs/formats.md "Trajectories that are read".
 Format format_of(std::string_view text) {
   if (text.starts_with("\x89MCAP")) return Format::kMcap;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);

@@ -22,7 +22,7 @@ std::string list(const Vector3d& v) {
   return "[" + csv_number(v.x()) + ", " + csv_number(v.y()) + ", " + csv_number(v.z()) + "]";
 }
 
-/// Replaces pieces of a YAML text by their places.
+/// Collects replacements in a YAML text, by their places.
 class TextEdits {
  public:
   TextEdits(std::string text, std::string source) : text_(std::move(text)), source_(std::move(source)) {}
@@ -33,7 +33,7 @@ class TextEdits {
     if (!node.IsSequence() || node.size() != 3) fail(object, key);
     for (std::size_t k = 0; k < 3; ++k) word(node[k], csv_number(value[static_cast<Eigen::Index>(k)]), key);
   }
-  /// quat: [...] becomes rpy: [...].
+  /// Replaces quat: [...] by rpy: [...].
   void quaternion(const YAML::Node& object, const Vector3d& rpy) {
     const YAML::Node node = object["quat"];
     const std::size_t begin = place(node), end = text_.find(']', begin) + 1;
@@ -45,7 +45,7 @@ class TextEdits {
     edits_.push_back({begin, end - begin, list(rpy)});
   }
   [[nodiscard]] std::string text() {
-    // From the end on; of two at one place what is put before it last.
+    // From the end on; of two edits at one place, the insertion comes last.
     std::sort(edits_.begin(), edits_.end(),
               [](const Edit& a, const Edit& b) { return std::pair(a.at, a.size) > std::pair(b.at, b.size); });
     std::string result = text_;
@@ -87,7 +87,8 @@ class TextEdits {
 
 const std::set<std::string> kPoseKeys{"xyz", "rpy", "quat"};
 
-/// Whether two documents say the same but for poses of these objects of the scene. Keys stand in the same order.
+/// Returns true if two nodes are equal, with keys in the same order; with `skip_poses`, apart from
+/// the pose keys of this map.
 bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
   if (a.Type() != b.Type()) return false;
   if (a.IsScalar()) return a.Scalar() == b.Scalar();
@@ -110,7 +111,8 @@ bool same(const YAML::Node& a, const YAML::Node& b, bool skip_poses = false) {
   return true;
 }
 
-/// The same as the documents, where the objects that have moved may have other poses.
+/// Returns true if two documents are equal, except that the scene objects `moved` may have other
+/// poses.
 bool same_but_for_poses(const YAML::Node& a, const YAML::Node& b, const std::set<std::size_t>& moved) {
   if (a.size() != b.size()) return false;
   auto other = b.begin();
@@ -138,7 +140,8 @@ bool kept(const YAML::Node& was, const YAML::Node& is, const char* key) {
   return was[key] ? is[key] && same(was[key], is[key]) : !is[key];
 }
 
-/// Whether a text says what `root` does, but with the poses of `placed` for the objects that have moved.
+/// Returns true if a text states what `root` does, with the poses of `placed` for the objects that
+/// have moved.
 bool says(const std::string& text, const YAML::Node& root, const Problem& placed, const std::set<std::size_t>& moved) {
   try {
     const YAML::Node written = YAML::Load(text);

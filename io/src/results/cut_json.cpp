@@ -36,7 +36,7 @@ Json layer_json(int number, const Cut::Layer& layer) {
   return {{"layer", number}, {"slots", layer.slots}, {"reached", reached}, {"nodes", nodes}, {"edges", edges}};
 }
 
-/// Reads values of a certificate, and names the key of what is wrong.
+/// Reads values of a certificate; error messages name the key.
 class Reader {
  public:
   explicit Reader(std::string file) : file_(std::move(file)) {}
@@ -78,7 +78,8 @@ class Reader {
   std::string file_;
 };
 
-/// Of lists and objects in JSON. The parser's own callback could tell, but makes lists of objects take quadratic time.
+/// Returns how deep lists and objects are nested in JSON. The parser's own callback could tell, but
+/// would make lists of objects take quadratic time.
 int depth_of(std::string_view text) {
   int depth = 0, most = 0;
   bool quoted = false;

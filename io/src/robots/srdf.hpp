@@ -8,8 +8,9 @@
 
 namespace swivel::io {
 
-/// Fills has_srdf, disabled_pairs and Joint::passive, and adds warnings of what is not known and of names that the robot does not
-/// have. `left_out`: links and joints that its URDF has and the model was asked to leave out. Throws InputError.
+/// Reads an SRDF into the robot: fills has_srdf, disabled_pairs and Joint::passive, and adds
+/// warnings about unknown elements and about names that the robot does not have. `left_out` are
+/// links and joints of its URDF that the model leaves out. Throws InputError.
 void load_srdf(const XmlSource& srdf, RobotModel& robot, const std::set<std::string>& left_out);
 
 }  // namespace swivel::io

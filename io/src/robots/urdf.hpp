@@ -10,13 +10,13 @@
 
 namespace swivel::io {
 
-/// A robot without its SRDF, and the names of links and joints that its file has besides.
+/// A robot without its SRDF, and the names of links and joints in its file that were left out.
 struct UrdfRobot {
   std::shared_ptr<RobotModel> model;
   std::set<std::string> left_out;
 };
 
-/// Throws InputError.
+/// Loads a robot from its URDF. Throws InputError.
 [[nodiscard]] UrdfRobot load_urdf(const std::filesystem::path& urdf, const Packages& packages, const RobotOptions& options);
 
 }  // namespace swivel::io

@@ -20,7 +20,7 @@ std::string numbers(const Vector3d& v) {
 /// Writes collision shapes into a link, one after the other.
 class ShapeWriter {
  public:
-  /// The shapes follow `after`.
+  /// Writes into `link`, after the element `after`.
   ShapeWriter(tinyxml2::XMLElement& link, tinyxml2::XMLElement& after) : link_(link), last_(&after) {}
 
   void add(const PlacedShape& placed) {
@@ -36,7 +36,7 @@ class ShapeWriter {
       add_sphere(placed.pose.translation() + side * capsule->length / 2 * axis, capsule->radius);
   }
 
-  /// A visual shape, as a collision shape.
+  /// Adds a visual shape as a collision shape.
   void copy(const tinyxml2::XMLElement& visual) {
     tinyxml2::XMLElement& collision = add_collision();
     for (const char* part : {"origin", "geometry"})
@@ -63,7 +63,7 @@ class ShapeWriter {
   tinyxml2::XMLElement* last_;
 };
 
-/// Meshes beside the URDF, as seen from another folder.
+/// Rewrites the relative mesh names of a link for another folder.
 void move_names(tinyxml2::XMLElement& link, const std::filesystem::path& from, const std::filesystem::path& to) {
   for (const char* kind : {"visual", "collision"})
     for (auto* shape = link.FirstChildElement(kind); shape != nullptr; shape = shape->NextSiblingElement(kind)) {

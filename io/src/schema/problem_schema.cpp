@@ -17,7 +17,8 @@ Schema numbers(std::size_t count, const Range& range) {
   return list(number(range), count);
 }
 
-/// A number for all joints, or one each; null: as if the key were not there.
+/// Returns the schema of a number for all joints or a list with one for each; null counts as a
+/// missing key.
 Schema of_joints(const Range& range) {
   return or_null(either(number(range), numbers(kDof, range)));
 }

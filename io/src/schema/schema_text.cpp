@@ -16,7 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Type = Schema::Type;
 
-/// In files that people write, null stands for an absent key, save of numbers and words; in results it is a value.
+/// How null is treated. In files that people write it stands for a missing key, except for numbers
+/// and words; in results it is a value.
 enum class Absent { kMayBeNull, kIsAbsent };
 
 Json json_of(const Schema& schema, Absent absent);
@@ -35,7 +36,7 @@ Json choice_json(const Schema::Choice& choice) {
   return {{"oneOf", std::move(one)}};
 }
 
-/// A word as it is, anything else as the JSON that it is.
+/// Returns a word or text as a JSON string, anything else parsed as JSON.
 Json literal(const Schema& schema, const std::string& text) {
   return schema.type == Type::kWord || schema.type == Type::kText ? Json(text) : Json::parse(text);
 }
@@ -61,7 +62,7 @@ Json section_json(const Schema& schema, Absent absent) {
   return json;
 }
 
-/// Without what else may stand there.
+/// Returns the JSON Schema of the schema itself, without what is allowed instead.
 Json own_json(const Schema& schema, Absent absent) {
   switch (schema.type) {
     case Type::kNumber:
@@ -148,13 +149,13 @@ std::string presence_text(const Presence& presence) {
   return '`' + presence.fallback + '`';
 }
 
-/// `|` would end a cell.
+/// Escapes `|`, which would end a cell.
 std::string cell(std::string text) {
   for (std::size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.replace(at, 1, "\\|");
   return text;
 }
 
-/// With a column of defaults where people may leave keys out.
+/// Returns a Markdown table of keys, with a column of defaults for files that people write.
 std::string table(const std::string& name, const std::vector<Schema::Key>& keys, Absent absent) {
   const bool defaults = absent == Absent::kMayBeNull;
   std::string text =
@@ -167,7 +168,8 @@ std::string table(const std::string& name, const std::vector<Schema::Key>& keys,
   return text + "<!-- /schema -->\n";
 }
 
-/// The tables of a schema and of the sections in it, each once, in the order in which they are met.
+/// Appends the tables of a schema and of the sections in it, each once, in the order in which they
+/// are met.
 void add_tables(const Schema& schema, Absent absent, std::set<std::string>& known, std::string& text) {
   std::vector<Schema::Key> own;
   std::vector<std::pair<std::string, std::vector<Schema::Key>>> groups;

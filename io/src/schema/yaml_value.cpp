@@ -26,14 +26,14 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-/// What stands there, for messages.
+/// Returns a description of a value for messages.
 std::string shown(const YAML::Node& node) {
   if (node.IsScalar()) return "'" + node.Scalar() + "'";
   return node.IsMap() ? "a map" : node.IsSequence() ? "a list" : "null";
 }
 
-/// The number that a scalar is. yaml-cpp reads digits as the global locale writes them; what is left to it, .inf and .nan, has
-/// none.
+/// Returns the number that a scalar states. yaml-cpp would read digits by the global locale; it
+/// only reads .inf and .nan here, which have none.
 std::optional<double> number_in(const YAML::Node& node) {
   if (!node.IsScalar()) return std::nullopt;
   if (node.Scalar().find_first_of("0123456789") != std::string::npos) return to_number<double>(node.Scalar());
@@ -198,8 +198,8 @@ class Ignored final : public YAML::EventHandler {
   void OnMapEnd() override {}
 };
 
-/// 0, 1, or 2 for more. At some misplaced characters, a comma at the beginning, the parser finds one document after the other and
-/// never comes further, so that YAML::LoadAll takes all memory.
+/// Returns the number of documents, at most 2. At some misplaced characters, such as a comma at the
+/// beginning, the parser finds documents without end, so that YAML::LoadAll would take all memory.
 int documents_in(const std::string& text) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);

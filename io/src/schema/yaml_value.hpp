@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A YAML node that knows where it stands and what may stand there, so that every complaint names file, line, key and what is
-// allowed.
+// YAML values with their place in the file and their schema, so that every error message names
+// file, line, key and what is allowed.
 #pragma once
 #include <yaml-cpp/yaml.h>
 
@@ -19,12 +19,13 @@ namespace swivel::io {
 
 class YamlSection;
 
-/// What the values of one file share.
+/// Data that the values of one file share.
 struct YamlFile {
   std::string name;
-  std::size_t values = 0;  ///< read so far; aliases count each time
+  std::size_t values = 0;  ///< number of values read so far; aliases count each time
 };
 
+/// A YAML value with its place in the file and its schema.
 class YamlValue {
  public:
   YamlValue(std::shared_ptr<YamlFile> file, YAML::Node node, const Schema& schema, std::string key, int line);
@@ -34,29 +35,31 @@ class YamlValue {
   [[nodiscard]] bool is_sequence() const { return node_.IsSequence(); }
   [[nodiscard]] const std::string& key() const { return key_; }
 
-  // Each throws InputError where what stands there is not what the schema says of that type.
+  // Each of these throws InputError if the value is not what the schema allows for that type.
   [[nodiscard]] double number() const;
   [[nodiscard]] std::vector<double> numbers() const;
   [[nodiscard]] Vector3d vector3() const;
-  /// A scalar that is not empty.
+  /// Returns a scalar, which must not be empty.
   [[nodiscard]] std::string text() const;
-  /// The same, a valid name.
+  /// Returns a scalar, which must be a valid name.
   [[nodiscard]] std::string name() const;
-  /// Which of the schema's words.
+  /// Returns the index of the value among the schema's words.
   [[nodiscard]] std::size_t word() const;
   [[nodiscard]] std::vector<YamlValue> items() const;
-  /// The entries of a map with free keys.
+  /// Returns the entries of a map with free keys: names and values.
   [[nodiscard]] std::vector<std::pair<std::string, YamlValue>> entries() const;
-  /// A map with no keys but the schema's.
+  /// Returns a map as a section; all its keys must be in the schema.
   [[nodiscard]] YamlSection section() const;
 
-  /// "<file>:<line>: <key>"
+  /// Returns the place of the value for messages: "<file>:<line>: <key>".
   [[nodiscard]] std::string where() const;
+  /// Throws InputError with the place, what is wrong and what is allowed.
   [[noreturn]] void fail(const std::string& what, const std::string& allowed) const;
 
  private:
   void count(std::size_t more) const;
-  /// Names and values of a map; `schema_of(name, value)` is asked for each after all names were read.
+  /// Returns names and values of a map. schema_of(name, value) is called for each after all names
+  /// were read.
   template <class SchemaOf>
   [[nodiscard]] std::vector<std::pair<std::string, YamlValue>> map(const SchemaOf& schema_of) const;
 
@@ -67,19 +70,23 @@ class YamlValue {
   int line_;
 };
 
+/// A YAML map whose keys the schema lists.
 class YamlSection {
  public:
   YamlSection(YamlValue self, const Schema& schema, std::vector<std::pair<std::string, YamlValue>> entries);
 
   [[nodiscard]] const YamlValue& self() const { return self_; }
-  /// The value of a key that is there, null or not. The schema must know the key.
+  /// Returns the value of a key, null values included; none if the key is missing. The schema must
+  /// have the key.
   [[nodiscard]] std::optional<YamlValue> find(const std::string& key) const;
-  /// The same, where an explicit null counts as absent: sections whose content is commented out.
+  /// Returns the value of a key; none if the key is missing or its value is null, as for a section
+  /// whose content is commented out. The schema must have the key.
   [[nodiscard]] std::optional<YamlValue> find_filled(const std::string& key) const;
-  /// Throws InputError, in the words of the schema, where there is none.
+  /// Returns the value of a key. Throws InputError, in the words of the schema, if it is missing or
+  /// null.
   [[nodiscard]] YamlValue require(const std::string& key) const;
-  /// Of a key and those that exclude it the one that is there, and its name. Throws InputError where there are two, or none and
-  /// the schema asks for one.
+  /// Returns the name and value of the one key that is given among `key` and those that exclude it.
+  /// Throws InputError if two are given, or none and the schema requires one.
   [[nodiscard]] std::optional<std::pair<std::string, YamlValue>> chosen(const std::string& key) const;
 
  private:
@@ -88,7 +95,7 @@ class YamlSection {
   std::vector<std::pair<std::string, YamlValue>> entries_;
 };
 
-/// The one document of a file. The schema must outlive the values.
+/// Loads a YAML file with one document. The schema must outlive the values. Throws InputError.
 [[nodiscard]] YamlValue load_yaml(const std::filesystem::path& file, const Schema& schema);
 
 }  // namespace swivel::io

@@ -39,12 +39,13 @@ std::string milliseconds(double value) {
 
 constexpr const char* kSettingsMark = "# swivel campaign ";
 
-/// One line, for people and for comparison.
+/// Returns the settings as one line, for people and for comparison.
 std::string line_of(const RunSettings& settings) {
   return kSettingsMark + to_json(settings).dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
-/// What a file that begins with that line has otherwise than a campaign of the settings; empty if nothing.
+/// Returns how the settings in the first line of a file differ from the wanted ones; empty if they
+/// do not.
 std::string unlike(std::string_view found, const RunSettings& wanted) {
   if (found == line_of(wanted)) return {};
   found.remove_prefix(std::string_view(kSettingsMark).size());
@@ -159,7 +160,7 @@ CampaignFile::CampaignFile(const fs::path& csv, const RunSettings& settings, con
       close(descriptor_);
       throw;
     }
-  keep(rows_.size());  // cuts what is torn
+  keep(rows_.size());  // cuts off a torn line
   if (ends_.front() == 0) {
     write(preamble);
     ends_.front() = preamble.size();

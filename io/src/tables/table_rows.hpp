@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of campaigns and placements as lines of CSV.
+// Converts rows of campaigns and placements to lines of CSV and back.
 #pragma once
 #include <cmath>
 #include <initializer_list>
@@ -15,20 +15,27 @@
 
 namespace swivel::io {
 
-/// The header, with its end; a column for each of the coordinates whose offsets the rows have.
+/// Returns the header of episode rows, with its line end; it has a column for each of the
+/// coordinates whose offsets the rows have.
 [[nodiscard]] std::string episode_header(const std::vector<std::string>& coordinates);
-/// The coordinates of a header without its end; none where it is not one.
+/// Returns the coordinates of a header, given without its line end; none if the line is no such
+/// header.
 [[nodiscard]] std::optional<std::vector<std::string>> coordinates_of(std::string_view line);
+/// Returns the line of an episode, with its end.
 [[nodiscard]] std::string csv_line(const EpisodeRow& row);
-/// Of a line without its end; none where it is not a row with so many offsets.
+/// Returns the episode of a line, given without its end; none if it is not a row with this number
+/// of offsets.
 [[nodiscard]] std::optional<EpisodeRow> episode_row(std::string_view line, std::size_t coordinates);
 
 inline constexpr const char* kPlacementHeader =
     "cell,x,y,z,roll,pitch,yaw,status,cost,clearance,clearance_margin,joint_margin,tool_speed,failed_s,cause,by,reason\n";
+/// Returns the line of a placement, with its end.
 [[nodiscard]] std::string csv_line(const PlacementRow& row);
+/// Returns the placement of a line, given without its end; none if it is not such a row.
 [[nodiscard]] std::optional<PlacementRow> placement_row(std::string_view line);
 
-/// One field of a row: a finite number, one that may be missing, or a status that a row can have. False where it is none.
+/// Reads a field of a row: a finite number, a number that may be missing, or the status of a row.
+/// Returns false if the field is not that.
 template <class Number>
 bool read_field(const std::string& field, Number& number) {
   const auto read = to_number<Number>(field);
@@ -44,8 +51,10 @@ inline bool read_field(const std::string& field, PlanStatus& status) {
   return false;
 }
 
-/// The rows of a text from a byte on that is the beginning of a line; `line` is its number, `row_of` one of the functions above.
-/// `visit` gets each, what names its place, and the byte after it. The text ends with the end of a line.
+/// Reads the rows of a text from byte `begin`, which begins a line, whose number is `line`.
+/// row_of(line) parses a line; visit(row, where, end) gets each row, its place for messages, and
+/// the byte after it. The text must end with a line end. Throws InputError for a line that is no
+/// row.
 template <class RowOf, class Visit>
 void read_lines(std::string_view text, std::size_t begin, const std::string& file, int line, const std::string& allowed,
                 const RowOf& row_of, const Visit& visit) {

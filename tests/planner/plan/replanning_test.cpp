@@ -187,8 +187,8 @@ TEST(Planner, StopsAndGoesOn) {
   options.planner = PlannerKind::kLazy;
   const PlanResult fresh = plan(problem, options);
   Planner planner(problem);
-  // Stopped at every stage of the search in turn, it still answers as a fresh one, and what it says is valid is a beginning of
-  // rows.
+  // The planner is stopped at every stage of the search, one after the other. It must still answer
+  // as a fresh one, and what it reports as valid must be a beginning of rows.
   int stopped = 0, partial = 0;
   for (int call = 0; call < 400; ++call) {
     std::stop_source source;

@@ -267,7 +267,7 @@ TEST(RollLattice, JointSevenRests) {
   EXPECT_GE(inexact, at_least(count / 10));
 }
 
-/// What the tool meets hangs on where joint 7 rests: it moves where there is no path otherwise.
+/// Where joint 7 rests determines what the tool meets: joint 7 moves if there is no path otherwise.
 TEST(RollLattice, JointSevenMovesWhereItCannotRest) {
   class NotNear final : public StateCheck {
    public:

@@ -24,7 +24,7 @@ TestRobot robot_of_data(const std::string& name) {
   return robot;
 }
 
-/// The same polyline with each segment cut into so many parts.
+/// Returns the problem with each segment of its polyline cut into `parts` parts.
 Problem in_parts(Problem problem, int parts) {
   std::vector<Waypoint> waypoints{problem.waypoints[0]};
   for (std::size_t k = 0; k + 1 < problem.waypoints.size(); ++k)
@@ -141,7 +141,8 @@ TEST(Slopes, OneVerdictForALineOfSixJointsHoweverManyWaypoints) {
   EXPECT_GE(tally.advised, at_least(1));
 }
 
-/// The same of seven joints, by the slope of the arm angle and, with a roll, of both.
+/// Seven joints along a line have one verdict however many waypoints it has, by the slope of the
+/// arm angle and, with a roll, by both slopes.
 TEST(Slopes, OneVerdictForALineOfSevenJointsHoweverManyWaypoints) {
   const std::uint64_t base = seed("SlopesOfSeven");
   const TestRobot robots[] = {data_robot("iiwa14"), continuous_robot(), robot_of_data("panda_like")};

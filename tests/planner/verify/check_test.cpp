@@ -110,7 +110,7 @@ Problem some_problem(const TestRobot& robot, Random& random) {
   return problem;
 }
 
-/// Seeded, each robot in turn; solved once for all tests.
+/// Trajectories of seeded problems, of one robot after the other; solved once for all tests.
 const std::vector<Good>& good_trajectories() {
   static const std::vector<Good> all = [] {
     std::vector<Good> found;

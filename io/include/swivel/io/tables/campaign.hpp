@@ -40,7 +40,7 @@ class CampaignFile {
   /// Appends a row; the operating system has it when this returns. Throws InputError if it cannot
   /// be written.
   void append(const EpisodeRow& row);
-  /// The text of RESULTS.csv.
+  /// Returns the text of RESULTS.csv.
   [[nodiscard]] std::string csv() const;
   /// Removes the .part file; call it once RESULTS.csv is written. Throws InputError if that fails.
   void finish();
