@@ -61,7 +61,8 @@ struct Helpers::State {
   std::atomic<const std::function<void(int, int)>*> body{nullptr};
   std::atomic<int> done{0};
   std::atomic<std::int64_t> helped{0};
-  std::vector<std::atomic<bool>> there;  // entry k: the task of worker k + 1 was started and has not returned
+  // entry k: the task of worker k + 1 was started and has not returned
+  std::vector<std::atomic<bool>> there;
   std::atomic<int> running{0};
   std::atomic<bool> ended{false};
   std::mutex failure_mutex;

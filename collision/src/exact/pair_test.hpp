@@ -5,8 +5,8 @@
 
 namespace swivel::detail {
 
-/// GJK stops at the first step that gains less than this. At the default, 1e-6, it returned up to 13 mm too much between a box and
-/// a cylinder; at 1e-10 no more than 0.05 um, for the same time.
+/// GJK stops at the first step that gains less than this. At the default, 1e-6, it returned up to
+/// 13 mm too much between a box and a cylinder; at 1e-10 no more than 0.05 um, for the same time.
 inline constexpr double kGjkTolerance = 1e-10;
 
 /// Asks FCL about pairs of bodies, and counts the calls, so that an instance belongs to one thread.

@@ -238,7 +238,8 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
     return b.shape->triangles().seek(
         low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, witness.b);
   }
-  int unused = 0;  // nothing but the distance of the core decides where b has no triangles of its own
+  // nothing but the distance of the core decides where b has no triangles of its own
+  int unused = 0;
   return prove_round(a, b, d, 0, unused).certificate == Certificate::kColliding;
 }
 

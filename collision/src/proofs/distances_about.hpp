@@ -6,12 +6,14 @@
 
 namespace swivel::detail {
 
-/// Of `count` distances, m: exactly the one that `rank` are smaller than, and what lies within `beside` of it; of the others on
-/// which side of it they are, which takes less time. distance(k, enough, limit) is as TriangleTree::distance: the distance k where
-/// it lies in [enough, limit], something below `enough` where it is less, `limit` where it is more. None is `most` or more.
+/// Of `count` distances, m: exactly the one that `rank` are smaller than, and what lies within
+/// `beside` of it; of the others on which side of it they are, which takes less time. distance(k,
+/// enough, limit) is as TriangleTree::distance: the distance k where it lies in [enough, limit],
+/// something below `enough` where it is less, `limit` where it is more. None is `most` or more.
 template <class Distance>
 std::vector<double> distances_about(std::size_t count, std::size_t rank, double most, double beside, const Distance& distance) {
-  // The first ones, known exactly, tell between which two the answer lies: their ranks are off by 2.5 at most, mostly.
+  // The first ones, known exactly, tell between which two the answer lies: their ranks are off by
+  // 2.5 at most, mostly.
   constexpr std::size_t kFirst = 25, kApart = 4;
   std::vector<double> found;
   found.reserve(count);

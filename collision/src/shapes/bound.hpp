@@ -10,7 +10,8 @@ struct Bound {
   Vector3d center = Vector3d::Zero();  ///< in the shape's frame
   Vector3d half = Vector3d::Zero();    ///< half edge lengths of the box
   double radius = 0;                   ///< of the ball
-  double reach = 0;                    ///< radius of the ball about `center` that contains the shape
+  /// radius of the ball about `center` that contains the shape
+  double reach = 0;
 };
 /// Returns the bounding volume of a shape, in the shape's frame.
 [[nodiscard]] Bound bound_of(const Shape& shape);

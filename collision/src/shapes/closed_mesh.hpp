@@ -20,7 +20,8 @@ class ClosedMesh {
   [[nodiscard]] bool contains(const Vector3d& point) const;
 
  private:
-  using Corners = std::array<Vector3d, 3>;  ///< coordinates (u, v, w), w along the ray; in lexicographic order
+  /// coordinates (u, v, w), w along the ray; in lexicographic order
+  using Corners = std::array<Vector3d, 3>;
   [[nodiscard]] Vector3d turned(const Vector3d& point) const;
   [[nodiscard]] int column(double u) const;
   [[nodiscard]] int row(double v) const;

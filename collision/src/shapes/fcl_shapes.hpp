@@ -63,7 +63,8 @@ class MeshStore {
   std::shared_ptr<const MeshModel> model(const MeshPtr& mesh);
 
  private:
-  std::map<const TriangleMesh*, std::shared_ptr<const MeshModel>> models_;  // a model keeps its mesh alive
+  // a model keeps its mesh alive
+  std::map<const TriangleMesh*, std::shared_ptr<const MeshModel>> models_;
 };
 
 /// A shape with the geometry that FCL, distance proofs and bounding volumes need.
@@ -71,10 +72,14 @@ struct FclShape {
   enum class Kind { kRound, kSolid, kMesh };  ///< sphere or capsule; box or cylinder; mesh
   Kind kind = Kind::kSolid;
   Shape shape;
-  std::shared_ptr<const fcl::CollisionGeometryd> geometry;  // shared: worlds of one robot; null for a mesh
-  std::shared_ptr<const MeshModel> mesh;                    // shared through the store; null unless a mesh
-  std::shared_ptr<const TriangleTree> surface;              // shared: the same; of a box, of a prism in a cylinder; null for others
-  double beyond_triangles = 0;                              // no point of the cylinder is further from its prism, m
+  // shared: worlds of one robot; null for a mesh
+  std::shared_ptr<const fcl::CollisionGeometryd> geometry;
+  // shared through the store; null unless a mesh
+  std::shared_ptr<const MeshModel> mesh;
+  // shared: the same; of a box, of a prism in a cylinder; null for others
+  std::shared_ptr<const TriangleTree> surface;
+  // no point of the cylinder is further from its prism, m
+  double beyond_triangles = 0;
   Bound bound;
   [[nodiscard]] bool has_triangles() const { return mesh || surface; }
   /// Returns the triangles of a mesh or box, or of the prism in a cylinder. The shape must have

@@ -277,7 +277,8 @@ double TriangleTree::distance(const Segment& segment, double enough, double limi
 }
 
 double TriangleTree::distance(const TriangleTree& other, const Pose& pose, double enough, double limit, TrianglePair& first) const {
-  if (triangles_.size() > kBox && other.triangles_.size() <= kBox) {  // triangles are held against the box itself
+  // triangles are held against the box itself
+  if (triangles_.size() > kBox && other.triangles_.size() <= kBox) {
     TrianglePair swapped{first.b, first.a};
     const double found = other.distance(*this, pose.inverse(Eigen::Isometry), enough, limit, swapped);
     first = {swapped.b, swapped.a};

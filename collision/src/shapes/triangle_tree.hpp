@@ -84,7 +84,8 @@ class TriangleTree {
   [[nodiscard]] OrientedBox oriented_box(const Node& leaf) const;
   [[nodiscard]] FourBoxes boxes_below(int node) const;
 
-  static constexpr std::size_t kDeepest = 64;  // of a tree that halves its triangles, and of the stack of one that goes down it
+  // of a tree that halves its triangles, and of the stack of one that goes down it
+  static constexpr std::size_t kDeepest = 64;
 
   std::vector<Triangle> triangles_;
   std::vector<int> places_;  // of triangles_ in the list given

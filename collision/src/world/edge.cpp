@@ -47,7 +47,8 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
   const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
 
-  std::vector<std::int64_t> open{0}, next;  // first leaves of the intervals of this size that are not decided yet
+  // first leaves of the intervals of this size that are not decided yet
+  std::vector<std::int64_t> open{0}, next;
   for (std::int64_t size = leaves; !open.empty(); size /= 2) {
     const double half_bound = step * static_cast<double>(size) / 2;
     const double share = static_cast<double>(size) / static_cast<double>(leaves);

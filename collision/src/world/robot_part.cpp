@@ -75,7 +75,8 @@ std::vector<std::string> shapeless_links(const RobotModel& robot, const ArmModel
   if (std::find(has_shape.begin() + 1, has_shape.end(), true) == has_shape.end())
     return {robot.name + ": the arm has no collision shape at all: it is kept clear of nothing"};
   std::vector<std::string> warnings;
-  for (std::size_t group = 1; group <= (arm.chain.roll ? kDof - 1 : kDof); ++group) {  // a roll is no joint of the arm
+  // a roll is no joint of the arm
+  for (std::size_t group = 1; group <= (arm.chain.roll ? kDof - 1 : kDof); ++group) {
     if (has_shape[group]) continue;
     std::string links;
     for (std::size_t l = 0; l < robot.links.size(); ++l)

@@ -357,7 +357,8 @@ struct World::Query::Impl {
   std::vector<char> in_place;  // bodies, at q
   // For next_below(): what a pair's two bodies have moved in all is subtracted from the pair's
   // lower bound of the distance.
-  std::vector<double> moved, step;    // by body, up to `moved_to`: in all, and from the posture before, m
+  // by body, up to `moved_to`: in all, and from the posture before, m
+  std::vector<double> moved, step;
   std::vector<PlacedBound> moved_to;  // by body; empty before the first posture
   std::vector<double> lower_bound;    // by pair, m
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
@@ -701,7 +702,8 @@ bool World::Query::surely_below(const Config& q, const BodyPair& pair, const Lev
 }
 
 bool World::Query::proves_soon(const BodyPair& pair) const {
-  constexpr std::size_t kHeavy = 500;  // triangles; a search of fewer is short anyway, and their corners lie far apart
+  // triangles; a search of fewer is short anyway, and their corners lie far apart
+  constexpr std::size_t kHeavy = 500;
   const FclShape &a = impl_->world->body(pair.a).shape, &b = impl_->world->body(pair.b).shape;
   const auto held_against = [](const FclShape& body, const FclShape& solid) {
     const auto* mesh = std::get_if<MeshPtr>(&body.shape);
@@ -743,7 +745,8 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
     return std::tuple(x.bound - x.required, x.pair) < std::tuple(y.bound - y.required, y.pair);
   });
 
-  std::tuple<bool, double, std::size_t> least{true, so_far.margin(), pairs.size()};  // does not touch, margin, pair
+  // does not touch, margin, pair
+  std::tuple<bool, double, std::size_t> least{true, so_far.margin(), pairs.size()};
   Clearance answer{std::numeric_limits<double>::max(), {}, 0, so_far.least};
   bool nearer = false;
   for (const Candidate& c : order) {

@@ -10,7 +10,8 @@
 namespace swivel::io {
 
 // Largest sizes of files, so that none takes gigabytes or minutes.
-inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20;  ///< a text STL of kMostTriangles
+/// a text STL of kMostTriangles
+inline constexpr std::size_t kMostMeshBytes = std::size_t{256} << 20;
 inline constexpr std::size_t kMostTableBytes = std::size_t{256} << 20;
 inline constexpr std::size_t kMostXmlBytes = std::size_t{32} << 20;  ///< URDF, SRDF, DAE
 inline constexpr std::size_t kMostYamlBytes = std::size_t{4} << 20;

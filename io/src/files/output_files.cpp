@@ -163,7 +163,8 @@ void OutputFiles::add_folder(const std::string& option, const fs::path& folder,
   for (const Output& output : outputs_)
     if (!output.stream && is_one(output.target.filename().string()) && fs::equivalent(folder_of(output.target), folder, error))
       refuse(output.target, "is the file of " + output.option + " as well");
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {  // what is there may be linked to others
+  // what is there may be linked to others
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
     if (!is_one(entry.path().filename().string()) || !fs::is_directory(folder_of(follow(entry.path())), error)) continue;
     if (const std::string what = taken_by(identity_of(entry.path(), where)); !what.empty()) refuse(entry.path(), what);
   }
@@ -205,7 +206,8 @@ void OutputFiles::stage() {
     struct stat status {};
     const bool exists = stat(output.target.c_str(), &status) == 0;
     const int descriptor = open_beside(output.target, output.staged);
-    if (descriptor >= 0 && exists) static_cast<void>(fchmod(descriptor, status.st_mode & 0777));  // where there are such things
+    // where there are such things
+    if (descriptor >= 0 && exists) static_cast<void>(fchmod(descriptor, status.st_mode & 0777));
     const int error = descriptor < 0 ? errno : write_and_close(descriptor, *output.text);
     if (error != 0) bad_input(place(output.option, output.name), std::strerror(error), kWritable);
   }

@@ -8,7 +8,8 @@
 
 namespace swivel::io {
 
-/// Parses `text` into `document` and returns its root, which must be <root_name>. `file` and `kind` ("URDF") are for messages.
+/// Parses `text` into `document` and returns its root, which must be <root_name>. `file` and `kind`
+/// ("URDF") are for messages.
 tinyxml2::XMLElement& parse_xml(const std::string& file, const std::string& text, const char* kind, const char* root_name,
                                 tinyxml2::XMLDocument& document);
 

@@ -260,7 +260,8 @@ class DaeReader {
     const Element* const accessor = common == nullptr ? nullptr : common->FirstChildElement("accessor");
     if (accessor == nullptr) fail(source, "has no accessor", "<technique_common> with <accessor>");
     const Element& array = target(*accessor, "source", "float_array");
-    const auto [found, fresh] = arrays_.try_emplace(&array);  // read once, however many sources name it
+    // read once, however many sources name it
+    const auto [found, fresh] = arrays_.try_emplace(&array);
     if (fresh) found->second = numbers(array);
     const std::vector<double>& values = found->second;
     const std::size_t stride = size_attribute(*accessor, "stride", 1), offset = size_attribute(*accessor, "offset", 0),

@@ -14,7 +14,8 @@
 
 namespace swivel::io {
 
-inline constexpr std::size_t kMostTriangles = 2'000'000;  ///< of one mesh file, all its parts together
+/// of one mesh file, all its parts together
+inline constexpr std::size_t kMostTriangles = 2'000'000;
 
 /// A mesh file in memory.
 struct MeshFile {

@@ -75,7 +75,8 @@ fs::path resolve_mesh_name(const std::string& name, const fs::path& urdf, const 
     path = name.substr(kFile.size());
   else if (name.find("://") != std::string::npos)
     bad_input(where, "unknown scheme in mesh name '" + name + "'", "package://, file://, or a file name");
-  const fs::path file = (urdf.parent_path() / path).lexically_normal();  // an absolute path stays as it is
+  // an absolute path stays as it is
+  const fs::path file = (urdf.parent_path() / path).lexically_normal();
   if (!is_file(file))
     bad_input(where, "mesh '" + name + "' not found (" + file.string() + ")", "an existing STL, OBJ, DAE or PLY file");
   return file;

@@ -46,7 +46,8 @@ void read_obj(const MeshFile& file, const PlaceSurface& place) {
     } else if (kind == "f") {
       corners.clear();
       for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-        const auto number = to_number<std::int64_t>(word.substr(0, word.find('/')));  // vertex/texture/normal
+        // vertex/texture/normal
+        const auto number = to_number<std::int64_t>(word.substr(0, word.find('/')));
         const auto count = static_cast<std::int64_t>(surface.points().size());
         if (!number || *number == 0 || *number > count || *number < -count)
           file.fail(here, "a face names vertex " + quoted(word) + " of " + std::to_string(count),

@@ -36,7 +36,8 @@ class PlyReader {
   Surface read() {
     read_header();
     for (const Element& element : elements_) {
-      // Every element of a binary file takes bytes, and of a text file a word, unless it has no property.
+      // Every element of a binary file takes bytes, and of a text file a word, unless it has no
+      // property.
       if (element.count > (element.properties.empty() ? 0 : file_.text.size()))
         fail("has " + std::to_string(element.count) + " of " + std::string(element.name.substr(0, 400)) +
                  ", more than the file holds",

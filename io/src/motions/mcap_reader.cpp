@@ -130,7 +130,8 @@ class Log {
         if (topic_ && *topic_ != topic)
           bad_input(file_, "has joint states on '" + *topic_ + "' and '" + topic + "'", "one topic with joint states");
         topic_ = topic;
-        content.raw(sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t));  // sequence, log time, publish time
+        // sequence, log time, publish time
+        content.raw(sizeof(std::uint32_t) + 2 * sizeof(std::uint64_t));
         message(content.raw(content.left()));
         break;
       }

@@ -73,7 +73,8 @@ TrajectoryFile read_csv(const std::string& file, std::string_view text, const Jo
   stated.s = columns.s.has_value();
   stated.phi = columns.phi.has_value();
   stated.branch = columns.branch.has_value();
-  stated.roll = columns.roll || (stated.s && stated.phi && stated.branch);  // Swivel leaves the column out where all are 0
+  // Swivel leaves the column out where all are 0
+  stated.roll = columns.roll || (stated.s && stated.phi && stated.branch);
   stated.last_joint = columns.q.back().has_value();
   stated.v = columns.v.front().has_value();
   stated.a = columns.a.front().has_value();

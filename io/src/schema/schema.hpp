@@ -30,7 +30,8 @@ inline constexpr Range kPositive{"a finite number > 0", 0, std::numeric_limits<d
 inline constexpr Range kCoordinate{"a number from -1000 to 1000", -kMostMetres, kMostMetres};  // m
 inline constexpr Range kExtent{"a number >= 0, at most 1000", 0, kMostMetres};                 // m
 inline constexpr Range kLength{kLengthAllowed, 0, kMostMetres, true};                          // m
-inline constexpr Range kTurn{"a finite number > 0, at most 2*pi", 0, kTwoPi, true};            // rad
+// rad
+inline constexpr Range kTurn{"a finite number > 0, at most 2*pi", 0, kTwoPi, true};
 inline constexpr Range kStartTolerance{"a number > 0, at most 0.1", 0, kMostStartTolerance, true};
 
 /// The schema of one value: its type, and what that type allows.
@@ -45,16 +46,18 @@ struct Schema {
     [[nodiscard]] std::string allowed() const;
   };
 
-  Schema(Type what);  // implicit, and elsewhere: Clang needs a vector's type whole where its member is initialised
+  // implicit, and elsewhere: Clang needs a vector's type whole where its member is initialised
+  Schema(Type what);
   Type type;
   Range range = kFinite;                ///< of numbers
   std::size_t count = 0;                ///< of lists: the number of items; 0 for any number
   std::vector<std::string> words = {};  ///< of words: one of these
-  std::vector<Schema> item = {};        ///< of lists and of maps with free keys: the schema of an item
-  std::string name = {};                ///< of sections: the name of its table
-  std::vector<Key> keys;                ///< of sections
-  std::vector<Choice> choices = {};     ///< of sections
-  std::vector<Schema> others = {};      ///< schemas that are allowed instead
+  /// of lists and of maps with free keys: the schema of an item
+  std::vector<Schema> item = {};
+  std::string name = {};             ///< of sections: the name of its table
+  std::vector<Key> keys;             ///< of sections
+  std::vector<Choice> choices = {};  ///< of sections
+  std::vector<Schema> others = {};   ///< schemas that are allowed instead
   bool nullable = false;
 
   /// Returns the schema of the given type: this one, or one that is allowed instead. Throws
@@ -69,7 +72,8 @@ struct Schema {
 /// Whether a key is required, and what holds if it is missing.
 struct Presence {
   bool required = false;
-  std::string fallback = {};  ///< as a file would say it, or in words; empty where nothing stands for the key
+  /// as a file would say it, or in words; empty where nothing stands for the key
+  std::string fallback = {};
   bool in_words = false;
 };
 

@@ -170,7 +170,8 @@ std::optional<int> ConstraintRemoval::best(const Pass& pass, What kind, int leas
   std::optional<int> best;
   for (int c = 0; c < Constraints::kCount; ++c) {
     if (what(c) != kind || pass.furthest[index(c)] < least || !pass.witness[index(c)].found) continue;
-    if (c == Constraints::kCheck) return c;  // proved, whereas the others assume that the check passes
+    // proved, whereas the others assume that the check passes
+    if (c == Constraints::kCheck) return c;
     if (!best || pass.votes[index(c)] > pass.votes[index(*best)]) best = c;
   }
   return best;

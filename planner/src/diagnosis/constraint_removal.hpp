@@ -34,8 +34,9 @@ class ConstraintRemoval {
   /// What blocks every path.
   struct Answer {
     Cause cause;
-    std::optional<int> without_it;  ///< layer reached without it, at least; none if it is not enough
-    std::vector<Cause> together;    ///< further constraints that must go too
+    /// layer reached without it, at least; none if it is not enough
+    std::optional<int> without_it;
+    std::vector<Cause> together;  ///< further constraints that must go too
   };
   /// Returns the constraint, or several that together, block every path. If none was found that
   /// lets paths continue, or that would take more than `most_us` by a fixed estimate, returns the

@@ -107,7 +107,8 @@ Cause Constraints::cause(int constraint) const {
   } else if (is_object(constraint)) {
     cause.kind = Cause::Kind::kPair;
     cause.object = object_name_[static_cast<std::size_t>(constraint)];
-    const auto pair = std::find(object_of_.begin(), object_of_.end(), constraint);  // the first that was met
+    // the first that was met
+    const auto pair = std::find(object_of_.begin(), object_of_.end(), constraint);
     if (pair != object_of_.end()) cause.bodies = names_[static_cast<std::size_t>(pair - object_of_.begin())];
   } else if (constraint >= kFirstPair) {
     cause.kind = Cause::Kind::kPair;
@@ -219,7 +220,8 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     const StateCheck::Motion motion{qa, qa + delta};
     if (!check_.motions({&motion, 1})[0]) found.add(kCheck);
   }
-  return found.uncounted ? of(kCount) - 1 : found.set;  // all constraints: removing one alone would not help
+  // all constraints: removing one alone would not help
+  return found.uncounted ? of(kCount) - 1 : found.set;
 }
 
 std::optional<int> Constraints::run_out(int k, const Config& from, const Config& moved) const {
@@ -380,7 +382,8 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
     case Cause::Kind::kJointStep:
     case Cause::Kind::kSpeed: {
       const Config& bound = lattice_.row_step_bound(layer);
-      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;  // the roll has a limit of its own
+      // the roll has a limit of its own
+      const Eigen::Index joints = lattice_.chain().roll ? kDof - 1 : kDof;
       Eigen::Index k = 0;
       if (cause.kind == Cause::Kind::kJointStep)
         delta.head(joints).cwiseAbs().maxCoeff(&k);

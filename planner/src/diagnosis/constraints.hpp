@@ -137,8 +137,9 @@ class Constraints {
   World::Query query_;
   double question_us_, node_us_;
   std::int64_t nodes_ = 0, moves_ = 0, pairs_ = 0, checked_ = 0;
-  std::vector<int> number_of_;                        // of pairs, by robot body and other body
-  std::map<std::array<std::string, 2>, int> number_;  // by names, since a link may have several bodies
+  std::vector<int> number_of_;  // of pairs, by robot body and other body
+  // by names, since a link may have several bodies
+  std::map<std::array<std::string, 2>, int> number_;
   std::map<std::string, int> object_number_;
   std::array<std::array<std::string, 2>, kCount> names_;  // of pairs
   std::array<std::string, kCount> object_name_;           // of numbers that stand for an object

@@ -257,7 +257,8 @@ class Inspector {
       error << pose.translation() - reached.translation(), turn.angle() * turn.axis();
       residual = error.norm();
       const auto jacobian = chain.jacobian(q);
-      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);  // minimum norm
+      // minimum norm
+      q += jacobian.transpose() * (jacobian * jacobian.transpose()).ldlt().solve(error);
     }
     std::optional<Cause> worst;
     for (int k = 0; residual <= 1e-9 && k < kDof; ++k) {

@@ -9,7 +9,8 @@ namespace swivel {
 
 namespace {
 
-constexpr double kBetween = 0.5e-3;      // m, how much deeper a contact between postures may be than the one found
+// m, how much deeper a contact between postures may be than the one found
+constexpr double kBetween = 0.5e-3;
 constexpr double kTouching = 1e-6;       // m
 constexpr double kShortest = 1. / 1024;  // of a move
 

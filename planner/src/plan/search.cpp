@@ -68,7 +68,8 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
     if (found.outcome.path.empty()) {
       cost_to_go.budget().tell(Stage::kReach);
       found.deepest = deepest_valid_layer(cost_to_go, validity, path_first_options, searched);
-      if (*found.deepest >= 0) found.valid_path = searched.candidate;  // the path tried last, which is valid
+      // the path tried last, which is valid
+      if (*found.deepest >= 0) found.valid_path = searched.candidate;
       time_ms["reach"] = watch.lap();
     }
   } catch (const Stopped&) {

@@ -142,7 +142,8 @@ class Judge {
     budget_.poll();
     ++nodes_asked;
     if (lattice_->chain().roll && !lattice_->path().layer(layer).in_window(q[kDof - 1])) return false;
-    constexpr double kBetween = 1e-3;  // rad, by which a path along a limit may exceed it between layers
+    // rad, by which a path along a limit may exceed it between layers
+    constexpr double kBetween = 1e-3;
     if (!inside(q, given, problem_->refinement.joint_margin + kBetween)) return false;
     if (!jumps && redundancy_->singular_sine(q) <
                       std::min(std::sin(problem_->refinement.singular_margin), redundancy_->singular_sine(given) - 1e-9))
@@ -380,7 +381,8 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   options.planner = PlannerKind::kLazy;
   options.progress = [&budget](const Progress& now) {  // Stopped ends the plan as a time-out does
     budget.poll();
-    if (now.stage == Stage::kReach || now.stage == Stage::kDiagnosis) throw Stopped();  // there is no path: why does not matter
+    // there is no path: why does not matter
+    if (now.stage == Stage::kReach || now.stage == Stage::kDiagnosis) throw Stopped();
   };
   const PlanResult found = plan(robot, coarse, options);
   budget.poll();
@@ -432,7 +434,8 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
   constexpr int kNearLargest = 16;
   if (lattice.cost().metric != CostMetric::kL2) objective.power = kNearLargest;
   objective.roll_is_coordinate = redundancy.is_roll();
-  if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))  // otherwise the rolls stay as they are
+  // otherwise the rolls stay as they are
+  if (lattice.roll_costs() && (lattice.chain().roll || redundancy.is_roll()))
     for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {

@@ -35,7 +35,8 @@ LimitPlace place_of(Change change) {
   switch (change) {
     case Change::kClearance:
       return {[](const Limits& limits) { return std::optional(limits.clearance); },
-              [](Limits& limits, double value) {  // the shares that pairs keep between layers and among robot bodies stay
+              // the shares that pairs keep between layers and among robot bodies stay
+              [](Limits& limits, double value) {
                 const double share = limits.clearance > 0 ? value / limits.clearance : 1;
                 if (limits.self_clearance) *limits.self_clearance *= share;
                 if (limits.edge_clearance) *limits.edge_clearance *= share;
@@ -365,7 +366,8 @@ class Adviser {
                                (moved.outcome == Outcome::kSolved ? moved.cost < best.cost : moved.reached_s > best.reached_s));
           if (better) best = std::move(moved);
         }
-    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();  // no single move is to be named
+    // no single move is to be named
+    if (best.outcome == Outcome::kNoHelp) best.offset.setZero(), best.reached_s.reset();
   }
 
   const Problem& problem_;

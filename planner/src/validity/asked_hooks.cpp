@@ -47,7 +47,8 @@ std::span<const bool> AskedCheck::motions(std::span<const StateCheck::Motion> mo
 
 void AskedCost::costs(std::span<const Config> states, std::span<double> costs) {
   if (states.empty()) return;
-  std::fill(costs.begin(), costs.end(), std::numeric_limits<double>::quiet_NaN());  // so that a missing value is detected
+  // so that a missing value is detected
+  std::fill(costs.begin(), costs.end(), std::numeric_limits<double>::quiet_NaN());
   in_turn(*cost_, budget_, [&] { cost_->costs(states, costs); });
   const double most = 1000 * lattice_->cost_unit();
   for (std::size_t k = 0; k < states.size(); ++k) {

@@ -50,8 +50,9 @@ class CollisionValidity final : public Validity {
   struct Open {
     std::size_t index = 0;
     bool only_changed = false;
-    BodyPair pair = ClearanceMemory::kNoPair;  ///< on entry the pair to test first; then the pair that fails
-    double spare = -1;                         ///< see ClearanceMemory::Finding
+    /// on entry the pair to test first; then the pair that fails
+    BodyPair pair = ClearanceMemory::kNoPair;
+    double spare = -1;  ///< see ClearanceMemory::Finding
   };
   [[nodiscard]] Queries make_queries() const;
   /// Calls ask(open, worker, queries) for each open question on the executor's threads; beside

@@ -36,7 +36,8 @@ class RowMargin {
 
   const Lattice* lattice_;
   const World* world_;
-  Lazy<std::vector<Body>> bodies_;  // of the robot; empty if nodes are exact configurations themselves
+  // of the robot; empty if nodes are exact configurations themselves
+  Lazy<std::vector<Body>> bodies_;
 };
 
 }  // namespace swivel

@@ -30,10 +30,11 @@ namespace swivel {
 
 namespace {
 
-constexpr double kPose = 1e-6;                    // m and rad
-constexpr double kLimit = 1e-9;                   // rad
-constexpr double kSame = 1e-9;                    // m along the path
-constexpr double kNear = 1e-3;                    // of a step: as near as this is at a layer, or the same place
+constexpr double kPose = 1e-6;   // m and rad
+constexpr double kLimit = 1e-9;  // rad
+constexpr double kSame = 1e-9;   // m along the path
+// of a step: as near as this is at a layer, or the same place
+constexpr double kNear = 1e-3;
 constexpr double kArmAngle = 1e-3;                // rad
 constexpr PoseDistance kAtWaypoints{1e-3, 0.02};  // where the problem sets no tolerance
 
@@ -593,7 +594,8 @@ class Check {
       most.position = std::max(most.position, (tool.translation() - tools_[k - 1].translation()).norm());
       most.angle = std::max(most.angle, angle_between(tools_[k - 1], tool));
     }
-    return {most.position - motion.error.position, most.angle - motion.error.angle};  // errors of the motion are forgiven
+    // errors of the motion are forgiven
+    return {most.position - motion.error.position, most.angle - motion.error.angle};
   }
 
   /// Examines a move while the tool rests at a waypoint. The joints may move straight from row k -

@@ -164,7 +164,8 @@ class Completion {
   /// row comes as early on the path as possible. Returns which rows have got places.
   std::vector<bool> match(const std::vector<std::vector<double>>& fits) {
     std::vector<Link> links;
-    std::vector<std::ptrdiff_t> ends;  // for each length, the end of the sequence that ends earliest
+    // for each length, the end of the sequence that ends earliest
+    std::vector<std::ptrdiff_t> ends;
     for (std::size_t k = 0; k < fits.size(); ++k)
       for (auto place = fits[k].rbegin(); place != fits[k].rend(); ++place) {
         const auto end = std::upper_bound(ends.begin(), ends.end(), *place, [&](double value, std::ptrdiff_t link) {

@@ -50,7 +50,8 @@ class PlacesOnPath {
   bool curved_, any_turn_;
   double aside_;            // m, how far the path may be from the chord of a step
   std::size_t leaves_ = 1;  // a power of two
-  std::vector<Box> boxes_;  // a binary tree of runs of steps: 1 is the root, 2k and 2k + 1 are below k
+  // a binary tree of runs of steps: 1 is the root, 2k and 2k + 1 are below k
+  std::vector<Box> boxes_;
 };
 
 }  // namespace swivel

@@ -18,7 +18,8 @@ inline constexpr double kVerdictBand = 0.05e-3;
 /// another is at least as deep as that one. A mesh that is not closed has no inside.
 struct Depth {
   double at_least = 0;  ///< minus infinity where nothing is known
-  double at_most = 0;   ///< infinity where nothing is known: of two meshes, and of meshes that are not closed
+  /// infinity where nothing is known: of two meshes, and of meshes that are not closed
+  double at_most = 0;
 };
 
 /// Work counters of one query object. Add them up over threads.

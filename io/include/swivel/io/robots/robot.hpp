@@ -37,9 +37,10 @@ struct RobotOptions {
 
 /// Counts the shapes of a URDF.
 struct ShapeSurvey {
-  std::size_t collision = 0;                ///< <collision> elements
-  std::size_t visual_meshes = 0;            ///< meshes in <visual> elements
-  std::vector<std::string> missing_meshes;  ///< a message for each mesh in a <collision> that is not found
+  std::size_t collision = 0;      ///< <collision> elements
+  std::size_t visual_meshes = 0;  ///< meshes in <visual> elements
+  /// a message for each mesh in a <collision> that is not found
+  std::vector<std::string> missing_meshes;
 };
 
 /// Loads links and joints of a URDF, and an SRDF if not empty, without shapes: meshes are not read.

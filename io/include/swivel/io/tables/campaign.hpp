@@ -14,9 +14,11 @@ namespace swivel::io {
 /// The settings that determine the rows of a campaign or of placements: version, options, and the
 /// contents of all input files. Rows of other settings must not be mixed with them.
 struct RunSettings {
-  std::vector<std::pair<std::string, std::string>> values;   ///< name and value, such as "seed", "1"
+  /// name and value, such as "seed", "1"
+  std::vector<std::pair<std::string, std::string>> values;
   std::vector<std::pair<std::string, std::uint64_t>> files;  ///< name and hash of the contents
-  std::vector<std::string> coordinates;                      ///< whose offsets the rows have, a column each
+  /// whose offsets the rows have, a column each
+  std::vector<std::string> coordinates;
 };
 
 /// The rows of a campaign's RESULTS.csv, docs/formats.md, while it runs. They are appended to

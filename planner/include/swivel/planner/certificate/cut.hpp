@@ -23,7 +23,8 @@ struct PlanView;
 /// The verdict on a certificate of infeasibility: what it proves, or what is wrong with it.
 struct CutCheck {
   bool passed = false;
-  std::string failure;            ///< one line: the first fault, with layer and slot; empty if passed
+  /// one line: the first fault, with layer and slot; empty if passed
+  std::string failure;
   std::array<double, 2> s{0, 0};  ///< m along the path: first and last layer of the band
   /// true: all IK solutions of the arm are known; else the proof covers only those that were found
   bool complete = true;
