@@ -61,7 +61,7 @@ struct Fixture {
     }
     while (edges.size() < kPool) {
       const Node& a = nodes[static_cast<std::size_t>(random.uniform(0, static_cast<double>(nodes.size())))];
-      const int b = lattice.sheet_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
+      const int b = lattice.solution_of(a.slot) * lattice.angles() + lattice.run_after(a.layer, a.slot).first;
       const auto q = lattice.node(a.layer + 1, b);
       if (q && lattice.in_window(a.layer, a.slot, b) && lattice.step_allowed(a.layer, lattice.delta(a.q, *q)))
         edges.push_back({a, b, *q});

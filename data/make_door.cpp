@@ -93,7 +93,7 @@ Mesh panel(double step) {
         mesh.vertices.push_back(surface(sx, z) - depth * outward(sx, z));
       }
 
-  // Outer sheet: counter-clockwise in (x, z), so that its normals point to -y.
+  // Outer IK solution: counter-clockwise in (x, z), so that its normals point to -y.
   for (int j = 0; j + 1 < nz; ++j)
     for (int i = 0; i + 1 < nx; ++i) {
       if (i >= hole_x.first && i < hole_x.second && j >= hole_z.first && j < hole_z.second) continue;
@@ -102,7 +102,7 @@ Mesh panel(double step) {
       mesh.triangles.push_back({a, c, d});
     }
 
-  // Walls along every edge that has a triangle on one side only, and the inner sheet, turned over.
+  // Walls along every edge that has a triangle on one side only, and the inner IK solution, turned over.
   std::set<std::pair<int, int>> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});

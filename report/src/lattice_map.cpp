@@ -93,7 +93,7 @@ std::vector<int> slots_of_cells(const LatticeMap& map, const Lattice& lattice, i
 
 }  // namespace
 
-int LatticeMap::sheets() const {
+int LatticeMap::solutions() const {
   return kBranches * windings;
 }
 
@@ -122,13 +122,13 @@ const char* LatticeMap::emptiness() const {
                : "no node: out of reach, or beside the given start";
 }
 
-std::vector<int> LatticeMap::inhabited_sheets() const {
+std::vector<int> LatticeMap::inhabited_solutions() const {
   std::vector<int> inhabited;
-  for (int sheet = 0; sheet < panels(); ++sheet) {
-    bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == sheet; });
+  for (int solution = 0; solution < panels(); ++solution) {
+    bool any = std::any_of(path.begin(), path.end(), [&](int slot) { return slot / angles == solution; });
     for (int layer = 0; layer < layers && !any; ++layer)
-      for (int j = 0; j < angles && !any; ++j) any = at(layer, sheet, j).state >= NodeState::kNotLookedAt;
-    if (any) inhabited.push_back(sheet);
+      for (int j = 0; j < angles && !any; ++j) any = at(layer, solution, j).state >= NodeState::kNotLookedAt;
+    if (any) inhabited.push_back(solution);
   }
   return inhabited;
 }
@@ -138,13 +138,13 @@ std::string LatticeMap::blocker_name(const Node& node) const {
   return a + " - " + b;
 }
 
-std::string LatticeMap::sheet_name(int sheet) const {
-  if (shows_rolls(sheet)) return "roll of the tool, where the path is";
-  const int branch = sheet / windings;
+std::string LatticeMap::solution_name(int solution) const {
+  if (shows_rolls(solution)) return "roll of the tool, where the path is";
+  const int branch = solution / windings;
   if (!grid()) return "solutions " + std::to_string(branch);
   const auto sign = [&](int bit) { return branch & bit ? "-" : "+"; };
   std::string name = std::string("shoulder ") + sign(kShoulderBit) + ", wrist " + sign(kWristBit) + ", elbow " + sign(kElbowBit);
-  if (windings > 1) name += ", winding " + std::to_string(sheet % windings);
+  if (windings > 1) name += ", winding " + std::to_string(solution % windings);
   return name;
 }
 
@@ -271,7 +271,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
       if (pair) blocked.emplace_back(cell, std::pair(view.world.names(*pair)[0], view.world.names(*pair)[1]));
     }
     if (!map.turns || layer >= static_cast<int>(view.path.size())) continue;
-    const int on_path = view.path[static_cast<std::size_t>(layer)], panel = map.sheets() * map.angles;
+    const int on_path = view.path[static_cast<std::size_t>(layer)], panel = map.solutions() * map.angles;
     const double roll = wrap_angle(lattice.grid_place(layer, on_path).roll);
     map.path_of_rolls.push_back(panel + static_cast<int>(std::lround((roll + kPi) / kTwoPi * map.angles)) % map.angles);
     const std::vector<int> slots = slots_of_rolls(lattice, layer, on_path, map.angles);

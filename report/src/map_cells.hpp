@@ -22,19 +22,19 @@ class MapCells {
         rows((map.angles + angles_each - 1) / angles_each) {}
 
   /// Row 0 holds the least arm angles.
-  [[nodiscard]] LatticeMap::Node node(int sheet, int column, int row) const {
-    LatticeMap::Node most = map_.at(column * layers_each, sheet, row * angles_each);
+  [[nodiscard]] LatticeMap::Node node(int solution, int column, int row) const {
+    LatticeMap::Node most = map_.at(column * layers_each, solution, row * angles_each);
     for (int i = column * layers_each; i < std::min(map_.layers, (column + 1) * layers_each); ++i)
       for (int j = row * angles_each; j < std::min(map_.angles, (row + 1) * angles_each); ++j)
-        if (const LatticeMap::Node& node = map_.at(i, sheet, j); importance(node) > importance(most)) most = node;
+        if (const LatticeMap::Node& node = map_.at(i, solution, j); importance(node) > importance(most)) most = node;
     return most;
   }
-  [[nodiscard]] bool on_path(int sheet, int column, int row) const {
-    const std::vector<int>& path = map_.path_in(sheet);
+  [[nodiscard]] bool on_path(int solution, int column, int row) const {
+    const std::vector<int>& path = map_.path_in(solution);
     const int end = std::min(static_cast<int>(path.size()), (column + 1) * layers_each);
     for (int i = column * layers_each; i < end; ++i) {
       const int slot = path[i];
-      if (slot / map_.angles == sheet && slot % map_.angles / angles_each == row) return true;
+      if (slot / map_.angles == solution && slot % map_.angles / angles_each == row) return true;
     }
     return false;
   }

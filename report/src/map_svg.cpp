@@ -53,24 +53,25 @@ std::string to_svg(const LatticeMap& map) {
   constexpr double kLeft = 52, kPanelWidth = 620, kPanelHeight = 190, kTop = 24, kGap = 52, kRight = 24;
   const MapCells cells(map, 620, 252);
   Drawing drawing;
-  const std::vector<int> sheets = map.inhabited_sheets();
+  const std::vector<int> solutions = map.inhabited_solutions();
   const double height_of_legend = 18.0 * static_cast<double>(5 + kDof + map.blockers.size());
   const double width = kLeft + kPanelWidth + kRight;
-  drawing.rectangle(0, 0, width, kTop + static_cast<double>(sheets.size()) * (kPanelHeight + kGap) + height_of_legend, "#ffffff");
+  drawing.rectangle(0, 0, width, kTop + static_cast<double>(solutions.size()) * (kPanelHeight + kGap) + height_of_legend,
+                    "#ffffff");
   // A node stands for the stretch halfway to its neighbours, so the first and last layer are half as wide.
   const auto x_of = [&](double layer) { return kLeft + kPanelWidth * std::clamp(layer, 0.0, map.layers - 1.0) / (map.layers - 1); };
   MapLegend seen(map);
   double top = kTop;
-  for (const int sheet : sheets) {
+  for (const int solution : solutions) {
     const auto y_of = [&](double angle) { return top + kPanelHeight * (1 - angle / map.angles); };
     for (int row = 0; row < cells.rows; ++row) {
       const double low = row * cells.angles_each, high = std::min(map.angles, (row + 1) * cells.angles_each);
       for (int column = 0; column < cells.columns;) {
-        const LatticeMap::Node node = cells.node(sheet, column, row);
+        const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);
         int end = column + 1;  // cells alike are one rectangle
         for (; end < cells.columns; ++end) {
-          const LatticeMap::Node other = cells.node(sheet, end, row);
+          const LatticeMap::Node other = cells.node(solution, end, row);
           if (other != node) break;
         }
         const double from = x_of(column * cells.layers_each - 0.5), to = x_of(end * cells.layers_each - 0.5);
@@ -86,10 +87,10 @@ std::string to_svg(const LatticeMap& map) {
       }
       line.clear();
     };
-    const std::vector<int>& path = map.path_in(sheet);
+    const std::vector<int>& path = map.path_in(solution);
     for (std::size_t i = 0; i < path.size(); ++i) {
       const int slot = path[i], angle = slot % map.angles;
-      const bool here = slot / map.angles == sheet;
+      const bool here = slot / map.angles == solution;
       const bool changes = i > 0 && path[i - 1] / map.angles != slot / map.angles;
       if (here && i > 0 && !changes && map.closed && std::abs(path[i - 1] % map.angles - angle) > map.angles / 2)
         flush();  // through pi
@@ -98,14 +99,14 @@ std::string to_svg(const LatticeMap& map) {
         continue;
       }
       line.emplace_back(x_of(static_cast<double>(i)), y_of(angle + 0.5));
-      if (changes || (i + 1 < path.size() && path[i + 1] / map.angles != sheet))
+      if (changes || (i + 1 < path.size() && path[i + 1] / map.angles != solution))
         drawing.circle(line.back().first, line.back().second, 4, "#000000");
     }
     flush();
     drawing.frame(kLeft, top, kPanelWidth, kPanelHeight);
-    drawing.text(kLeft, top - 7, "start", map.sheet_name(sheet));
+    drawing.text(kLeft, top - 7, "start", map.solution_name(solution));
     for (const auto& [angle, name] : marks(map)) drawing.text(kLeft - 6, y_of(angle) + 4, "end", name);
-    drawing.text(14, top + kPanelHeight / 2, "middle", map.letter(sheet));
+    drawing.text(14, top + kPanelHeight / 2, "middle", map.letter(solution));
     for (int k = 0; k <= 5; ++k) {
       const double layer = (map.layers - 1) * k / 5.0;
       drawing.text(x_of(layer), top + kPanelHeight + 15, "middle", number(map.s[static_cast<std::size_t>(layer + 0.5)]));
@@ -123,7 +124,7 @@ std::string to_svg(const LatticeMap& map) {
   for (const auto& [node, meaning] : seen.entries()) legend(colour_of(node), meaning);
   if (!map.grid()) {
     drawing.text(kLeft, top, "start",
-                 map.letter(sheets.empty() ? 0 : sheets.front()) + std::string(": ") + map.coordinate_name() +
+                 map.letter(solutions.empty() ? 0 : solutions.front()) + std::string(": ") + map.coordinate_name() +
                      ", rad. Between two nodes of an arc of solutions the nearer one is shown" +
                      (cells.layers_each * cells.angles_each > 1 ? ", of several a blocked one first, then a free one." : "."));
     top += 18;

@@ -50,16 +50,16 @@ std::string to_text(const LatticeMap& map, int columns, bool coloured) {
   const MapCells cells(map, std::max(10, columns - kMargin), kRows);
   std::string text;
   MapLegend seen(map);
-  for (const int sheet : map.inhabited_sheets()) {
-    text += map.sheet_name(sheet) + "\n";
+  for (const int solution : map.inhabited_solutions()) {
+    text += map.solution_name(solution) + "\n";
     for (int row = cells.rows - 1; row >= 0; --row) {
       const double value = map.value(row * cells.angles_each);
       text += row % 4 == 0 ? formatted("%6.2f  ", value) : std::string(kMargin, ' ');
       for (int column = 0; column < cells.columns; ++column) {
-        const LatticeMap::Node node = cells.node(sheet, column, row);
+        const LatticeMap::Node node = cells.node(solution, column, row);
         seen.see(node);
         Look look = look_of(node);
-        if (cells.on_path(sheet, column, row)) look = {'*', 231};
+        if (cells.on_path(solution, column, row)) look = {'*', 231};
         put(text, look, coloured);
       }
       text += '\n';

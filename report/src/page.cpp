@@ -29,7 +29,7 @@ namespace {
 struct Row {
   TrajectoryRow at;
   double layer = 0;  ///< of the lattice; between two of them where only every so many layers of the path are layers of the lattice
-  int sheet = 0;
+  int solution = 0;
   double angle = 0;              ///< in cells
   std::optional<double> roll{};  ///< rad
 };
@@ -40,8 +40,8 @@ bool may_turn(const Lattice& lattice) {
   return grid && grid->rolls;
 }
 
-/// `rows`: of the path's layers, from the first on. Their sheets are mostly those of the lattice's path (`slots`); where their
-/// branch is another, those of the nodes that are nearest.
+/// `rows`: of the path's layers, from the first on. Their IK solutions are mostly those of the lattice's path (`slots`); where
+/// their branch is another, those of the nodes that are nearest.
 std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map, const std::vector<TrajectoryRow>& rows,
                         const std::vector<int>& slots) {
   const bool turned = may_turn(lattice);
@@ -60,17 +60,17 @@ std::vector<Row> placed(const Lattice& lattice, const LatticeMap& map, const std
       row.layer += s(last) > s(first) ? (s(i) - s(first)) / (s(last) - s(first)) : count;
     }
     row.angle = map.place(row.at.phi);
-    row.sheet = map.path[knot] / map.angles;
+    row.solution = map.path[knot] / map.angles;
     if (turned) row.roll = turns[i];
-    if (const int branch = row.at.branch; row.sheet / map.windings != branch) {
-      row.sheet = branch * map.windings;
+    if (const int branch = row.at.branch; row.solution / map.windings != branch) {
+      row.solution = branch * map.windings;
       double least = std::numeric_limits<double>::infinity();
-      for (int sheet = row.sheet, end = sheet + map.windings; map.grid() && !turned && sheet < end; ++sheet) {
+      for (int solution = row.solution, end = solution + map.windings; map.grid() && !turned && solution < end; ++solution) {
         const int cell = static_cast<int>(std::lround(row.angle)) % map.angles;
-        const auto node = lattice.node(static_cast<int>(i), sheet * map.angles + cell);
+        const auto node = lattice.node(static_cast<int>(i), solution * map.angles + cell);
         if (!node) continue;
         const double away = (*node - row.at.q).norm();
-        if (away < least) least = away, row.sheet = sheet;
+        if (away < least) least = away, row.solution = solution;
       }
     }
     shown.push_back(std::move(row));
@@ -93,7 +93,7 @@ std::vector<double> errors_mm(const Lattice& lattice, const std::vector<Row>& ro
 
 /// Where a row is in the map.
 Json place_json(const Row& row) {
-  Json json = {{"layer", row.layer}, {"phi", row.at.phi}, {"sheet", row.sheet}, {"angle", row.angle}};
+  Json json = {{"layer", row.layer}, {"phi", row.at.phi}, {"sheet", row.solution}, {"angle", row.angle}};
   if (row.roll) json["roll"] = *row.roll;
   return json;
 }
@@ -265,14 +265,14 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   int least = 0;
   for (const bool by_bodies : {true, false}) {
     for (const Lattice::Node& candidate : listed) {
-      const int cell = map_cell(map, lattice, layer, candidate.slot), sheet = cell / map.angles, angle = cell % map.angles;
+      const int cell = map_cell(map, lattice, layer, candidate.slot), solution = cell / map.angles, angle = cell % map.angles;
       if (!is_drawn(candidate, cell)) continue;
-      const LatticeMap::Node& node = map.at(layer, sheet, angle);
+      const LatticeMap::Node& node = map.at(layer, solution, angle);
       const bool blocked = node.state == NodeState::kBlocked && bodies.is_array() && !motion &&
                            bodies[0] == map.blockers[node.cause].first && bodies[1] == map.blockers[node.cause].second;
       if (blocked != by_bodies) continue;
       const int away = std::abs(angle - from % map.angles);
-      const int far = (map.closed ? std::min(away, map.angles - away) : away) + (sheet == from / map.angles ? 0 : map.angles);
+      const int far = (map.closed ? std::min(away, map.angles - away) : away) + (solution == from / map.angles ? 0 : map.angles);
       if (!best || far < least) best = &candidate, least = far;
     }
     if (best) break;
@@ -341,8 +341,8 @@ class Clearances {
 Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world, const std::vector<int>& path,
               const std::vector<Row>& rows, const Budget& budget) {
   constexpr std::size_t kMostCells = 200'000;
-  const std::vector<int> sheets = map.inhabited_sheets();
-  const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, sheets.size()) * 252));
+  const std::vector<int> solutions = map.inhabited_solutions();
+  const auto most_columns = static_cast<int>(kMostCells / (std::max<std::size_t>(1, solutions.size()) * 252));
   const MapCells cells(map, std::max(100, most_columns), 252);
   struct Shown {
     int layer = -1, slot = -1;
@@ -353,16 +353,16 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   std::vector<std::uint8_t> states, causes;
   const auto looked_at = [](const LatticeMap::Node& node) { return node.state >= NodeState::kFree; };
   std::size_t asked = 0;
-  for (const int sheet : sheets)
+  for (const int solution : solutions)
     for (int column = 0; column < cells.columns; ++column)
-      for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(sheet, column, row));
+      for (int row = 0; row < cells.rows; ++row) asked += looked_at(cells.node(solution, column, row));
   Clearances clearances(world, asked);
   std::vector<Lattice::Node> listed;
   std::vector<int> panel_of(map.panels(), -1);
   Json panels = Json::array();
-  for (const int sheet : sheets) {
-    panel_of[sheet] = static_cast<int>(panels.size());
-    panels.push_back({{"sheet", sheet}, {"name", map.sheet_name(sheet)}, {"rolls", map.shows_rolls(sheet)}});
+  for (const int solution : solutions) {
+    panel_of[solution] = static_cast<int>(panels.size());
+    panels.push_back({{"sheet", solution}, {"name", map.solution_name(solution)}, {"rolls", map.shows_rolls(solution)}});
   }
   std::vector<std::size_t> row_of_layer;
   for (std::size_t row = 0; row < rows.size(); ++row)
@@ -371,13 +371,14 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   int rank = 0;  // of the roll that the path has, as in make_map()
   for (int column = 0; column < cells.columns; ++column) {
     const int first = column * cells.layers_each, last = std::min(map.layers, first + cells.layers_each);
-    std::vector<Shown> shown(sheets.size() * static_cast<std::size_t>(cells.rows));
+    std::vector<Shown> shown(solutions.size() * static_cast<std::size_t>(cells.rows));
     for (int layer = first; layer < last; ++layer) {
       budget.poll();
       lattice.layer_nodes(layer, listed);
-      const auto show = [&](const Lattice::Node& node, int sheet, int angle) {
-        const int row = angle / cells.angles_each, k = panel_of[sheet] * cells.rows + row;
-        if (panel_of[sheet] < 0 || shown[k].layer >= 0 || map.at(layer, sheet, angle) != cells.node(sheet, column, row)) return;
+      const auto show = [&](const Lattice::Node& node, int solution, int angle) {
+        const int row = angle / cells.angles_each, k = panel_of[solution] * cells.rows + row;
+        if (panel_of[solution] < 0 || shown[k].layer >= 0 || map.at(layer, solution, angle) != cells.node(solution, column, row))
+          return;
         const auto near = static_cast<std::size_t>(layer);
         const Config q = turned_towards(lattice, lattice.row(layer, node.slot, node.q).value_or(node.q), rows,
                                         near < row_of_layer.size() ? row_of_layer[near] : rows.size());
@@ -400,7 +401,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
       for (int k = 0; k < map.angles; ++k) {
         const auto at = std::lower_bound(listed.begin(), listed.end(), slots[static_cast<std::size_t>(k)],
                                          [](const Lattice::Node& node, int slot) { return node.slot < slot; });
-        if (at != listed.end() && at->slot == slots[static_cast<std::size_t>(k)]) show(*at, map.sheets(), k);
+        if (at != listed.end() && at->slot == slots[static_cast<std::size_t>(k)]) show(*at, map.solutions(), k);
       }
     }
     const auto is_of_path = [&](const Shown& pose) {
@@ -408,9 +409,9 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
       return layer < path.size() && path[layer] == pose.slot;
     };
     std::size_t k = 0;
-    for (const int sheet : sheets)
+    for (const int solution : solutions)
       for (int row = 0; row < cells.rows; ++row, ++k) {
-        const LatticeMap::Node cell = cells.node(sheet, column, row);
+        const LatticeMap::Node cell = cells.node(solution, column, row);
         const bool posed = shown[k].layer >= 0,
                    is_again = posed && row > 0 && shown[k].slot == shown[k - 1].slot && shown[k].layer == shown[k - 1].layer;
         states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (is_again ? 32u : 0u) |
@@ -419,7 +420,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
         if (!posed || is_again) continue;
         budget.poll();
         if (looked_at(cell))
-          clearances.add(shown[k].q, cells.on_path(sheet, column, row) || is_of_path(shown[k]));
+          clearances.add(shown[k].q, cells.on_path(solution, column, row) || is_of_path(shown[k]));
         else
           clearances.skip();
         poses.push_back(shown[k]);

@@ -64,7 +64,7 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
     for (int layer = 0; layer < lattice.layers(); ++layer) {
       lattice.solve(layer, nodes);
       for (int slot = 0; slot < lattice.width(); ++slot) {
-        const bool exists = nodes.valid(lattice.sheet_of(slot), lattice.angle_of(slot));
+        const bool exists = nodes.valid(lattice.solution_of(slot), lattice.angle_of(slot));
         const auto fault = lattice.fault(layer, slot);
         const auto alone = lattice.node(layer, slot);
         ASSERT_EQ(exists, alone.has_value());
@@ -75,7 +75,7 @@ TEST(Lattice, NodesReachTheirPoseAtTheirArmAngleWithinLimits) {
         }
         ASSERT_EQ(fault.status, NodeStatus::kValid);
         ++valid;
-        const Config q = nodes.config(lattice.sheet_of(slot), lattice.angle_of(slot));
+        const Config q = nodes.config(lattice.solution_of(slot), lattice.angle_of(slot));
         ASSERT_EQ(*alone, q);  // the same bits however asked
         const Pose reached = chain.tool(q), wanted = lattice.path().layer(layer).tool;
         worst =
@@ -261,9 +261,9 @@ TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
     ASSERT_EQ(lattice.node(0, lattice.start_slot()), q0);
     bool any = false;
     const SrsLattice::Run run = lattice.run_after(0, lattice.start_slot());
-    for (int sheet = 0; sheet < lattice.sheets() && !any; ++sheet)
+    for (int solution = 0; solution < lattice.solutions() && !any; ++solution)
       for (int k = 0; k < run.count && !any; ++k) {
-        const auto q = lattice.node(1, sheet * lattice.angles() + (run.first + k) % lattice.angles());
+        const auto q = lattice.node(1, solution * lattice.angles() + (run.first + k) % lattice.angles());
         any = q && lattice.step_allowed(0, lattice.delta(q0, *q));
       }
     EXPECT_TRUE(any) << "joint " << joint << " at " << q0[joint] << " of " << limit;
@@ -274,10 +274,10 @@ TEST(Lattice, AStartInTheSliverOfARangeIsANodeWithNeighbours) {
     small.rebuild();
     LayerNodes nodes;
     small.lattice->solve(1, nodes);
-    for (int sheet = 0; sheet < small.lattice->sheets(); ++sheet)
+    for (int solution = 0; solution < small.lattice->solutions(); ++solution)
       for (int j = 0; j < small.lattice->angles(); ++j) {
-        if (!nodes.valid(sheet, j)) continue;
-        const double from_limit = limit - sign * nodes.q(sheet, joint)[j];
+        if (!nodes.valid(solution, j)) continue;
+        const double from_limit = limit - sign * nodes.q(solution, joint)[j];
         ASSERT_LE(from_limit, kTwoPi + 3e-9);
         near_limit += from_limit < sliver;
       }
@@ -349,17 +349,17 @@ TEST(Lattice, CarriedReferenceKeepsNeighboursAlignedWhereTheLinePassesAxisOne) {
     lattice.solve(layer, here);
     lattice.solve(layer + 1, next);
     for (int slot = 0; slot < lattice.width(); slot += 3) {
-      const int sheet = lattice.sheet_of(slot);
-      if (!here.valid(sheet, lattice.angle_of(slot))) continue;
-      const Config q = here.config(sheet, lattice.angle_of(slot));
+      const int solution = lattice.solution_of(slot);
+      if (!here.valid(solution, lattice.angle_of(slot))) continue;
+      const Config q = here.config(solution, lattice.angle_of(slot));
       int best = -1;
       double least = 1e9;
       for (int j = 0; j < lattice.angles(); ++j)
-        if (next.valid(sheet, j)) {
-          const double cost = lattice.edge_cost(lattice.delta(q, next.config(sheet, j)));
+        if (next.valid(solution, j)) {
+          const double cost = lattice.edge_cost(lattice.delta(q, next.config(solution, j)));
           if (cost < least) {
             least = cost;
-            best = sheet * lattice.angles() + j;
+            best = solution * lattice.angles() + j;
           }
         }
       if (best < 0) continue;
@@ -388,10 +388,10 @@ TEST(Lattice, StartIsTheOnlyNodeOfLayerZeroAndKeepsItsJoints) {
     lattice.solve(0, nodes);
     int valid = 0;
     for (int slot = 0; slot < lattice.width(); ++slot)
-      if (nodes.valid(lattice.sheet_of(slot), lattice.angle_of(slot))) {
+      if (nodes.valid(lattice.solution_of(slot), lattice.angle_of(slot))) {
         ++valid;
         EXPECT_EQ(slot, lattice.start_slot());
-        EXPECT_EQ(nodes.config(lattice.sheet_of(slot), lattice.angle_of(slot)), q0);
+        EXPECT_EQ(nodes.config(lattice.solution_of(slot), lattice.angle_of(slot)), q0);
       }
     EXPECT_EQ(valid, 1);
     // Successors: exactly the grid nodes within the window of the start's own arm angle.

@@ -61,13 +61,13 @@ bool holds(const std::vector<AngleArc>& arcs, double phi, double margin = 0) {
   });
 }
 
-/// By the definition: the images of a sheet's winding exist, one joint after the other. `near`: some joint is so near to an end of
-/// its range, or some angle so near to singular, that rounding decides.
-bool within(const Small& small, const std::array<ElbowCircle, 2>& circles, const SrsLattice& lattice, int sheet, double phi,
+/// By the definition: the images of an IK solution's winding exist, one joint after the other. `near`: some joint is so near to an
+/// end of its range, or some angle so near to singular, that rounding decides.
+bool within(const Small& small, const std::array<ElbowCircle, 2>& circles, const SrsLattice& lattice, int solution, double phi,
             bool& near) {
-  const int branch = sheet / lattice.windings();
+  const int branch = solution / lattice.windings();
   const Config q = srs_ik(small.srs, circles, phi, branch);
-  int winding = sheet % lattice.windings();
+  int winding = solution % lattice.windings();
   near = std::abs(std::sin(small.srs.shoulder_angle(q))) < 1e-4 || std::abs(std::sin(small.srs.wrist_angle(q))) < 1e-4;
   bool inside = true;
   for (int j = kDof - 1; j >= 0; --j) {
@@ -96,15 +96,15 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
         const Pose& tool = small.path->layer(layer).tool;
         if (reach_status(small.srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
         const auto circles = elbow_circles(small.srs, lattice.plane(layer), tool);
-        for (int sheet = 0; sheet < lattice.sheets(); ++sheet) {
-          lattice.arcs(layer, sheet, arcs);
+        for (int solution = 0; solution < lattice.solutions(); ++solution) {
+          lattice.arcs(layer, solution, arcs);
           const auto agrees = [&](double phi) {
             bool near = false;
-            const bool expected = within(small, circles, lattice, sheet, phi, near);
+            const bool expected = within(small, circles, lattice, solution, phi, near);
             ++(near ? skipped : sampled);
             inside += expected;
             ASSERT_TRUE(near || holds(arcs, phi) == expected)
-                << robot.name << " trial " << trial << " sheet " << sheet << " phi " << phi << " expected " << expected;
+                << robot.name << " trial " << trial << " sheet " << solution << " phi " << phi << " expected " << expected;
           };
           const int samples = lattice.windings() > 1 ? 40 : 400;
           for (int k = 0; k < samples; ++k) agrees(random.uniform(-kPi, kPi));
@@ -120,7 +120,7 @@ TEST(LimitArcs, AreThoseOfDenseSampling) {
           }
           arcs_found += static_cast<std::int64_t>(arcs.size());
           several += arcs.size() > 1;
-          images += sheet % lattice.windings() > 0 && !arcs.empty();
+          images += solution % lattice.windings() > 0 && !arcs.empty();
         }
       }
     }
@@ -161,18 +161,18 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
         std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);
         for (const SrsLattice::Moved& cell : lattice.moved(layer)) stands[static_cast<std::size_t>(cell.slot)] = 1;
         for (int slot = 0; slot < lattice.width(); ++slot) {
-          const int sheet = lattice.sheet_of(slot), j = lattice.angle_of(slot);
+          const int solution = lattice.solution_of(slot), j = lattice.angle_of(slot);
           const auto alone = lattice.node(layer, slot), plain = grid.node(layer, slot);
-          ASSERT_EQ(nodes.valid(sheet, j), alone.has_value());
+          ASSERT_EQ(nodes.valid(solution, j), alone.has_value());
           ASSERT_EQ(lattice.fault(layer, slot).status == NodeStatus::kValid, alone.has_value());
           for (int k = (j - first + n) % n; k < count; k += n) {
-            ASSERT_EQ(run.valid(sheet, k), alone.has_value());
+            ASSERT_EQ(run.valid(solution, k), alone.has_value());
             if (alone) {
-              ASSERT_EQ(run.config(sheet, k), *alone);
+              ASSERT_EQ(run.config(solution, k), *alone);
             }
           }
           if (alone) {
-            ASSERT_EQ(nodes.config(sheet, j), *alone);
+            ASSERT_EQ(nodes.config(solution, j), *alone);
           }
           if (plain) {
             ASSERT_EQ(*alone, *plain);  // nothing that the grid has is lost
@@ -185,7 +185,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
         for (const SrsLattice::Moved& cell : lattice.moved(layer)) {
           const double own = grid.phi(layer, cell.slot);
           ASSERT_LE(std::abs(std::remainder(cell.phi - own, kTwoPi)), step / 2 + 1e-12);
-          lattice.arcs(layer, lattice.sheet_of(cell.slot), arcs);
+          lattice.arcs(layer, lattice.solution_of(cell.slot), arcs);
           ASSERT_TRUE(holds(arcs, cell.phi));
           ASSERT_FALSE(holds(arcs, own, -1e-5));
           ASSERT_EQ(lattice.phi(layer, cell.slot), cell.phi);
@@ -202,7 +202,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
             const double margin = small.problem.limits.joint_margin;
             ASSERT_TRUE(limit.continuous || (cell.q[j] >= limit.lower + margin - 2e-9 && cell.q[j] <= limit.upper - margin + 2e-9));
           }
-          // Sheets whose bodies are said to stand alike have the same arm angle.
+          // IK solutions whose bodies are said to stand alike have the same arm angle.
           std::vector<int> alike;
           lattice.alike(layer, cell.slot, 0b0011000, alike);
           ASSERT_NE(std::find(alike.begin(), alike.end(), cell.slot), alike.end());
@@ -212,14 +212,14 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
           }
           ++moved;
         }
-        for (int sheet = 0; sheet < lattice.sheets(); ++sheet) {
-          lattice.arcs(layer, sheet, arcs);
+        for (int solution = 0; solution < lattice.solutions(); ++solution) {
+          lattice.arcs(layer, solution, arcs);
           for (const AngleArc& arc : arcs) {
             if (arc.whole() || arc.end - arc.begin < 1e-5) continue;
             bool found = false;
             for (long long cell = std::llround((arc.begin + 1e-5 + kPi) / step);
                  cell <= std::llround((arc.end - 1e-5 + kPi) / step); ++cell) {
-              const int slot = sheet * n + static_cast<int>((cell % n + n) % n);
+              const int slot = solution * n + static_cast<int>((cell % n + n) % n);
               if (!lattice.node(layer, slot)) {
                 ++missed;
                 continue;

@@ -168,7 +168,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
             for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
               for (int k = -reach; k <= reach; ++k) {
                 const int n = lattice.angles(), j = ((lattice.angle_of(slot) + k) % n + n) % n;
-                cost_to_go->verdicts().remove_node(i, lattice.sheet_of(slot) * n + j);
+                cost_to_go->verdicts().remove_node(i, lattice.solution_of(slot) * n + j);
               }
           }
           cost_to_go->repair();

@@ -140,9 +140,9 @@ TEST(EdgeSet, ImplicitSuccessorsAreThoseOfBruteForce) {
           total += static_cast<std::int64_t>(found.size());
           for (const Edge& edge : found) {
             const int change = lattice.branch_of(a) ^ lattice.branch_of(edge.b);
-            if (lattice.sheet_of(a) != lattice.sheet_of(edge.b)) ++changing[place];
+            if (lattice.solution_of(a) != lattice.solution_of(edge.b)) ++changing[place];
             for (int bit = 0; bit < 3; ++bit) flips[static_cast<std::size_t>(bit)] += (change >> bit) & 1;
-            windings += change == 0 && lattice.sheet_of(a) != lattice.sheet_of(edge.b);
+            windings += change == 0 && lattice.solution_of(a) != lattice.solution_of(edge.b);
           }
         }
       }
@@ -222,7 +222,7 @@ TEST(CostToGo, StaysExactUnderRemovals) {
           if (layer == cut) {
             for (int k = 0; k < 3; ++k) {
               const int j = (lattice.angle_of(slot) + k) % lattice.angles();
-              cost_to_go.verdicts().remove_node(layer, lattice.sheet_of(slot) * lattice.angles() + j);
+              cost_to_go.verdicts().remove_node(layer, lattice.solution_of(slot) * lattice.angles() + j);
               ++removed_nodes;
             }
             break;

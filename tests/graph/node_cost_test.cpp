@@ -180,7 +180,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int k = -reach; k <= reach; ++k) {
             const int n = lattice.angles(), slot = best[static_cast<std::size_t>(layer)];
-            const int there = lattice.sheet_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
+            const int there = lattice.solution_of(slot) * n + ((lattice.angle_of(slot) + k) % n + n) % n;
             if (whole.verdicts().knows_cost(layer, there) || !lattice.node(layer, there) || !random.coin(share)) continue;
             const double cost = random.coin(0.2) ? 0 : lattice.rounded_cost(random.uniform(0, scale));
             costs[static_cast<std::size_t>(layer)][static_cast<std::size_t>(there)] = cost;

@@ -72,12 +72,12 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     const double cell = kTwoPi / map.angles;
     for (int layer = 0; layer < map.layers; ++layer) {
       const int on_path = view.path[static_cast<std::size_t>(layer)], inner = lattice.grid_place(layer, on_path).cell;
-      const int path_cell = map.path_of_rolls[static_cast<std::size_t>(layer)] - map.sheets() * map.angles;
-      EXPECT_EQ(map.at(layer, map.sheets(), path_cell).state, NodeState::kFree) << layer;
+      const int path_cell = map.path_of_rolls[static_cast<std::size_t>(layer)] - map.solutions() * map.angles;
+      EXPECT_EQ(map.at(layer, map.solutions(), path_cell).state, NodeState::kFree) << layer;
       const Roll window = lattice.path().layer(layer).window;
       for (int k = 0; k < map.angles; ++k) {
         const double roll = k * cell - kPi;
-        const LatticeMap::Node& seen = map.at(layer, map.sheets(), k);
+        const LatticeMap::Node& seen = map.at(layer, map.solutions(), k);
         ++count[seen.state];
         int nearest = 0;
         double least = kPi;
@@ -105,7 +105,7 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
     EXPECT_GT(count[NodeState::kFree], 50);
     EXPECT_GT(count[NodeState::kBlocked] + count[NodeState::kJointLimit], windows ? 0 : 50);
     EXPECT_EQ(count[NodeState::kNoIk] > 50, windows);
-    const std::string name = map.sheet_name(map.sheets());
+    const std::string name = map.solution_name(map.solutions());
     EXPECT_NE(to_text(map, 80, false).find(name), std::string::npos);
     EXPECT_NE(to_svg(map).find(name), std::string::npos);
   }
@@ -154,19 +154,19 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
         }
       }
       const int on_path = layer < static_cast<int>(view.path.size()) ? view.path[static_cast<std::size_t>(layer)] : -1;
-      for (int sheet = 0; sheet < map.sheets(); ++sheet)
+      for (int solution = 0; solution < map.solutions(); ++solution)
         for (int cell = 0; cell < map.angles; ++cell) {
-          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + sheet)) * static_cast<std::size_t>(map.angles) +
+          const std::size_t k = (static_cast<std::size_t>(layer * map.panels() + solution)) * static_cast<std::size_t>(map.angles) +
                                 static_cast<std::size_t>(cell);
-          const auto found = of_cell.find({sheet, cell});
-          if (unsure.count({sheet, cell})) continue;
+          const auto found = of_cell.find({solution, cell});
+          if (unsure.count({solution, cell})) continue;
           if (found == of_cell.end()) {
             ++empty;
-            EXPECT_EQ(map.slots[k], -1) << name << ' ' << layer << ' ' << sheet << ' ' << cell;
+            EXPECT_EQ(map.slots[k], -1) << name << ' ' << layer << ' ' << solution << ' ' << cell;
             continue;
           }
           const std::vector<int>& slots = found->second;
-          (with_node.count({sheet, cell}) ? own : filled) += 1;
+          (with_node.count({solution, cell}) ? own : filled) += 1;
           holes += map.slots[k] < 0;
           if (std::find(slots.begin(), slots.end(), on_path) != slots.end()) {
             EXPECT_EQ(map.slots[k], on_path);
@@ -193,11 +193,11 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
     EXPECT_NE(text.find("Rows are " + words + "s, rad."), std::string::npos);
     EXPECT_EQ(text.find("Rows are arm angles"), std::string::npos);
     EXPECT_NE(svg.find(map.letter(0) + (": " + words)), std::string::npos);
-    const auto sheets = map.inhabited_sheets();
-    const bool some_are_empty = std::any_of(sheets.begin(), sheets.end(), [&](int sheet) {
+    const auto solutions = map.inhabited_solutions();
+    const bool some_are_empty = std::any_of(solutions.begin(), solutions.end(), [&](int solution) {
       for (int layer = 0; layer < map.layers; ++layer)
         for (int cell = 0; cell < map.angles; ++cell)
-          if (map.at(layer, sheet, cell).state == NodeState::kNoIk) return true;
+          if (map.at(layer, solution, cell).state == NodeState::kNoIk) return true;
       return false;
     });
     EXPECT_EQ(svg.find("no solution: out of reach, beyond a joint limit") != std::string::npos, some_are_empty);
@@ -333,7 +333,7 @@ TEST_P(Maps, SvgIsWellFormedAndCoversEveryPanel) {
   for (auto* line = document.RootElement()->FirstChildElement("polyline"); line; line = line->NextSiblingElement("polyline"))
     ++lines;
   EXPECT_EQ(lines > 0, lazy.map.path.size() > 1);
-  for (const int label : lazy.map.inhabited_sheets()) EXPECT_NE(svg.find(lazy.map.sheet_name(label)), std::string::npos);
+  for (const int label : lazy.map.inhabited_solutions()) EXPECT_NE(svg.find(lazy.map.solution_name(label)), std::string::npos);
   EXPECT_LT(svg.size(), 2'000'000U);
 }
 

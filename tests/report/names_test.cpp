@@ -84,7 +84,7 @@ TEST(Names, ThatNobodyCheckedDoNotEscape) {
   map.layers = map.angles = 2;
   map.s = {0, 1};
   map.blockers = {{"a\x1b[31m\xff", "b\n"}};
-  map.nodes.resize(static_cast<std::size_t>(map.layers * map.sheets() * map.angles), {NodeState::kBlocked, 0});
+  map.nodes.resize(static_cast<std::size_t>(map.layers * map.solutions() * map.angles), {NodeState::kBlocked, 0});
   std::string text = to_text(map, 100, false);
   text.erase(std::remove(text.begin(), text.end(), '\n'), text.end());
   EXPECT_TRUE(is_valid_name(text)) << text;

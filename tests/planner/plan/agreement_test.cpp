@@ -105,7 +105,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
         const int slot = truth.slots[static_cast<std::size_t>(i)];
         ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].phi, lattice.phi(i, slot)) << what;
         ASSERT_EQ(results[0].trajectory[static_cast<std::size_t>(i)].branch, lattice.branch_of(slot)) << what;
-        if (i > 0) label_changes += lattice.sheet_of(slot) != lattice.sheet_of(truth.slots[static_cast<std::size_t>(i) - 1]);
+        if (i > 0) label_changes += lattice.solution_of(slot) != lattice.solution_of(truth.slots[static_cast<std::size_t>(i) - 1]);
       }
       detours += results[2].counters.iterations > 1;
       const CheckResult check = check_trajectory(problem, results[0].trajectory);

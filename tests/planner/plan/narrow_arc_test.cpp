@@ -29,8 +29,8 @@ Narrowest narrowest(const ArmModel& arm, const SrsArm& srs, const Problem& probl
   std::vector<AngleArc> arcs;
   for (int layer = 0; layer < lattice.layers(); ++layer) {
     double widest = 0;
-    for (int sheet = 0; sheet < lattice.sheets(); ++sheet) {
-      lattice.arcs(layer, sheet, arcs);
+    for (int solution = 0; solution < lattice.solutions(); ++solution) {
+      lattice.arcs(layer, solution, arcs);
       for (const AngleArc& arc : arcs) widest = std::max(widest, arc.end - arc.begin);
     }
     if (widest < least.width) least = {widest, layer};
@@ -151,7 +151,7 @@ TEST(NarrowArc, NoPathHoldsAsFarAsItSays) {
       const Diagnosis& diagnosis = result.diagnosis;
       ++seen[static_cast<std::size_t>(diagnosis.holds())];
       bool waypoint_empty = false, empty = false;
-      for (int layer = 0; layer < lattice.layers(); ++layer) {  // by sampling, each sheet's joints within the limits
+      for (int layer = 0; layer < lattice.layers(); ++layer) {  // by sampling, each IK solution's joints within the limits
         if (reach_status(srs, lattice.plane(layer).reach) != ReachStatus::kReachable) continue;
         const auto circles = elbow_circles(srs, lattice.plane(layer), path.layer(layer).tool);
         bool any = false;

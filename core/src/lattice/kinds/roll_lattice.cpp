@@ -320,10 +320,10 @@ void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const 
   } else {
     first = (at_roll(0).angle_of(a % width_) - window + angles) % angles;
   }
-  const int sheet = branch(layer, a) * windings, end = first + count;
+  const int solution = branch(layer, a) * windings, end = first + count;
   for (const int rank : near(layer, rank_of(layer, a), true))
     for (int winding = 0; winding < windings; ++winding) {
-      const int zero = slot_of(rank, (sheet + winding) * angles);
+      const int zero = slot_of(rank, (solution + winding) * angles);
       if (end > angles) out.push_back({zero, zero + end - angles});
       out.push_back({zero + first, zero + std::min(end, angles)});
     }

@@ -96,7 +96,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
 
   tracks_ = 2;
   for (const Images& images : images_) tracks_ += 4 * static_cast<std::size_t>(images.count);
-  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(sheets());
+  tracks_ += windings_ == 1 ? 8 : static_cast<std::size_t>(solutions());
 
   const double width = wanted * kBranches * windings_;
   const double needed = width * layers() * 17.0;  // cost-to-go, states, search
@@ -264,7 +264,7 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   out.layout_ = layout;
   out.count_ = count;
   out.arrays_ = {};
-  out.offsets_.resize(static_cast<std::size_t>(sheets()));
+  out.offsets_.resize(static_cast<std::size_t>(solutions()));
   constexpr std::size_t kOwn = kDof + 1;  // joints and a mask
   const auto own = static_cast<std::size_t>(std::popcount(moved)) * static_cast<std::size_t>(windings_) * kOwn;
   const auto needed = static_cast<Eigen::Index>((tracks_ + own) * n);
@@ -279,13 +279,13 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   std::fill_n(out.data_.data() + free, n, 0.0);
   std::fill_n(out.data_.data() + never, n, std::numeric_limits<double>::infinity());
   if (start) {
-    for (LayerNodes::Offsets& sheet : out.offsets_) sheet = {.q = {}, .mask = {never, free}, .alive = false};
+    for (LayerNodes::Offsets& solution : out.offsets_) solution = {.q = {}, .mask = {never, free}, .alive = false};
     return lay_out_start(out);
   }
   for (int elbow = 0; elbow < 2; ++elbow) {
     const bool alive = elbow_alive(layer, elbow);
     const std::size_t begin = used;
-    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with windings, per sheet.
+    // One array per (joint, sign of its triple, image), and a mask per (triple, sign) or, with windings, per IK solution.
     std::array<std::array<std::size_t, kDof>, 2> track{};
     std::array<std::array<std::size_t, 2>, 2> mask{};  // [sign][triple]
     if (alive)
@@ -295,9 +295,9 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
         for (std::size_t& triple : mask[sign]) triple = windings_ == 1 ? allot() : never;
         out.shared_[static_cast<std::size_t>(elbow)][sign] = {track[sign], mask[sign], alive};
       }
-    for (int winding = 0, first_sheet = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
-      const int sheet = first_sheet + winding, branch = sheet / windings_;
-      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
+    for (int winding = 0, first_solution = elbow ? kElbowBit * windings_ : 0; winding < 4 * windings_; ++winding) {
+      const int solution = first_solution + winding, branch = solution / windings_;
+      LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
       offsets.alive = alive;
       offsets.mask = {never, free};
       if (!alive) continue;
@@ -308,16 +308,16 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
         offsets.mask = {allot(), free};
       for (int j = 0; j < kDof; ++j)
         offsets.q[static_cast<std::size_t>(j)] = track[j < kWristJoints ? shoulder : wrist][static_cast<std::size_t>(j)] +
-                                                 static_cast<std::size_t>(winding_images(sheet % windings_, j)) * n;
+                                                 static_cast<std::size_t>(winding_images(solution % windings_, j)) * n;
     }
     out.arrays_[static_cast<std::size_t>(elbow)][0] = {begin, used};
   }
   if (!moved) return;
   used = tracks_ * n;
-  for (int sheet = 0; sheet < sheets(); ++sheet) {
-    if (!(moved >> (sheet / windings_) & 1)) continue;
-    LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
-    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(family_of(sheet))][1];
+  for (int solution = 0; solution < solutions(); ++solution) {
+    if (!(moved >> (solution / windings_) & 1)) continue;
+    LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
+    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(family_of(solution))][1];
     if (arrays.end == 0) arrays.begin = used;
     for (std::size_t& joint : offsets.q) joint = allot();
     offsets.mask = {allot(), free};
@@ -326,8 +326,8 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
 }
 
 void SrsLattice::lay_out_start(LayerNodes& out) const {
-  const int sheet = sheet_of(start_->slot), n = out.count_;
-  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(sheet)];
+  const int solution = solution_of(start_->slot), n = out.count_;
+  LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
   offsets.alive = true;
   std::size_t used = 2 * static_cast<std::size_t>(n);
   for (std::size_t j = 0; j < kDof; ++j, used += static_cast<std::size_t>(n)) {
@@ -360,7 +360,7 @@ TripleTask SrsLattice::triple_task(const ElbowCircle& circle, int triple) const 
 void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) const {
   if (!elbow_alive(out.layer_, elbow) || (out.layer_ == 0 && start_)) return;
   const ElbowCircle& circle = circles_[static_cast<std::size_t>(out.layer_)][static_cast<std::size_t>(elbow)];
-  const int first_sheet = elbow ? kElbowBit * windings_ : 0;
+  const int first_solution = elbow ? kElbowBit * windings_ : 0;
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[static_cast<std::size_t>(elbow)];
   const bool shares_masks = windings_ == 1;
@@ -392,26 +392,26 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
         double* to = data + sign[s].q[j] + image * n;
         for (int k = begin; k < end; ++k) to[k] = from[k] + kTwoPi * static_cast<double>(image);
       }
-  for (int sheet = first_sheet; sheet < first_sheet + 4 * windings_ && out.layout_.moved; ++sheet)
-    if (out.layout_.moved >> (sheet / windings_) & 1) copy_shared(sheet, begin, end, out);
+  for (int solution = first_solution; solution < first_solution + 4 * windings_ && out.layout_.moved; ++solution)
+    if (out.layout_.moved >> (solution / windings_) & 1) copy_shared(solution, begin, end, out);
   const auto length = static_cast<std::size_t>(end - begin);
-  for (int sheet = first_sheet; sheet < first_sheet + 4 * windings_ && !shares_masks; ++sheet) {
-    const int branch = sheet / windings_;
+  for (int solution = first_solution; solution < first_solution + 4 * windings_ && !shares_masks; ++solution) {
+    const int branch = solution / windings_;
     const double* shoulder = unlimited.data() + (branch & kShoulderBit ? length : 0);
     const double* wrist = unlimited.data() + (branch & kWristBit ? 3 : 2) * length;
-    double* mask = data + out.offsets_[static_cast<std::size_t>(sheet)].mask[0] + begin;
+    double* mask = data + out.offsets_[static_cast<std::size_t>(solution)].mask[0] + begin;
     for (std::size_t k = 0; k < length; ++k) {
       double excess = shoulder[k] + wrist[k];
       for (int j = 0; j < kDof; ++j)
         excess =
-            std::max(excess, out.q(sheet, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
+            std::max(excess, out.q(solution, j)[static_cast<std::size_t>(begin) + k] - images_[static_cast<std::size_t>(j)].upper);
       mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
     }
   }
   for (const Moved& moved : this->moved(out.layer_)) {
-    const int sheet = sheet_of(moved.slot);
-    if (family_of(sheet) != elbow) continue;
-    const LayerNodes::Offsets& own = out.at(sheet);
+    const int solution = solution_of(moved.slot);
+    if (family_of(solution) != elbow) continue;
+    const LayerNodes::Offsets& own = out.at(solution);
     for (int k = wrapped_index(static_cast<long long>(angle_of(moved.slot)) - out.first_, angles_); k < end; k += angles_) {
       if (k < begin) continue;
       for (std::size_t j = 0; j < kDof; ++j) data[own.q[j] + static_cast<std::size_t>(k)] = moved.q[static_cast<Eigen::Index>(j)];
@@ -420,14 +420,14 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
   }
 }
 
-void SrsLattice::copy_shared(int sheet, int begin, int end, LayerNodes& out) const {
-  const int branch = branch_of(sheet * angles_);
+void SrsLattice::copy_shared(int solution, int begin, int end, LayerNodes& out) const {
+  const int branch = branch_of(solution * angles_);
   double* const data = out.data_.data();
   const std::array<LayerNodes::Offsets, 2>& sign = out.shared_[branch & kElbowBit ? 1 : 0];
   const LayerNodes::Offsets &shoulder = sign[branch & kShoulderBit ? 1 : 0], &wrist = sign[branch & kWristBit ? 1 : 0];
-  const LayerNodes::Offsets& own = out.at(sheet);
+  const LayerNodes::Offsets& own = out.at(solution);
   for (int j = 0; j < kDof; ++j) {
-    const auto image = static_cast<std::size_t>(winding_images(sheet % windings_, j)) * static_cast<std::size_t>(out.count_);
+    const auto image = static_cast<std::size_t>(winding_images(solution % windings_, j)) * static_cast<std::size_t>(out.count_);
     const double* from = data + (j < kWristJoints ? shoulder : wrist).q[static_cast<std::size_t>(j)] + image;
     std::copy(from + begin, from + end, data + own.q[static_cast<std::size_t>(j)] + begin);
   }
@@ -470,7 +470,7 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
   if (last_joint_) q[kLastJoint] = *last_joint_;
   if (windings_ > 1)
     for (int j = 0; j < kDof; ++j) {
-      q[j] += kTwoPi * static_cast<double>(winding_images(sheet_of(slot) % windings_, j));
+      q[j] += kTwoPi * static_cast<double>(winding_images(solution_of(slot) % windings_, j));
       excess = std::max(excess, q[j] - images_[static_cast<std::size_t>(j)].upper);
     }
   return excess <= 0 ? std::optional(q) : std::nullopt;
@@ -502,7 +502,7 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   if (singular(q)) return {NodeStatus::kSingular};
   if (given) return fault;
   if (last_joint_) q[kLastJoint] = *last_joint_;
-  const int winding = sheet_of(slot) % windings_;
+  const int winding = solution_of(slot) % windings_;
   for (int j = 0; j < kDof; ++j) {
     const Images& images = images_[static_cast<std::size_t>(j)];
     const double first = image_from(q[j], images.base), below = first - kTwoPi;
@@ -534,11 +534,11 @@ void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   solve(layer, nodes);
   out.clear();
   for (int slot = 0; slot < width(); ++slot)
-    if (nodes.valid(sheet_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(sheet_of(slot), angle_of(slot))});
+    if (nodes.valid(solution_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(solution_of(slot), angle_of(slot))});
 }
 
 int SrsLattice::beside(int, int slot, int by) const {
-  return sheet_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
+  return solution_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
 }
 
 int SrsLattice::along(int layer, int slot, int by) const {
@@ -554,13 +554,13 @@ void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& o
       (groups & kShoulderLinks ? kShoulderBit : 0) | (groups & kWristLinks ? kWristBit : 0) | (all_angles ? 0 : kElbowBit);
   const int branch = branch_of(slot);
   const int first = all_angles ? 0 : angle_of(slot), last = all_angles ? angles_ - 1 : first;
-  for (int sheet = 0, other = 0; sheet < sheets(); sheet += windings_, ++other) {
+  for (int solution = 0, other = 0; solution < solutions(); solution += windings_, ++other) {
     if ((other ^ branch) & signs) continue;
     for (int winding = 0; winding < windings_; ++winding)
-      for (int j = first; j <= last; ++j) out.push_back((sheet + winding) * angles_ + j);
+      for (int j = first; j <= last; ++j) out.push_back((solution + winding) * angles_ + j);
   }
   if (all_angles || moved(layer).empty()) return;
-  const double angle = phi(layer, slot);  // cells move sheet by sheet
+  const double angle = phi(layer, slot);  // cells move IK solution by IK solution
   std::erase_if(out, [&](int other) { return phi(layer, other) != angle; });
 }
 
@@ -623,8 +623,8 @@ SrsLattice::Run SrsLattice::grid_run(double phi_from) const {
 void SrsLattice::successors(int layer, int a, std::vector<SlotRun>& out) const {
   const Run run = run_after(layer, a);
   out.clear();
-  for (int sheet = 0; sheet < sheets(); ++sheet) {
-    const int zero = sheet * angles_, end = run.first + run.count;
+  for (int solution = 0; solution < solutions(); ++solution) {
+    const int zero = solution * angles_, end = run.first + run.count;
     out.push_back({zero + run.first, zero + std::min(end, angles_)});
     if (end > angles_) out.push_back({zero, zero + end - angles_});
   }

@@ -15,8 +15,8 @@ constexpr double kHair = 1e-6;  // rad of arm angle that moved nodes keep from t
 
 }  // namespace
 
-int SrsLattice::triple_winding(int sheet, int triple) const {
-  const int wrist = triple_windings(1), elbow = images_[3].count, winding = sheet % windings_;
+int SrsLattice::triple_winding(int solution, int triple) const {
+  const int wrist = triple_windings(1), elbow = images_[3].count, winding = solution % windings_;
   return triple == 0 ? winding / (wrist * elbow) : winding % wrist;
 }
 
@@ -47,31 +47,31 @@ void SrsLattice::prepare_arcs() {
   }
 }
 
-void SrsLattice::triple_arcs(int layer, int sheet, int triple, std::vector<AngleArc>& out) const {
-  const int branch = sheet / windings_;
+void SrsLattice::triple_arcs(int layer, int solution, int triple, std::vector<AngleArc>& out) const {
+  const int branch = solution / windings_;
   const ElbowCircle& circle = circles_[static_cast<std::size_t>(layer)][branch & kElbowBit ? 1 : 0];
-  const auto winding = static_cast<std::size_t>(triple_winding(sheet, triple));
+  const auto winding = static_cast<std::size_t>(triple_winding(solution, triple));
   const TripleLimits& limits = triple_limits_[static_cast<std::size_t>(triple)][winding];
   limits.arcs(triple == 0 ? circle.shoulder : circle.wrist, (branch & (triple == 0 ? kShoulderBit : kWristBit)) != 0, out);
 }
 
-bool SrsLattice::elbow_within(int layer, int sheet) const {
-  const int elbow = family_of(sheet);
+bool SrsLattice::elbow_within(int layer, int solution) const {
+  const int elbow = family_of(solution);
   if (!elbow_alive(layer, elbow)) return false;
   const Images& images = images_[3];
   const double turns =
       std::ceil((images.base - circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4) / kTwoPi);
   const double q4 = circles_[static_cast<std::size_t>(layer)][static_cast<std::size_t>(elbow)].q4 +
-                    kTwoPi * (turns + winding_images(sheet % windings_, 3));
+                    kTwoPi * (turns + winding_images(solution % windings_, 3));
   return q4 <= images.upper;
 }
 
-void SrsLattice::arcs(int layer, int sheet, std::vector<AngleArc>& out) const {
+void SrsLattice::arcs(int layer, int solution, std::vector<AngleArc>& out) const {
   out.clear();
-  if (!elbow_within(layer, sheet)) return;
+  if (!elbow_within(layer, solution)) return;
   std::vector<AngleArc> shoulder, wrist;
-  triple_arcs(layer, sheet, 0, shoulder);
-  triple_arcs(layer, sheet, 1, wrist);
+  triple_arcs(layer, solution, 0, shoulder);
+  triple_arcs(layer, solution, 1, wrist);
   common_arcs(shoulder, wrist, out);
 }
 
@@ -80,8 +80,8 @@ bool SrsLattice::proved_unreachable(int layer) const {
   const ReachStatus reach = reach_[static_cast<std::size_t>(layer)];
   if (reach != ReachStatus::kReachable) return reach == ReachStatus::kOutOfReach;
   std::vector<AngleArc> found;
-  for (int sheet = 0; sheet < sheets(); ++sheet) {
-    arcs(layer, sheet, found);
+  for (int solution = 0; solution < solutions(); ++solution) {
+    arcs(layer, solution, found);
     if (!found.empty()) return false;
   }
   return true;
@@ -102,27 +102,27 @@ void SrsLattice::move_cells(const Budget& budget) {
         of_triple[triple].resize(2 * triple_limits_[triple].size());
         known[triple].assign(of_triple[triple].size(), 0);
       }
-      const int half = sheets() / kFamilies;
-      for (int sheet = family * half; sheet < (family + 1) * half; ++sheet) {
-        if (!elbow_within(layer, sheet)) continue;
+      const int half = solutions() / kFamilies;
+      for (int solution = family * half; solution < (family + 1) * half; ++solution) {
+        if (!elbow_within(layer, solution)) continue;
         const auto found = [&](int triple) -> const std::vector<AngleArc>& {
-          const bool negative = (sheet / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;
+          const bool negative = (solution / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;
           const auto t = static_cast<std::size_t>(triple),
-                     k = 2 * static_cast<std::size_t>(triple_winding(sheet, triple)) + (negative ? 1 : 0);
-          if (!known[t][k]) triple_arcs(layer, sheet, triple, of_triple[t][k]);
+                     k = 2 * static_cast<std::size_t>(triple_winding(solution, triple)) + (negative ? 1 : 0);
+          if (!known[t][k]) triple_arcs(layer, solution, triple, of_triple[t][k]);
           known[t][k] = 1;
           return of_triple[t][k];
         };
         if (found(0).empty() || found(1).empty()) continue;
         common_arcs(found(0), found(1), arcs);
-        move_cells_of(layer, sheet, arcs);
+        move_cells_of(layer, solution, arcs);
       }
     }
     moved_begin_.push_back(moved_.size());
   }
 }
 
-void SrsLattice::move_cells_of(int layer, int sheet, const std::vector<AngleArc>& arcs) {
+void SrsLattice::move_cells_of(int layer, int solution, const std::vector<AngleArc>& arcs) {
   struct Move {
     int cell;
     double phi, away;  // away: from the cell's own angle
@@ -153,7 +153,7 @@ void SrsLattice::move_cells_of(int layer, int sheet, const std::vector<AngleArc>
   }
   std::sort(moves.begin(), moves.end(), [](const Move& a, const Move& b) { return a.cell < b.cell; });
   for (const Move& move : moves) {
-    const int slot = sheet * angles_ + move.cell;
+    const int slot = solution * angles_ + move.cell;
     const auto own = static_cast<std::size_t>(move.cell);
     const double phi = angle_of_cell(move.cell);
     const bool near = std::any_of(arcs.begin(), arcs.end(), [&](const AngleArc& arc) {

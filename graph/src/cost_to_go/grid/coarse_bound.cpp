@@ -101,7 +101,7 @@ class Chords {
     // exact costs.
     lost_ = 0x1p-20 * scales * (largest + kTwoPi) + 1e-10 * lattice.cost_unit();
     fits_ = scales * (largest + kTwoPi) * lattice.layers() < 1e30;
-    for (auto& layer : circles_) layer.resize(static_cast<std::size_t>(lattice.sheets()));
+    for (auto& layer : circles_) layer.resize(static_cast<std::size_t>(lattice.solutions()));
   }
 
   [[nodiscard]] bool fits() const { return fits_; }
@@ -118,25 +118,25 @@ class Chords {
       for (int at = c; at < end; ++at) {
         load(at, family);
         const bool meets_other = end == c + 1 && meets(at);
-        for (int sheet = first_sheet(family); sheet < first_sheet(family) + lattice_.sheets() / 2; ++sheet) {
+        for (int solution = first_solution(family); solution < first_solution(family) + lattice_.solutions() / 2; ++solution) {
           float* const row =
-              rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(sheet) * n_;
-          if (circle(at, sheet).alive)
-            bound(at, sheet, meets_other, row);
+              rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(solution) * n_;
+          if (circle(at, solution).alive)
+            bound(at, solution, meets_other, row);
           else
             std::fill_n(row, n_, kNever);
         }
       }
     });
-    for (int sheet = 0; sheet < lattice_.sheets(); ++sheet)
-      if (circle(end - 1, sheet).alive) return end;
+    for (int solution = 0; solution < lattice_.solutions(); ++solution)
+      if (circle(end - 1, solution).alive) return end;
     return -1;
   }
 
  private:
   static constexpr int kMostAlone = 16;  // chords until the next progress report
 
-  [[nodiscard]] int first_sheet(int family) const { return family * lattice_.sheets() / 2; }
+  [[nodiscard]] int first_solution(int family) const { return family * lattice_.solutions() / 2; }
   /// Returns true if a step of the chord before layer c may lead from one elbow side to the other.
   [[nodiscard]] bool meets(int c) const {
     for (int step = c > 0 ? layer_at(c - 1) : 0; step < (c > 0 ? layer_at(c) : 0); ++step)
@@ -144,16 +144,16 @@ class Chords {
     return false;
   }
   [[nodiscard]] int layer_at(int c) const { return std::min(c * stride_, lattice_.layers() - 1); }
-  Circle& circle(int c, int sheet) {
-    return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(sheet)];
+  Circle& circle(int c, int solution) {
+    return circles_[static_cast<std::size_t>(c) % circles_.size()][static_cast<std::size_t>(solution)];
   }
   /// Computes the bounds of an IK solution's nodes from those of layer c - 1; zeros in layer 0.
-  void bound(int c, int sheet, bool meets_other, float* best) {
+  void bound(int c, int solution, bool meets_other, float* best) {
     budget_.poll();
-    Circle& here = circle(c, sheet);
+    Circle& here = circle(c, solution);
     if (c == 0) std::fill_n(best, n_, 0.0F);
     for (int run = 0; c > 0 && run < runs(); ++run) {
-      const Lanes relaxed = relax(c, sheet, meets_other, run);
+      const Lanes relaxed = relax(c, solution, meets_other, run);
       std::copy_n(relaxed.data(), std::min(kRun, n_), best + begin(run));
     }
     Eigen::Map<Eigen::ArrayXf> bounds(best, n_), values(here.value.data() + window_, n_);
@@ -174,20 +174,20 @@ class Chords {
     LayerNodes& nodes = nodes_[static_cast<std::size_t>(family)];
     lattice_.lay_out(layer_at(c), 0, n_, nodes);
     lattice_.solve_part(family, 0, n_, nodes);
-    for (int sheet = first_sheet(family); sheet < first_sheet(family) + lattice_.sheets() / 2; ++sheet) {
-      Circle& to = circle(c, sheet);
+    for (int solution = first_solution(family); solution < first_solution(family) + lattice_.solutions() / 2; ++solution) {
+      Circle& to = circle(c, solution);
       to.alive = false;
-      if (!nodes.alive(sheet)) continue;
+      if (!nodes.alive(solution)) continue;
       const auto length = static_cast<std::size_t>(n_ + 2 * window_ + kRun);
       to.value.resize(length, kNever);
       Eigen::Map<Eigen::ArrayXf> value(to.value.data() + window_, n_);
-      value = (Track(nodes.mask(sheet, 0), n_) + Track(nodes.mask(sheet, 1), n_)).cast<float>();
+      value = (Track(nodes.mask(solution, 0), n_) + Track(nodes.mask(solution, 1), n_)).cast<float>();
       to.alive = value.minCoeff() == 0;
       if (!to.alive) continue;
       for (int k = 0; k < kDof; ++k) {
         std::vector<float>& q = to.q[k];
         q.resize(length);
-        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes.q(sheet, k), n_).cast<float>();
+        Eigen::Map<Eigen::ArrayXf>(q.data() + window_, n_) = Track(nodes.q(solution, k), n_).cast<float>();
         wrap(q);
       }
     }
@@ -211,19 +211,19 @@ class Chords {
   }
 
   /// Computes the bounds of a run's nodes before rounding is subtracted.
-  Lanes relax(int c, int sheet, bool meets_other, int run) {
-    const Circle& here = circle(c, sheet);
+  Lanes relax(int c, int solution, bool meets_other, int run) {
+    const Circle& here = circle(c, solution);
     const int at = window_ + begin(run), count = std::min(kRun, n_);
     Lanes best = Lanes::Constant(kNever);
     const Summary own = here.summary(at);
     if (own.least == kNever) return best;
     const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
-    relax_with(here, begin(run), count, circle(c - 1, sheet), best.data());
+    relax_with(here, begin(run), count, circle(c - 1, solution), best.data());
     float worst = worst_of_all();
-    const int family = lattice_.family_of(sheet), first = meets_other ? 0 : first_sheet(family);
-    for (int other = first; other < (meets_other ? lattice_.sheets() : first + lattice_.sheets() / 2); ++other) {
+    const int family = lattice_.family_of(solution), first = meets_other ? 0 : first_solution(family);
+    for (int other = first; other < (meets_other ? lattice_.solutions() : first + lattice_.solutions() / 2); ++other) {
       const Circle& before = circle(c - 1, other);
-      if (other == sheet || !before.alive) continue;
+      if (other == solution || !before.alive) continue;
       const Summary& near = before.near[static_cast<std::size_t>(run)];
       float norm = 0;
       for (std::size_t m = 0; m < kMiddle.size(); ++m)
@@ -262,7 +262,7 @@ class Chords {
   RelaxTask<float> task_;
   double lost_ = 0;
   bool fits_ = true;
-  std::array<std::vector<Circle>, 2> circles_;  // [c % 2][sheet]
+  std::array<std::vector<Circle>, 2> circles_;  // [c % 2][solution]
   std::vector<LayerNodes> nodes_;               // scratch of load(): [family]
 };
 

@@ -33,8 +33,8 @@ class GridCostToGo final : public CostToGo {
 
   [[nodiscard]] const SrsLattice& lattice() const override { return *lattice_; }
   [[nodiscard]] double at(int layer, int slot) const override {
-    const int sheet = lattice_->sheet_of(slot), j = lattice_->angle_of(slot);
-    return tiles_of(sheet)[tile_index(layer, sheet, j / kTileWidth)][static_cast<std::size_t>(j % kTileWidth)];
+    const int solution = lattice_->solution_of(slot), j = lattice_->angle_of(slot);
+    return tiles_of(solution)[tile_index(layer, solution, j / kTileWidth)][static_cast<std::size_t>(j % kTileWidth)];
   }
   [[nodiscard]] double best() const override;
   [[nodiscard]] int deepest_reachable() override;
@@ -64,23 +64,25 @@ class GridCostToGo final : public CostToGo {
   /// The joints of one node.
   struct OneNode {
     const LayerNodes* nodes = nullptr;
-    int sheet = 0, place = 0;
-    [[nodiscard]] bool valid() const { return nodes->valid(sheet, place); }
-    [[nodiscard]] Config config() const { return nodes->config(sheet, place); }
+    int solution = 0, place = 0;
+    [[nodiscard]] bool valid() const { return nodes->valid(solution, place); }
+    [[nodiscard]] Config config() const { return nodes->config(solution, place); }
   };
   [[nodiscard]] OneNode one_node(int layer, int slot);
   /// Returns the joints of a column of one elbow side, valid until the next call.
   [[nodiscard]] const LayerNodes& neighbours(int layer, int family, int column);
   [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
-  [[nodiscard]] std::size_t tile_of_layer(int sheet, int column) const {
-    return static_cast<std::size_t>(sheet) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
+  [[nodiscard]] std::size_t tile_of_layer(int solution, int column) const {
+    return static_cast<std::size_t>(solution) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
   }
-  [[nodiscard]] int half_sheets() const { return lattice_->sheets() / 2; }
-  [[nodiscard]] int first_sheet(int family) const { return family * half_sheets(); }
-  [[nodiscard]] const TileTable& tiles_of(int sheet) const { return apart_ && lattice_->family_of(sheet) ? tiles_[1] : tiles_[0]; }
-  [[nodiscard]] TileTable& tiles_of(int sheet) { return apart_ && lattice_->family_of(sheet) ? tiles_[1] : tiles_[0]; }
-  [[nodiscard]] std::size_t tile_index(int layer, int sheet, int column) const {
-    return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->sheets(), 0) + tile_of_layer(sheet, column);
+  [[nodiscard]] int half_solutions() const { return lattice_->solutions() / 2; }
+  [[nodiscard]] int first_solution(int family) const { return family * half_solutions(); }
+  [[nodiscard]] const TileTable& tiles_of(int solution) const {
+    return apart_ && lattice_->family_of(solution) ? tiles_[1] : tiles_[0];
+  }
+  [[nodiscard]] TileTable& tiles_of(int solution) { return apart_ && lattice_->family_of(solution) ? tiles_[1] : tiles_[0]; }
+  [[nodiscard]] std::size_t tile_index(int layer, int solution, int column) const {
+    return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->solutions(), 0) + tile_of_layer(solution, column);
   }
   double& value_at(int layer, int slot);  // the tile is held from now on
 
@@ -111,7 +113,7 @@ class GridCostToGo final : public CostToGo {
   void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
   void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
   void relax(int family, int step_layer, Workspace& from, const Workspace& to);
-  void relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other, double* best);
+  void relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other, double* best);
   void apply_masks(int family, Workspace& workspace) const;
   void add_node_costs(int family, Workspace& workspace) const;
   void prune_above_limit(int family, Workspace& workspace) const;
@@ -120,7 +122,7 @@ class GridCostToGo final : public CostToGo {
   /// plain ranges, which tell nothing.
   [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
   [[nodiscard]] bool may_meet(int step_layer, const MiddleRanges& a, const MiddleRanges& b) const;
-  [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to,
+  [[nodiscard]] bool may_connect(int step_layer, const Workspace& from, int solution, int column, const Workspace& to,
                                  int other) const;
   /// Finds the angles in the windows of these; gaps between two of a column are filled, so there
   /// may be more.

@@ -13,8 +13,8 @@ GridCostToGo::LayerJoints& GridCostToGo::joints(int family, int layer) {
     joints->layer = layer;
     lattice_->lay_out(layer, (n - window % n) % n, n + 2 * window, joints->nodes);
     joints->solved.assign(static_cast<std::size_t>(tile_columns()), 0);
-    joints->of_tile.resize(tile_of_layer(lattice_->sheets(), 0));
-    joints->of_layer.assign(static_cast<std::size_t>(lattice_->sheets()), {});
+    joints->of_tile.resize(tile_of_layer(lattice_->solutions(), 0));
+    joints->of_layer.assign(static_cast<std::size_t>(lattice_->solutions()), {});
   }
   return *joints;
 }
@@ -30,7 +30,7 @@ void GridCostToGo::solve_columns(Workspace& workspace, int family, int first, in
     while (next < last && !joints.solved[static_cast<std::size_t>(next)]) ++next;
     std::fill(joints.solved.begin() + column, joints.solved.begin() + next, std::uint8_t{1});
     const int begin = column * kTileWidth, end = std::min(n, next * kTileWidth);
-    half.ik_nodes += static_cast<std::int64_t>(end - begin) * half_sheets();
+    half.ik_nodes += static_cast<std::int64_t>(end - begin) * half_solutions();
     lattice_->solve_part(family, window + begin, window + end, joints.nodes);
     for (int done = column; done < next; ++done) find_ranges(joints, family, done);
     // The window reaches around the circle.
@@ -43,13 +43,13 @@ void GridCostToGo::solve_columns(Workspace& workspace, int family, int first, in
 }
 
 void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) const {
-  const int half = lattice_->sheets() / 2, begin = lattice_->window() + column * kTileWidth;
+  const int half = lattice_->solutions() / 2, begin = lattice_->window() + column * kTileWidth;
   const int count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     std::array<const double*, 2> known{};  // solutions share arrays: two for each sign of a triple
     std::array<JointRange, 2> found;
-    for (int sheet = family * half; sheet < (family + 1) * half; ++sheet) {
-      const double* q = joints.nodes.q(sheet, MiddleRanges::kJoints[m]) + begin;
+    for (int solution = family * half; solution < (family + 1) * half; ++solution) {
+      const double* q = joints.nodes.q(solution, MiddleRanges::kJoints[m]) + begin;
       if (q != known[0]) {
         std::swap(known[0], known[1]);
         std::swap(found[0], found[1]);
@@ -58,8 +58,8 @@ void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) cons
         known[0] = q;
         found[0] = JointRange(q, count);
       }
-      joints.of_tile[tile_of_layer(sheet, column)].joint[m] = found[0];
-      joints.of_layer[static_cast<std::size_t>(sheet)].joint[m].add(found[0]);
+      joints.of_tile[tile_of_layer(solution, column)].joint[m] = found[0];
+      joints.of_layer[static_cast<std::size_t>(solution)].joint[m].add(found[0]);
     }
   }
 }
@@ -86,7 +86,7 @@ const LayerNodes& GridCostToGo::neighbours(int layer, int family, int column) {
   if (const std::int64_t of = layer * std::int64_t{2} * tile_columns() + in_layer; found.of != of) {
     const int count = std::min(kTileWidth, lattice_->angles());
     found.of = of;
-    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->sheets() / 2;
+    ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->solutions() / 2;
     lattice_->lay_out(layer, column * kTileWidth, count, found.nodes);
     lattice_->solve_part(family, 0, count, found.nodes);
   }
@@ -94,8 +94,8 @@ const LayerNodes& GridCostToGo::neighbours(int layer, int family, int column) {
 }
 
 GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
-  const int sheet = lattice_->sheet_of(slot), angle = lattice_->angle_of(slot), column = angle / kTileWidth;
-  return {&neighbours(layer, lattice_->family_of(sheet), column), sheet, angle - column * kTileWidth};
+  const int solution = lattice_->solution_of(slot), angle = lattice_->angle_of(slot), column = angle / kTileWidth;
+  return {&neighbours(layer, lattice_->family_of(solution), column), solution, angle - column * kTileWidth};
 }
 
 Config GridCostToGo::config(int layer, int slot) {

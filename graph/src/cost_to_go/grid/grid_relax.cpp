@@ -11,11 +11,11 @@ void GridCostToGo::begin(int family, int layer, Workspace& workspace) const {
   Workspace::Half& half = workspace.half(family);
   half.layer = layer;
   half.joints = nullptr;
-  for (const int sheet : half.sheets) {
-    const auto row = workspace.value.begin() + static_cast<std::ptrdiff_t>(sheet) * length;
+  for (const int solution : half.solutions) {
+    const auto row = workspace.value.begin() + static_cast<std::ptrdiff_t>(solution) * length;
     std::fill(row, row + length, kUnreachable);
   }
-  half.sheets.clear();
+  half.solutions.clear();
   half.tiles.clear();
   half.reached.assign(static_cast<std::size_t>(tile_columns()), 0);
 }
@@ -27,9 +27,9 @@ void GridCostToGo::begin_with_all(int family, int layer, Workspace& workspace) {
   std::fill_n(workspace.row.begin() + family * width, width, 0.0);
   solve_columns(workspace, family, 0, tile_columns());
   Workspace::Half& half = workspace.half(family);
-  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
-    for (int column = 0; column < tile_columns() && half.joints->nodes.alive(sheet); ++column)
-      half.tiles.push_back({sheet, column, true});
+  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
+    for (int column = 0; column < tile_columns() && half.joints->nodes.alive(solution); ++column)
+      half.tiles.push_back({solution, column, true});
   apply_masks(family, workspace);
 }
 
@@ -49,8 +49,8 @@ void GridCostToGo::reach_back(int family, int step_layer, const Workspace& to, W
     for (next = k + 1; next < columns.size() && columns[next] == columns[next - 1] + 1;) ++next;
     solve_columns(from, family, columns[k], columns[next - 1] + 1);
   }
-  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
-    for (const int column : columns) half.tiles.push_back({sheet, column});
+  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
+    for (const int column : columns) half.tiles.push_back({solution, column});
 }
 
 bool GridCostToGo::out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const {
@@ -63,17 +63,18 @@ bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleR
   return true;
 }
 
-bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet, int column, const Workspace& to, int other) const {
-  const LayerJoints &own_joints = *from.half(lattice_->family_of(sheet)).joints,
+bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int solution, int column, const Workspace& to,
+                               int other) const {
+  const LayerJoints &own_joints = *from.half(lattice_->family_of(solution)).joints,
                     &other_joints = *to.half(lattice_->family_of(other)).joints;
-  const MiddleRanges& own_ranges = own_joints.of_tile[tile_of_layer(sheet, column)];
+  const MiddleRanges& own_ranges = own_joints.of_tile[tile_of_layer(solution, column)];
   if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)])) return false;
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
   const double* const value = to.value.data() + static_cast<std::ptrdiff_t>(other) * (lattice_->angles() + 2 * lattice_->window());
   const auto theirs = [&](int joint) {
     return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1);
   };
-  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->family_of(sheet))];
+  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->family_of(solution))];
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     JointRange& range = ranges.joint[m];
     if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
@@ -83,9 +84,9 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
   // tell windings apart.
   const int begin = lattice_->window() + column * kTileWidth,
             count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
-  const bool one_family = lattice_->family_of(sheet) == lattice_->family_of(other);
+  const bool one_family = lattice_->family_of(solution) == lattice_->family_of(other);
   for (const int joint : SrsLattice::kOuterJoints) {
-    const double* q = own_joints.nodes.q(sheet, joint);
+    const double* q = own_joints.nodes.q(solution, joint);
     // shared, so it tells nothing apart
     const bool shared = one_family && q == own_joints.nodes.q(other, joint);
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
@@ -95,16 +96,16 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int sheet,
   return true;
 }
 
-void GridCostToGo::relax_run(int step_layer, Workspace& from, int sheet, int first, int count, const Workspace& to, int other,
+void GridCostToGo::relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other,
                              double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
-  Workspace::Half& half = from.half(lattice_->family_of(sheet));
+  Workspace::Half& half = from.half(lattice_->family_of(solution));
   const LayerNodes& other_nodes = to.half(lattice_->family_of(other)).joints->nodes;
   RelaxTask<double> task = relax_task(*lattice_, step_layer);
   task.n = count;
   task.offsets = 2 * window + 1;
   for (int j = 0; j < kDof; ++j) {
-    task.from[j] = half.joints->nodes.q(sheet, j) + window + first;
+    task.from[j] = half.joints->nodes.q(solution, j) + window + first;
     task.to[j] = other_nodes.q(other, j) + first;
   }
   task.best = best;
@@ -118,7 +119,7 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
   const Workspace::Half& here = from.half(family);
   std::vector<Tile>& tiles = from.half(family).tiles;
   for (const Tile& tile : tiles) {
-    double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
+    double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
     std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
   }
   if (!here.joints) return;  // no column is reached
@@ -127,11 +128,11 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
     meets[static_cast<std::size_t>(other)] = lattice_->families_meet(step_layer, here.layer, family, to.half(family).layer, other);
   for (std::size_t first = 0, last = 0; first < tiles.size(); first = last) {
     budget_.poll();
-    const int sheet = tiles[first].sheet;
-    while (last < tiles.size() && tiles[last].sheet == sheet) ++last;
+    const int solution = tiles[first].solution;
+    while (last < tiles.size() && tiles[last].solution == solution) ++last;
     const auto relax_with = [&](int other, const LayerJoints& joints) {
-      if (sheet != other && !may_meet(step_layer, here.joints->of_layer[static_cast<std::size_t>(sheet)],
-                                      joints.of_layer[static_cast<std::size_t>(other)]))
+      if (solution != other && !may_meet(step_layer, here.joints->of_layer[static_cast<std::size_t>(solution)],
+                                         joints.of_layer[static_cast<std::size_t>(other)]))
         return;
       int begin = 0, end = 0;  // a run of columns
       const auto relax_columns = [&] {
@@ -139,12 +140,12 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
         const int stop = std::min(n, end * kTileWidth),
                   // whole vectors
             start = std::max(0, std::min(begin * kTileWidth, stop - kTileWidth));
-        relax_run(step_layer, from, sheet, start, stop - start, to, other, from.row.data() + sheet * n + start);
+        relax_run(step_layer, from, solution, start, stop - start, to, other, from.row.data() + solution * n + start);
       };
       for (std::size_t k = first; k < last; ++k) {
         Tile& tile = tiles[k];
         if (to.windows[tile_of_layer(other, tile.column)].last < 0 ||
-            (sheet != other && !may_connect(step_layer, from, sheet, tile.column, to, other)))
+            (solution != other && !may_connect(step_layer, from, solution, tile.column, to, other)))
           continue;
         tile.live = true;
         if (tile.column != end) {
@@ -157,7 +158,7 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
     };
     for (int others = 0; others < SrsLattice::kFamilies; ++others)
       if (meets[static_cast<std::size_t>(others)])
-        for (const int other : to.half(others).sheets) relax_with(other, *to.half(others).joints);
+        for (const int other : to.half(others).solutions) relax_with(other, *to.half(others).joints);
   }
 }
 
@@ -167,17 +168,17 @@ void GridCostToGo::publish_values(int family, Workspace& workspace) const {
   std::size_t kept = 0;
   for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
-    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
-    double* value = workspace.value.data() + static_cast<std::ptrdiff_t>(tile.sheet) * length;
-    Workspace::Window* windows = workspace.windows.data() + tile_of_layer(tile.sheet, 0);
+    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
+    double* value = workspace.value.data() + static_cast<std::ptrdiff_t>(tile.solution) * length;
+    Workspace::Window* windows = workspace.windows.data() + tile_of_layer(tile.solution, 0);
     int first = tile.begin(), last = tile.end(n) - 1;
     while (first <= last && row[first] == kUnreachable) ++first;
     while (first <= last && row[last] == kUnreachable) --last;
     if (first > last) continue;
     half.tiles[kept++] = tile;
-    if (half.sheets.empty() || half.sheets.back() != tile.sheet) {
+    if (half.solutions.empty() || half.solutions.back() != tile.solution) {
       std::fill(windows, windows + tile_columns(), Workspace::Window{length, -1, {}});
-      half.sheets.push_back(tile.sheet);
+      half.solutions.push_back(tile.solution);
     }
     std::copy(row + first, row + last + 1, value + window + first);
     for (const int turn : {0, n, -n}) {

@@ -11,8 +11,8 @@
 namespace swivel {
 
 double& GridCostToGo::value_at(int layer, int slot) {
-  const int sheet = lattice_->sheet_of(slot), j = lattice_->angle_of(slot);
-  return tiles_of(sheet).hold(tile_index(layer, sheet, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
+  const int solution = lattice_->solution_of(slot), j = lattice_->angle_of(slot);
+  return tiles_of(solution).hold(tile_index(layer, solution, j / kTileWidth))[static_cast<std::size_t>(j % kTileWidth)];
 }
 
 /// Calls visit(b, rest, delta) for the nodes b of the next layer that lie in the window of a node
@@ -21,19 +21,19 @@ template <class Worth, class Visit>
 void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit) {
   const int n = lattice_->angles();
   const SrsLattice::Run run = lattice_->run_after(layer, slot);
-  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+  for (int solution = 0; solution < lattice_->solutions(); ++solution)
     for (int k = 0, next = 0; k < run.count; k = next) {
       const int angle = (run.first + k) % n, column = angle / kTileWidth, in_tile = angle % kTileWidth;
       next = std::min(run.count, k + std::min(n, (column + 1) * kTileWidth) - angle);
-      const std::size_t tile = tile_index(layer + 1, sheet, column);
-      const TileTable& tiles = tiles_of(sheet);
+      const std::size_t tile = tile_index(layer + 1, solution, column);
+      const TileTable& tiles = tiles_of(solution);
       if (!tiles.holds(tile)) continue;
       const double* rest = tiles[tile].data() + in_tile;
       const LayerNodes* nodes = nullptr;
       for (int j = 0; j < next - k; ++j) {
         if (!worth(rest[j])) continue;
-        if (!nodes) nodes = &neighbours(layer + 1, lattice_->family_of(sheet), column);
-        visit(sheet * n + angle + j, rest[j], lattice_->delta(q, nodes->config(sheet, in_tile + j)));
+        if (!nodes) nodes = &neighbours(layer + 1, lattice_->family_of(solution), column);
+        visit(solution * n + angle + j, rest[j], lattice_->delta(q, nodes->config(solution, in_tile + j)));
       }
     }
 }
@@ -86,7 +86,7 @@ void GridCostToGo::add_node_costs(int family, Workspace& workspace) const {
   if (!own) return;
   const int n = lattice_->angles();
   for (const Tile& tile : workspace.half(family).tiles)
-    for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
+    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
 
@@ -148,12 +148,12 @@ void GridCostToGo::propagate_removals() {
   const auto set = [&](int layer, int slot, double value) {
     if (at(layer, slot) == value) return;
     value_at(layer, slot) = value;
-    Front& front = fronts[static_cast<std::size_t>(lattice_->family_of(lattice_->sheet_of(slot)))];
+    Front& front = fronts[static_cast<std::size_t>(lattice_->family_of(lattice_->solution_of(slot)))];
     const int angle = lattice_->angle_of(slot);
     front.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
     front.any_here = true;
   };
-  const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->sheet_of(slot)) == family; };
+  const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->solution_of(slot)) == family; };
   // Nodes that cost more now are first computed with the layer after as it was; where that changed
   // too, they are relaxed next.
   const auto raise = [&](int family, int layer, const Verdicts::Pending& now) {
@@ -254,7 +254,7 @@ double GridCostToGo::relax_one_forward(int layer, int slot, const Workspace& bef
   const SrsLattice::Run run = lattice_->run_before(layer - 1, slot);
   double best = kUnreachable;
   for (const Workspace::Half& half : before.halves)
-    for (const int other : half.sheets)
+    for (const int other : half.solutions)
       for (int k = 0; k < run.count; ++k) {
         const int j = (run.first + k) % n, a = other * n + j;
         const double done = before.value[static_cast<std::size_t>(other * length + lattice_->window() + j)];
@@ -281,7 +281,7 @@ void GridCostToGo::keep_reach(int family, int layer, float* kept) {
   const Workspace& here = workspace(layer);
   if (here.half(family).layer != layer) return;  // this elbow side does not come here
   for (const Tile& tile : here.half(family).tiles)
-    for (int slot = tile.sheet * n + tile.begin(); slot < tile.sheet * n + tile.end(n); ++slot)
+    for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
       kept[slot] = std::nextafter(static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
 }
 
@@ -318,10 +318,10 @@ int GridCostToGo::deepest_reachable() {
   // before is the start alone.
   const auto step_one = [&](int layer, int slot) {
     Workspace& here = workspace(layer);
-    const Tile tile{lattice_->sheet_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
-    const int family = lattice_->family_of(tile.sheet);
+    const Tile tile{lattice_->solution_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
+    const int family = lattice_->family_of(tile.solution);
     std::vector<Tile>& tiles = here.half(family).tiles;
-    double* row = here.row.data() + tile.sheet * n;
+    double* row = here.row.data() + tile.solution * n;
     const auto place = std::lower_bound(tiles.begin(), tiles.end(), tile);
     if (place == tiles.end() || *place != tile) {
       std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
@@ -333,14 +333,14 @@ int GridCostToGo::deepest_reachable() {
   const auto step_from_start = [&] {
     const SrsLattice::Run run = lattice_->run_after(0, lattice_->start_slot());
     for (int family = 0; family < SrsLattice::kFamilies; ++family) begin(family, 1, workspace(1));
-    for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
-      for (int k = 0; k < run.count; ++k) step_one(1, sheet * n + (run.first + k) % n);
+    for (int solution = 0; solution < lattice_->solutions(); ++solution)
+      for (int k = 0; k < run.count; ++k) step_one(1, solution * n + (run.first + k) % n);
   };
   const auto step_again = [&](int layer, const Verdicts::RemovedEdges& removed) {
     const Workspace& before = workspace(layer - 1);
     const auto gives_value = [&](const Verdicts::HalfEdge& edge, double value) {
-      const int n_padded = n + 2 * lattice_->window(), sheet = lattice_->sheet_of(edge.other);
-      const int place = sheet * n_padded + lattice_->window() + lattice_->angle_of(edge.other);
+      const int n_padded = n + 2 * lattice_->window(), solution = lattice_->solution_of(edge.other);
+      const int place = solution * n_padded + lattice_->window() + lattice_->angle_of(edge.other);
       return edge.cost + before.value[static_cast<std::size_t>(place)] == value;
     };
     for (const auto& [b, edges] : removed.heads)
@@ -353,7 +353,7 @@ int GridCostToGo::deepest_reachable() {
   const auto finish = [&](int family, int layer) {
     publish_values(family, workspace(layer));
     int& last = deepest[static_cast<std::size_t>(family)];
-    if (!workspace(layer).half(family).sheets.empty())
+    if (!workspace(layer).half(family).solutions.empty())
       last = layer;
     else if (last == layer - 1)
       keep_reach(family, last, ended.data());
@@ -386,7 +386,7 @@ int GridCostToGo::deepest_reachable() {
   const bool to_the_end = reach_.deepest == lattice_->layers() - 1;
   float* const row = row_of(reach_.deepest);
   for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    const int first = first_sheet(family) * n, width = lattice_->width() / 2;
+    const int first = first_solution(family) * n, width = lattice_->width() / 2;
     if (to_the_end || deepest[static_cast<std::size_t>(family)] < reach_.deepest)
       keep_reach(family, reach_.deepest, row);
     else

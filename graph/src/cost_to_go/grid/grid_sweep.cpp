@@ -24,7 +24,7 @@ void each(int count, const F& f) {
 
 GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
     : CostToGo(lattice, budget), lattice_(&lattice), bounded_(extent == Extent::kBounded) {
-  const std::size_t tiles = tile_of_layer(lattice.sheets(), 0);
+  const std::size_t tiles = tile_of_layer(lattice.solutions(), 0);
   tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, retired ? std::move(retired->tiles_[0]) : TileTable());
   if (retired) {
     passing_ = std::move(retired->passing_);
@@ -35,7 +35,8 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
     workspace = std::make_unique<Workspace>();
     workspace->row.resize(static_cast<std::size_t>(lattice.width()));
     workspace->windows.resize(tiles);
-    workspace->value.assign(static_cast<std::size_t>(lattice.sheets() * (lattice.angles() + 2 * lattice.window())), kUnreachable);
+    workspace->value.assign(static_cast<std::size_t>(lattice.solutions() * (lattice.angles() + 2 * lattice.window())),
+                            kUnreachable);
   }
 }
 
@@ -44,10 +45,10 @@ void GridCostToGo::apply_masks(int family, Workspace& workspace) const {
   const Workspace::Half& half = workspace.half(family);
   for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
-    const int slot = tile.sheet * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
+    const int slot = tile.solution * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
-    const double* one = half.joints->nodes.mask(tile.sheet, 0) + at;
-    const double* other = half.joints->nodes.mask(tile.sheet, 1) + at;
+    const double* one = half.joints->nodes.mask(tile.solution, 0) + at;
+    const double* other = half.joints->nodes.mask(tile.solution, 1) + at;
     each<kTileWidth>(count, [&](int k) { values[k] += one[k] + other[k]; });
     const Verdict* verdict = verdicts_.nodes(half.layer, slot);
     if (std::memchr(verdict, static_cast<int>(Verdict::kRemoved), static_cast<std::size_t>(count)))
@@ -63,7 +64,7 @@ void GridCostToGo::prune_above_limit(int family, Workspace& workspace) const {
   const float* bound = cost_before(workspace.half(family).layer);
   for (const Tile& tile : workspace.half(family).tiles) {
     if (!tile.live) continue;
-    const int slot = tile.sheet * n + tile.begin(), count = tile.end(n) - tile.begin();
+    const int slot = tile.solution * n + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
     if (const float* before = bound ? bound + slot : nullptr)
       each<kTileWidth>(count, [&](int k) { values[k] = values[k] + before[k] > limit_ ? kUnreachable : values[k]; });
@@ -76,8 +77,8 @@ void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
   const int n = lattice_->angles();
   const Workspace::Half& half = workspace.half(family);
   for (const Tile& tile : half.tiles) {
-    TileTable::Costs& costs = tiles_of(tile.sheet).hold(tile_index(half.layer, tile.sheet, tile.column));
-    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n;
+    TileTable::Costs& costs = tiles_of(tile.solution).hold(tile_index(half.layer, tile.solution, tile.column));
+    const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
     std::fill(std::copy(row + tile.begin(), row + tile.end(n), costs.begin()), costs.end(), kUnreachable);
   }
 }
@@ -85,18 +86,18 @@ void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
 void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached) {
   begin(family, layer, workspace);
   const int n = lattice_->angles();
-  for (int sheet = first_sheet(family); sheet < first_sheet(family) + half_sheets(); ++sheet)
+  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
     for (int column = 0; column < tile_columns(); ++column) {
-      const std::size_t held = tile_index(layer, sheet, column);
-      if (!columns[static_cast<std::size_t>(column)] || !tiles_of(sheet).holds(held)) continue;
-      const TileTable::Costs& costs = tiles_of(sheet)[held];
+      const std::size_t held = tile_index(layer, solution, column);
+      if (!columns[static_cast<std::size_t>(column)] || !tiles_of(solution).holds(held)) continue;
+      const TileTable::Costs& costs = tiles_of(solution)[held];
       if (*std::min_element(costs.begin(), costs.end()) == kUnreachable) continue;
       const bool live = !reached || (*reached)[static_cast<std::size_t>(column)];
-      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{sheet, column, live});
+      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{solution, column, live});
       if (!live) continue;
       solve_columns(workspace, family, column, column + 1);
       std::copy_n(costs.begin(), tile.end(n) - tile.begin(),
-                  workspace.row.begin() + static_cast<std::ptrdiff_t>(sheet) * n + tile.begin());
+                  workspace.row.begin() + static_cast<std::ptrdiff_t>(solution) * n + tile.begin());
     }
 }
 
@@ -105,8 +106,8 @@ bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, const Ang
   bool any = false;
   for (const Tile& tile : workspace.half(family).tiles) {
     const auto column = static_cast<std::size_t>(tile.column);
-    const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.sheet) * n + tile.begin();
-    TileTable::Costs& known = tiles_of(tile.sheet).hold(tile_index(workspace.half(family).layer, tile.sheet, tile.column));
+    const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n + tile.begin();
+    TileTable::Costs& known = tiles_of(tile.solution).hold(tile_index(workspace.half(family).layer, tile.solution, tile.column));
     unsigned differ = 0;
     for (unsigned k = 0; k < static_cast<unsigned>(tile.end(n) - tile.begin()); ++k) {
       if (!(angles[column] >> k & 1) || values[k] == known[k]) continue;
@@ -203,7 +204,7 @@ void GridCostToGo::clear_values() {
   for (TileTable& tiles : tiles_) tiles.clear();
   apart_ = work_.threads > 1;
   if (apart_ && tiles_[1].tiles() == 0)
-    tiles_[1] = TileTable(static_cast<std::size_t>(lattice_->layers()) * tile_of_layer(lattice_->sheets(), 0));
+    tiles_[1] = TileTable(static_cast<std::size_t>(lattice_->layers()) * tile_of_layer(lattice_->solutions(), 0));
 }
 
 void GridCostToGo::sweep_once() {
@@ -254,9 +255,9 @@ void GridCostToGo::sweep_once() {
 
 double GridCostToGo::best() const {
   double best = kUnreachable;
-  for (int sheet = 0; sheet < lattice_->sheets(); ++sheet)
+  for (int solution = 0; solution < lattice_->solutions(); ++solution)
     for (int column = 0; column < tile_columns(); ++column)
-      for (const double value : tiles_of(sheet)[tile_index(0, sheet, column)]) best = std::min(best, value);
+      for (const double value : tiles_of(solution)[tile_index(0, solution, column)]) best = std::min(best, value);
   return best;
 }
 

@@ -37,12 +37,12 @@ struct GridCostToGo::JointRange {
 
 /// A column, eight angles, of one IK solution.
 struct GridCostToGo::Tile {
-  int sheet = 0, column = 0;
+  int solution = 0, column = 0;
   bool live = false;  // holds values
   [[nodiscard]] int begin() const { return column * kTileWidth; }
   [[nodiscard]] int end(int angles) const { return std::min(angles, begin() + kTileWidth); }
-  bool operator==(const Tile& o) const { return sheet == o.sheet && column == o.column; }
-  bool operator<(const Tile& o) const { return std::tie(sheet, column) < std::tie(o.sheet, o.column); }
+  bool operator==(const Tile& o) const { return solution == o.solution && column == o.column; }
+  bool operator<(const Tile& o) const { return std::tie(solution, column) < std::tie(o.solution, o.column); }
 };
 
 /// Ranges of the joints that tell the IK solutions of one elbow side apart.
@@ -59,15 +59,15 @@ struct alignas(64) GridCostToGo::LayerJoints {
   ColumnSet solved;
   /// Ranges of the joints that tell IK solutions apart, over what is solved: of each column, and of
   /// all.
-  std::vector<MiddleRanges> of_tile, of_layer;  // [sheet][column], [sheet]
+  std::vector<MiddleRanges> of_tile, of_layer;  // [solution][column], [solution]
 };
 
 /// A layer's values, to relax others against, or being relaxed. While the elbow sides do not meet,
 /// each goes through the layers by itself: its solutions may then be at another layer than the
 /// others.
 struct GridCostToGo::Workspace {
-  std::vector<double> row;  // [sheet][angle], of the tiles
-  // [sheet][padded angle]: the row once it is settled, infinite elsewhere
+  std::vector<double> row;  // [solution][angle], of the tiles
+  // [solution][padded angle]: the row once it is settled, infinite elsewhere
   std::vector<double> value;
   /// The finite values in the window of a column: first and last padded position; none where last <
   /// first.
@@ -75,14 +75,14 @@ struct GridCostToGo::Workspace {
     int first = 0, last = -1;
     mutable std::array<MiddleRanges, 2> ranges;  // filled when asked for: [family that asks]
   };
-  std::vector<Window> windows;  // [sheet][column], of the sheets with a finite value
+  std::vector<Window> windows;  // [solution][column], of the IK solutions with a finite value
   /// The solutions of one elbow side. One thread writes to it, and to those solutions' part of the
   /// arrays above.
   struct alignas(64) Half {
     int layer = -1;
     LayerJoints* joints = nullptr;  // null where no column is reached
     std::vector<Tile> tiles;        // to be relaxed or holding values, in order
-    std::vector<int> sheets;        // with a finite value
+    std::vector<int> solutions;     // with a finite value
     ColumnSet reached;              // columns with any near
     std::vector<int> columns;       // scratch of reach_back
     std::int64_t ik_nodes = 0, edges = 0;
@@ -91,11 +91,11 @@ struct GridCostToGo::Workspace {
   [[nodiscard]] Half& half(int family) { return halves[static_cast<std::size_t>(family)]; }
   [[nodiscard]] const Half& half(int family) const { return halves[static_cast<std::size_t>(family)]; }
   [[nodiscard]] bool find(const SrsLattice& lattice, int slot) const {
-    const int sheet = lattice.sheet_of(slot);
-    const std::vector<Tile>& tiles = half(lattice.family_of(sheet)).tiles;
-    return std::binary_search(tiles.begin(), tiles.end(), Tile{sheet, lattice.angle_of(slot) / kTileWidth});
+    const int solution = lattice.solution_of(slot);
+    const std::vector<Tile>& tiles = half(lattice.family_of(solution)).tiles;
+    return std::binary_search(tiles.begin(), tiles.end(), Tile{solution, lattice.angle_of(slot) / kTileWidth});
   }
-  [[nodiscard]] bool reaches_any() const { return !halves[0].sheets.empty() || !halves[1].sheets.empty(); }
+  [[nodiscard]] bool reaches_any() const { return !halves[0].solutions.empty() || !halves[1].solutions.empty(); }
 };
 
 template <class Part>

@@ -18,7 +18,7 @@ RollCostToGo::RollCostToGo(const RollLattice& lattice, const Budget& budget)
     : LayerValues(lattice, budget),
       lattice_(&lattice),
       angles_(lattice.at_roll(0).angles()),
-      sheets_(lattice.at_roll(0).sheets()),
+      solutions_(lattice.at_roll(0).solutions()),
       pad_(lattice.widest_phi_window()),
       solved_(static_cast<std::size_t>(lattice.layers())) {}
 
@@ -61,7 +61,7 @@ Config RollCostToGo::config(int layer, int slot) {
 }
 
 void RollCostToGo::take_around(const Values& values) {
-  const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * sheets_;
+  const int length = angles_ + 2 * pad_, rows = lattice_->rolls() * solutions_;
   around_.value.assign(static_cast<std::size_t>(rows) * static_cast<std::size_t>(length), kUnreachable);
   around_.finite.assign(static_cast<std::size_t>(rows), {});
   for (int row = 0; row < rows; ++row) {
@@ -81,11 +81,11 @@ void RollCostToGo::take_around(const Values& values) {
 
 /// Finds runs of nodes that exist; short gaps are included, since a call takes as long as some
 /// eight nodes.
-void RollCostToGo::runs_of(const LayerNodes& nodes, int sheet) {
+void RollCostToGo::runs_of(const LayerNodes& nodes, int solution) {
   constexpr int kGap = 8;
   runs_.clear();
   for (int j = 0; j < angles_; ++j) {
-    if (!nodes.valid(sheet, pad_ + j)) continue;
+    if (!nodes.valid(solution, pad_ + j)) continue;
     if (!runs_.empty() && j - runs_.back().second < kGap)
       runs_.back().second = j + 1;
     else
@@ -116,14 +116,14 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
   for (int rank = 0; rank < lattice_->rolls(); ++rank) {
     budget_.poll();
     const LayerNodes& own = nodes(layer, rank);
-    for (int sheet = 0; sheet < sheets_; ++sheet) {
-      if (!own.alive(sheet)) continue;
-      double* const best = out.data() + lattice_->slot_of(rank, sheet * angles_);
-      runs_of(own, sheet);
-      const int first = sheet / windings * windings;  // first sheet of the branch
+    for (int solution = 0; solution < solutions_; ++solution) {
+      if (!own.alive(solution)) continue;
+      double* const best = out.data() + lattice_->slot_of(rank, solution * angles_);
+      runs_of(own, solution);
+      const int first = solution / windings * windings;  // first IK solution of the branch
       for (const int near : lattice_->near(step, rank, other > layer))
         for (int partner = first; partner < first + windings; ++partner) {
-          const auto row = static_cast<std::size_t>(near * sheets_ + partner);
+          const auto row = static_cast<std::size_t>(near * solutions_ + partner);
           const auto& [low, high] = around_.finite[row];
           if (low >= high || runs_.empty()) continue;
           const LayerNodes& theirs = nodes(other, near);
@@ -131,7 +131,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
             const int from = pad_ - window + begin;  // first of the partners
             if (from >= high || from + (end - begin) - 1 + task.offsets <= low) continue;
             for (std::size_t k = 0; k < kDof; ++k) {
-              task.from[k] = own.q(sheet, static_cast<int>(k)) + pad_ + begin;
+              task.from[k] = own.q(solution, static_cast<int>(k)) + pad_ + begin;
               task.to[k] = theirs.q(partner, static_cast<int>(k)) + from;
             }
             task.n = end - begin;
@@ -141,7 +141,7 @@ void RollCostToGo::relax(int step, int layer, int other, const Values& others, V
             relax_kernels().relax(task);
           }
         }
-      const double *one = own.mask(sheet, 0) + pad_, *two = own.mask(sheet, 1) + pad_;
+      const double *one = own.mask(solution, 0) + pad_, *two = own.mask(solution, 1) + pad_;
       for (int j = 0; j < angles_; ++j) best[j] += one[j] + two[j];
     }
   }
@@ -166,12 +166,12 @@ void RollCostToGo::each_near(int step, int layer, int slot, int other, const Wor
   const int count = std::min(2 * window + 1, angles_);
   for (const int near : lattice_->near(step, lattice_->rank_of(layer, slot), other > layer)) {
     const LayerNodes& theirs = nodes(other, near);
-    for (int sheet = first; sheet < first + windings; ++sheet) {
-      if (!theirs.alive(sheet)) continue;
-      const int zero = lattice_->slot_of(near, sheet * angles_);
+    for (int solution = first; solution < first + windings; ++solution) {
+      if (!theirs.alive(solution)) continue;
+      const int zero = lattice_->slot_of(near, solution * angles_);
       for (int k = 0; k < count; ++k) {
         const int j = (angle - window + k + angles_) % angles_;
-        if (worth(zero + j)) visit(zero + j, theirs.config(sheet, pad_ + j));
+        if (worth(zero + j)) visit(zero + j, theirs.config(solution, pad_ + j));
       }
     }
   }
@@ -214,9 +214,9 @@ void RollCostToGo::begin(int layer, Values& out) {
   }
   for (int rank = 0; rank < lattice_->rolls(); ++rank) {
     const LayerNodes& own = nodes(layer, rank);
-    for (int sheet = 0; sheet < sheets_; ++sheet)
-      for (int j = 0; own.alive(sheet) && j < angles_; ++j)
-        if (own.valid(sheet, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, sheet * angles_ + j))] = 0;
+    for (int solution = 0; solution < solutions_; ++solution)
+      for (int j = 0; own.alive(solution) && j < angles_; ++j)
+        if (own.valid(solution, pad_ + j)) out[static_cast<std::size_t>(lattice_->slot_of(rank, solution * angles_ + j))] = 0;
   }
 }
 

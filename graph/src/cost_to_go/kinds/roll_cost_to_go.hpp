@@ -35,13 +35,13 @@ class RollCostToGo final : public LayerValues {
   /// pad_ + j, and around the circle on both sides.
   const LayerNodes& nodes(int layer, int rank);
   void forget(int layer);
-  /// The values of a layer, continued around the circle, [rank][sheet][pad_ + j].
+  /// The values of a layer, continued around the circle, [rank][solution][pad_ + j].
   struct Around {
     Values value;
-    // [rank][sheet]: first finite one, and behind the last
+    // [rank][solution]: first finite one, and behind the last
     std::vector<std::pair<int, int>> finite;
   };
-  void runs_of(const LayerNodes& nodes, int sheet);
+  void runs_of(const LayerNodes& nodes, int solution);
   void take_around(const Values& values);
   /// Calls visit(slot b, its joints) for the nodes b of a neighbouring layer that a node may be
   /// joined to, removed or not, whose worth(b) is true.
@@ -49,7 +49,7 @@ class RollCostToGo final : public LayerValues {
   void each_near(int step, int layer, int slot, int other, const Worth& worth, const Visit& visit);
 
   const RollLattice* lattice_;
-  int angles_, sheets_, pad_;
+  int angles_, solutions_, pad_;
   Around around_;
   std::vector<std::pair<int, int>> runs_;  // runs of arm angles: first, and behind the last
   struct Solved {

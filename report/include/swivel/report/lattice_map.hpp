@@ -49,7 +49,8 @@ struct LatticeMap {
   std::vector<int> slots;                                     ///< of each of `nodes`: whose it is, -1: none; empty of a grid
   std::vector<std::pair<std::string, std::string>> blockers;  ///< two bodies each, in the order of their names
   std::array<std::string, kDof> joint_names;
-  std::vector<int> path;  ///< one cell in each layer, sheet * angles + angle: the answer, or a way to the furthest layer reached
+  std::vector<int>
+      path;  ///< one cell in each layer, IK solution * angles + angle: the answer, or a way to the furthest layer reached
   bool complete = false;  ///< clearance was asked of every node, not only by the search
   /// Of a tool that may stand turned: the branches are drawn at the path's rolls, and the last panel shows the rolls from -pi to pi
   /// at the branch and arm angle that the path has in each layer, where there is a path.
@@ -67,21 +68,21 @@ struct LatticeMap {
   [[nodiscard]] const char* letter(int panel) const;
   /// What it means that a cell has no node.
   [[nodiscard]] const char* emptiness() const;
-  [[nodiscard]] int sheets() const;
-  [[nodiscard]] int panels() const { return sheets() + (turns ? 1 : 0); }
-  [[nodiscard]] bool shows_rolls(int panel) const { return panel == sheets(); }
+  [[nodiscard]] int solutions() const;
+  [[nodiscard]] int panels() const { return solutions() + (turns ? 1 : 0); }
+  [[nodiscard]] bool shows_rolls(int panel) const { return panel == solutions(); }
   [[nodiscard]] const std::vector<int>& path_in(int panel) const { return shows_rolls(panel) ? path_of_rolls : path; }
-  [[nodiscard]] const Node& at(int layer, int sheet, int angle) const {
-    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(panels()) + static_cast<std::size_t>(sheet)) *
+  [[nodiscard]] const Node& at(int layer, int solution, int angle) const {
+    return nodes[(static_cast<std::size_t>(layer) * static_cast<std::size_t>(panels()) + static_cast<std::size_t>(solution)) *
                      static_cast<std::size_t>(angles) +
                  static_cast<std::size_t>(angle)];
   }
   /// Panels that have a node, or the path.
-  [[nodiscard]] std::vector<int> inhabited_sheets() const;
+  [[nodiscard]] std::vector<int> inhabited_solutions() const;
   /// What blocks a blocked node, in words.
   [[nodiscard]] std::string blocker_name(const Node& node) const;
   /// "shoulder +, wrist -, elbow +", with the winding where there are several.
-  [[nodiscard]] std::string sheet_name(int sheet) const;
+  [[nodiscard]] std::string solution_name(int solution) const;
 };
 
 /// Which of the slots of a layer at the path's branch and arm angle have rolls that the cells from -pi on stand for, -1: none.
@@ -95,8 +96,8 @@ struct LatticeMap {
 /// search asked about; with `full`, or where the planner was eager, for every node. Throws Stopped.
 [[nodiscard]] LatticeMap make_map(const PlanView& view, bool full, const Budget& budget = {});
 
-/// The map in text, one panel per inhabited sheet: s to the right, the coordinate from its largest value at the top, the path on
-/// it. A cell stands for as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`:
+/// The map in text, one panel per inhabited IK solution: s to the right, the coordinate from its largest value at the top, the path
+/// on it. A cell stands for as many nodes as it takes to fit into `columns`, and shows the most important (NodeState). `coloured`:
 /// ANSI 256 colours.
 [[nodiscard]] std::string to_text(const LatticeMap& map, int columns, bool coloured);
 

@@ -16,25 +16,25 @@ namespace swivel {
 
 struct TripleTask;
 
-/// The joints of all sheets of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice node.
-/// Sheets share the arrays of what they have in common: four branches have a triple's solution each. Branches with a moved cell in
-/// the layer have arrays of their own.
+/// The joints of all IK solutions of one layer over a run of arm angles. Reused from layer to layer; nothing is stored per lattice
+/// node. IK solutions share the arrays of what they have in common: four branches have a triple's solution each. Branches with a
+/// moved cell in the layer have arrays of their own.
 class LayerNodes {
  public:
-  /// Joint k (0..6) of sheet, an array over the run.
-  [[nodiscard]] const double* q(int sheet, int k) const { return data_.data() + at(sheet).q[static_cast<std::size_t>(k)]; }
+  /// Joint k (0..6) of IK solution, an array over the run.
+  [[nodiscard]] const double* q(int solution, int k) const { return data_.data() + at(solution).q[static_cast<std::size_t>(k)]; }
   /// Two arrays over the run, of zeros and infinities: a node exists (IK, singularity, limits) where both are 0.
-  [[nodiscard]] const double* mask(int sheet, std::size_t which) const { return data_.data() + at(sheet).mask[which]; }
-  [[nodiscard]] bool valid(int sheet, int k) const { return mask(sheet, 0)[k] + mask(sheet, 1)[k] == 0; }
-  /// False where no node of the sheet exists, whatever the arm angle.
-  [[nodiscard]] bool alive(int sheet) const { return at(sheet).alive; }
+  [[nodiscard]] const double* mask(int solution, std::size_t which) const { return data_.data() + at(solution).mask[which]; }
+  [[nodiscard]] bool valid(int solution, int k) const { return mask(solution, 0)[k] + mask(solution, 1)[k] == 0; }
+  /// False where no node of the IK solution exists, whatever the arm angle.
+  [[nodiscard]] bool alive(int solution) const { return at(solution).alive; }
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] std::size_t bytes() const { return static_cast<std::size_t>(data_.size()) * sizeof(double); }
-  /// Copies `count` entries of every array of an elbow's sheets from one place of the run to another.
+  /// Copies `count` entries of every array of an elbow's IK solutions from one place of the run to another.
   void repeat(int elbow, int from, int to, int count);
-  [[nodiscard]] Config config(int sheet, int k) const {
+  [[nodiscard]] Config config(int solution, int k) const {
     Config c;
-    for (int j = 0; j < kDof; ++j) c[j] = q(sheet, j)[k];
+    for (int j = 0; j < kDof; ++j) c[j] = q(solution, j)[k];
     return c;
   }
 
@@ -45,7 +45,7 @@ class LayerNodes {
     std::array<std::size_t, 2> mask{};
     bool alive = false;
   };
-  [[nodiscard]] const Offsets& at(int sheet) const { return offsets_[static_cast<std::size_t>(sheet)]; }
+  [[nodiscard]] const Offsets& at(int solution) const { return offsets_[static_cast<std::size_t>(solution)]; }
   struct Layout {  // what the offsets depend on
     std::uint64_t lattice = 0;
     int count = 0;
@@ -56,12 +56,12 @@ class LayerNodes {
   Layout layout_;
   int layer_ = -1, first_ = 0, count_ = 0;
   Eigen::ArrayXd data_;
-  std::vector<Offsets> offsets_;                  // [sheet]
+  std::vector<Offsets> offsets_;                  // [solution]
   std::array<std::array<Offsets, 2>, 2> shared_;  // [elbow][sign of the triples]: what is solved, of the first winding
   struct Span {
     std::size_t begin = 0, end = 0;
   };
-  std::array<std::array<Span, 2>, 2> arrays_;  // [elbow]: into data_; the sheets' own and those of branches with their own
+  std::array<std::array<Span, 2>, 2> arrays_;  // [elbow]: into data_; the IK solutions' own and those of branches with their own
 };
 
 /// The images of a bounded joint, an angle plus whole turns, are told apart as windings: as many as the range has turns, begun ones
@@ -73,14 +73,14 @@ class LayerNodes {
 /// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's misfit; rows are
 /// polished.
 ///
-/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `sheets` = 8 branches x windings of
-/// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = sheet * angles +
-/// j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits however
-/// asked.
+/// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `solutions` = 8 branches x windings of
+/// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = solution *
+/// angles + j. Immutable, so safe to share between threads. Nodes are computed when asked for; the same node has the same bits
+/// however asked.
 ///
 /// With `resolution.arcs` a cell, the arm angles nearest to grid angle j, has a node wherever it meets an arc: if there is none at
-/// its own angle, it is *moved* to the nearest angle of the sheet's arcs, or to the middle of an arc that lies in the cell as a
-/// whole. Moved cells are few, found when the lattice is made, and kept: 80 bytes each. The window counts cells, moved or not.
+/// its own angle, it is *moved* to the nearest angle of the IK solution's arcs, or to the middle of an arc that lies in the cell as
+/// a whole. Moved cells are few, found when the lattice is made, and kept: 80 bytes each. The window counts cells, moved or not.
 class SrsLattice final : public Lattice {
  public:
   /// Throws InputError when the start does not fit, for more than 1024 windings, and when the lattice is too large for the memory
@@ -91,19 +91,19 @@ class SrsLattice final : public Lattice {
              std::vector<ArmPlane> planes = {}, std::optional<double> last_joint = {});
 
   [[nodiscard]] int angles() const { return angles_; }
-  [[nodiscard]] int sheets() const { return kBranches * windings_; }
+  [[nodiscard]] int solutions() const { return kBranches * windings_; }
   [[nodiscard]] int windings() const { return windings_; }
   [[nodiscard]] int window() const { return window_; }
   /// Slots of every layer.
-  [[nodiscard]] int width() const { return sheets() * angles_; }
-  [[nodiscard]] int sheet_of(int slot) const { return slot / angles_; }
+  [[nodiscard]] int width() const { return solutions() * angles_; }
+  [[nodiscard]] int solution_of(int slot) const { return slot / angles_; }
   [[nodiscard]] int angle_of(int slot) const { return slot % angles_; }
-  [[nodiscard]] int branch_of(int slot) const { return sheet_of(slot) / windings_; }
+  [[nodiscard]] int branch_of(int slot) const { return solution_of(slot) / windings_; }
   [[nodiscard]] const SrsArm& arm() const { return *arm_; }
   [[nodiscard]] const ArmPlane& plane(int layer) const { return planes_[static_cast<std::size_t>(layer)]; }
   /// True where layer 0 is the given start alone.
   [[nodiscard]] bool has_start() const { return start_.has_value(); }
-  /// Slot that stands for the given start in layer 0 (its sheet, the grid angle nearest to its own).
+  /// Slot that stands for the given start in layer 0 (its IK solution, the grid angle nearest to its own).
   [[nodiscard]] int start_slot() const { return start_->slot; }
 
   [[nodiscard]] LatticeInfo describe() const override;
@@ -117,7 +117,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
   /// The wrist centre from the shoulder.
   [[nodiscard]] std::optional<Reach> out_of_reach(int layer) const override;
-  /// Of exact arms: out of reach, or no sheet has an arc.
+  /// Of exact arms: out of reach, or no IK solution has an arc.
   [[nodiscard]] bool proved_unreachable(int layer) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
   /// The most that phi may change along an edge, rad.
@@ -143,10 +143,10 @@ class SrsLattice final : public Lattice {
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
 
   // --- arcs
-  /// Replaces `out` by the arcs of arm angles at which a sheet's joints are within their limits, found in closed form, whether
-  /// nodes are there or not; a given start counts as any pose. Of an arm that is not exactly S-R-S those at which rows are as well:
-  /// within limits narrowed by the misfit.
-  void arcs(int layer, int sheet, std::vector<AngleArc>& out) const;
+  /// Replaces `out` by the arcs of arm angles at which an IK solution's joints are within their limits, found in closed form,
+  /// whether nodes are there or not; a given start counts as any pose. Of an arm that is not exactly S-R-S those at which rows are
+  /// as well: within limits narrowed by the misfit.
+  void arcs(int layer, int solution, std::vector<AngleArc>& out) const;
   /// A cell whose node does not stand at its own angle.
   struct Moved {
     int slot = 0;
@@ -161,20 +161,20 @@ class SrsLattice final : public Lattice {
   }
 
   // --- nodes of whole runs, in vector code
-  /// Nodes j = first ... first + count - 1 of every sheet, taken around the circle; first < angles, count <= 2 angles.
+  /// Nodes j = first ... first + count - 1 of every IK solution, taken around the circle; first < angles, count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
-  /// Sheets fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
+  /// IK solutions fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
   static constexpr int kFamilies = 2;
-  [[nodiscard]] int family_of(int sheet) const { return sheet / windings_ & kElbowBit ? 1 : 0; }
-  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the sheets of one family.
+  [[nodiscard]] int family_of(int solution) const { return solution / windings_ & kElbowBit ? 1 : 0; }
+  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the IK solutions of one family.
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
   void solve_part(int family, int begin, int end, LayerNodes& out) const;
   /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
   [[nodiscard]] bool alive(int layer) const { return alive(layer, 0) || alive(layer, 1); }
   /// Whether a family has nodes in a layer at all.
   [[nodiscard]] bool alive(int layer, int family) const {
-    return layer == 0 && start_ ? family_of(sheet_of(start_->slot)) == family : elbow_alive(layer, family);
+    return layer == 0 && start_ ? family_of(solution_of(start_->slot)) == family : elbow_alive(layer, family);
   }
   /// False where no edge leads from a family of `layer` to another of a neighbouring layer; the step's number is `step_layer`.
   [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
@@ -183,7 +183,7 @@ class SrsLattice final : public Lattice {
     return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) ||
            families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
   }
-  /// A branch flips only through the zero of a middle joint: these tell sheets apart, the first two those of one family.
+  /// A branch flips only through the zero of a middle joint: these tell IK solutions apart, the first two those of one family.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
   /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings apart.
   static constexpr std::array<int, 5> kOuterJoints{0, 2, 4, 6, 3};
@@ -207,23 +207,23 @@ class SrsLattice final : public Lattice {
     Config node, row;  // the fitted arm's solution there, or the given joints where it has none; the given joints
   };
   void lay_out_start(LayerNodes& out) const;
-  /// Entries begin ... end - 1 of what a sheet with arrays of its own has in common with others.
-  void copy_shared(int sheet, int begin, int end, LayerNodes& out) const;
+  /// Entries begin ... end - 1 of what an IK solution with arrays of its own has in common with others.
+  void copy_shared(int solution, int begin, int end, LayerNodes& out) const;
   /// The grid angle of a slot's cell, rad.
   [[nodiscard]] double cell_angle(int slot) const { return -kPi + kTwoPi * angle_of(slot) / angles_; }
   [[nodiscard]] const Moved* find_moved(int layer, int slot) const;
   /// The node of a slot at an arm angle.
   [[nodiscard]] std::optional<Config> solved(int layer, int slot, double sine, double cosine) const;
   void prepare_arcs();
-  void triple_arcs(int layer, int sheet, int triple, std::vector<AngleArc>& out) const;
-  [[nodiscard]] bool elbow_within(int layer, int sheet) const;
+  void triple_arcs(int layer, int solution, int triple, std::vector<AngleArc>& out) const;
+  [[nodiscard]] bool elbow_within(int layer, int solution) const;
   void move_cells(const Budget& budget);
-  /// Of a sheet, among the windings of a triple.
-  [[nodiscard]] int triple_winding(int sheet, int triple) const;
+  /// Of an IK solution, among the windings of a triple.
+  [[nodiscard]] int triple_winding(int solution, int triple) const;
   [[nodiscard]] int triple_windings(int triple) const {
     return static_cast<int>(triple_limits_[static_cast<std::size_t>(triple)].size());
   }
-  void move_cells_of(int layer, int sheet, const std::vector<AngleArc>& arcs);
+  void move_cells_of(int layer, int solution, const std::vector<AngleArc>& arcs);
   /// What a layer's shoulder (0) or wrist (1) triple asks of the kernel; the run and where its results go are the caller's.
   [[nodiscard]] TripleTask triple_task(const ElbowCircle& circle, int triple) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
