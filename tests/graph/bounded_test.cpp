@@ -82,7 +82,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
     const ArmModel arm = arm_of(robot);
     const SrsArm srs = fit_srs(arm.chain, robot.name);
     for (int trial = 0; trial < trials(robot.name == "windings" ? 6 : 16); ++trial) {
-      // Some of more layers than families go through at once.
+      // Some of more layers than elbow sides go through at once.
       const int waypoints = problems % 8 == 0 ? 66 + random.below(80) : 2 + random.below(30);
       const Problem problem = random_problem(robot, arm.chain, random, waypoints);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
@@ -106,7 +106,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       ++problems;
-      for (int step = 0; step + 1 < lattice.layers(); ++step) (lattice.families_meet(step) ? met : apart) += 1;
+      for (int step = 0; step + 1 < lattice.layers(); ++step) (lattice.may_change_elbow_side(step) ? met : apart) += 1;
       longest = std::max(longest, lattice.layers());
       whole_ik += whole.ik_nodes();
       bounded_ik += bounded.ik_nodes();

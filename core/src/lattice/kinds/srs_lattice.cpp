@@ -317,7 +317,7 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   for (int solution = 0; solution < solutions(); ++solution) {
     if (!(moved >> (solution / windings_) & 1)) continue;
     LayerNodes::Offsets& offsets = out.offsets_[static_cast<std::size_t>(solution)];
-    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(family_of(solution))][1];
+    LayerNodes::Span& arrays = out.arrays_[static_cast<std::size_t>(elbow_side_of(solution))][1];
     if (arrays.end == 0) arrays.begin = used;
     for (std::size_t& joint : offsets.q) joint = allot();
     offsets.mask = {allot(), free};
@@ -410,7 +410,7 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
   }
   for (const Moved& moved : this->moved(out.layer_)) {
     const int solution = solution_of(moved.slot);
-    if (family_of(solution) != elbow) continue;
+    if (elbow_side_of(solution) != elbow) continue;
     const LayerNodes::Offsets& own = out.at(solution);
     for (int k = wrapped_index(static_cast<long long>(angle_of(moved.slot)) - out.first_, angles_); k < end; k += angles_) {
       if (k < begin) continue;
@@ -594,10 +594,10 @@ PoseShift SrsLattice::rows_apart(int layer, int group, const Config& q) const {
                               : row_shift_->between_rows(group, plane(layer).reach, q);
 }
 
-bool SrsLattice::families_meet(int step_layer, int layer, int family, int other_layer, int other) const {
-  if (family == other) return true;
-  if (!alive(layer, family) || !alive(other_layer, other)) return false;
-  const auto angle = elbow_angle(layer, family), other_angle = elbow_angle(other_layer, other);
+bool SrsLattice::may_change_elbow_side(int step_layer, int layer, int side, int other_layer, int other) const {
+  if (side == other) return true;
+  if (!alive(layer, side) || !alive(other_layer, other)) return false;
+  const auto angle = elbow_angle(layer, side), other_angle = elbow_angle(other_layer, other);
   return !angle || !other_angle || std::abs(*angle - *other_angle) <= step_bound(step_layer)[kElbowJoint];
 }
 

@@ -56,7 +56,7 @@ void SrsLattice::triple_arcs(int layer, int solution, int triple, std::vector<An
 }
 
 bool SrsLattice::elbow_within(int layer, int solution) const {
-  const int elbow = family_of(solution);
+  const int elbow = elbow_side_of(solution);
   if (!elbow_alive(layer, elbow)) return false;
   const Images& images = images_[3];
   const double turns =
@@ -97,13 +97,13 @@ void SrsLattice::move_cells(const Budget& budget) {
   std::vector<AngleArc> arcs;
   for (int layer = 0; layer < layers(); ++layer) {
     if (layer % 64 == 0) budget.poll(Stage::kLattice, layer, layers());
-    for (int family = 0; family < kFamilies && !(layer == 0 && start_); ++family) {
+    for (int side = 0; side < kElbowSides && !(layer == 0 && start_); ++side) {
       for (std::size_t triple = 0; triple < 2; ++triple) {
         of_triple[triple].resize(2 * triple_limits_[triple].size());
         known[triple].assign(of_triple[triple].size(), 0);
       }
-      const int half = solutions() / kFamilies;
-      for (int solution = family * half; solution < (family + 1) * half; ++solution) {
+      const int half = solutions() / kElbowSides;
+      for (int solution = side * half; solution < (side + 1) * half; ++solution) {
         if (!elbow_within(layer, solution)) continue;
         const auto found = [&](int triple) -> const std::vector<AngleArc>& {
           const bool negative = (solution / windings_ & (triple == 0 ? kShoulderBit : kWristBit)) != 0;

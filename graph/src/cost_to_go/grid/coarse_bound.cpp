@@ -82,7 +82,7 @@ class Chords {
         work_(work),
         n_(lattice.angles()),
         window_(std::min(n_ / 2, stride * lattice.window() + 1)),
-        nodes_(SrsLattice::kFamilies) {
+        nodes_(SrsLattice::kElbowSides) {
     const Cost& cost = lattice.cost();
     task_.metric = cost.metric == CostMetric::kL2 ? RelaxMetric::kL2 : RelaxMetric::kMax;
     task_.wraps = false;
@@ -114,11 +114,11 @@ class Chords {
     budget_.tell(Stage::kBounds, layer_at(c), lattice_.layers());
     int end = c + 1;
     while (!meets(c) && end < layers() && end - c < kMostAlone && !meets(end)) ++end;
-    work_.for_each(SrsLattice::kFamilies, [&](int family, int) {
+    work_.for_each(SrsLattice::kElbowSides, [&](int side, int) {
       for (int at = c; at < end; ++at) {
-        load(at, family);
+        load(at, side);
         const bool meets_other = end == c + 1 && meets(at);
-        for (int solution = first_solution(family); solution < first_solution(family) + lattice_.solutions() / 2; ++solution) {
+        for (int solution = first_solution(side); solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
           float* const row =
               rows + static_cast<std::ptrdiff_t>(at - c) * lattice_.width() + static_cast<std::ptrdiff_t>(solution) * n_;
           if (circle(at, solution).alive)
@@ -136,11 +136,11 @@ class Chords {
  private:
   static constexpr int kMostAlone = 16;  // chords until the next progress report
 
-  [[nodiscard]] int first_solution(int family) const { return family * lattice_.solutions() / 2; }
+  [[nodiscard]] int first_solution(int side) const { return side * lattice_.solutions() / 2; }
   /// Returns true if a step of the chord before layer c may lead from one elbow side to the other.
   [[nodiscard]] bool meets(int c) const {
     for (int step = c > 0 ? layer_at(c - 1) : 0; step < (c > 0 ? layer_at(c) : 0); ++step)
-      if (lattice_.families_meet(step)) return true;
+      if (lattice_.may_change_elbow_side(step)) return true;
     return false;
   }
   [[nodiscard]] int layer_at(int c) const { return std::min(c * stride_, lattice_.layers() - 1); }
@@ -169,12 +169,12 @@ class Chords {
   }
 
   /// Loads joints, with value 0 where there is a node.
-  void load(int c, int family) {
+  void load(int c, int side) {
     budget_.poll();
-    LayerNodes& nodes = nodes_[static_cast<std::size_t>(family)];
+    LayerNodes& nodes = nodes_[static_cast<std::size_t>(side)];
     lattice_.lay_out(layer_at(c), 0, n_, nodes);
-    lattice_.solve_part(family, 0, n_, nodes);
-    for (int solution = first_solution(family); solution < first_solution(family) + lattice_.solutions() / 2; ++solution) {
+    lattice_.solve_part(side, 0, n_, nodes);
+    for (int solution = first_solution(side); solution < first_solution(side) + lattice_.solutions() / 2; ++solution) {
       Circle& to = circle(c, solution);
       to.alive = false;
       if (!nodes.alive(solution)) continue;
@@ -220,7 +220,7 @@ class Chords {
     const auto worst_of_all = [&] { return (here.lanes(here.value, at) < kNever).select(best, 0).maxCoeff(); };
     relax_with(here, begin(run), count, circle(c - 1, solution), best.data());
     float worst = worst_of_all();
-    const int family = lattice_.family_of(solution), first = meets_other ? 0 : first_solution(family);
+    const int side = lattice_.elbow_side_of(solution), first = meets_other ? 0 : first_solution(side);
     for (int other = first; other < (meets_other ? lattice_.solutions() : first + lattice_.solutions() / 2); ++other) {
       const Circle& before = circle(c - 1, other);
       if (other == solution || !before.alive) continue;
@@ -263,7 +263,7 @@ class Chords {
   double lost_ = 0;
   bool fits_ = true;
   std::array<std::vector<Circle>, 2> circles_;  // [c % 2][solution]
-  std::vector<LayerNodes> nodes_;               // scratch of load(): [family]
+  std::vector<LayerNodes> nodes_;               // scratch of load(): [elbow side]
 };
 
 }  // namespace

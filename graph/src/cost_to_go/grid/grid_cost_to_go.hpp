@@ -70,23 +70,23 @@ class GridCostToGo final : public CostToGo {
   };
   [[nodiscard]] OneNode one_node(int layer, int slot);
   /// Returns the joints of a column of one elbow side, valid until the next call.
-  [[nodiscard]] const LayerNodes& neighbours(int layer, int family, int column);
+  [[nodiscard]] const LayerNodes& neighbours(int layer, int side, int column);
   [[nodiscard]] int tile_columns() const { return (lattice_->angles() + kTileWidth - 1) / kTileWidth; }
   [[nodiscard]] std::size_t tile_of_layer(int solution, int column) const {
     return static_cast<std::size_t>(solution) * static_cast<std::size_t>(tile_columns()) + static_cast<std::size_t>(column);
   }
   [[nodiscard]] int half_solutions() const { return lattice_->solutions() / 2; }
-  [[nodiscard]] int first_solution(int family) const { return family * half_solutions(); }
+  [[nodiscard]] int first_solution(int side) const { return side * half_solutions(); }
   [[nodiscard]] const TileTable& tiles_of(int solution) const {
-    return apart_ && lattice_->family_of(solution) ? tiles_[1] : tiles_[0];
+    return apart_ && lattice_->elbow_side_of(solution) ? tiles_[1] : tiles_[0];
   }
-  [[nodiscard]] TileTable& tiles_of(int solution) { return apart_ && lattice_->family_of(solution) ? tiles_[1] : tiles_[0]; }
+  [[nodiscard]] TileTable& tiles_of(int solution) { return apart_ && lattice_->elbow_side_of(solution) ? tiles_[1] : tiles_[0]; }
   [[nodiscard]] std::size_t tile_index(int layer, int solution, int column) const {
     return static_cast<std::size_t>(layer) * tile_of_layer(lattice_->solutions(), 0) + tile_of_layer(solution, column);
   }
   double& value_at(int layer, int slot);  // the tile is held from now on
 
-  // The two elbow sides (families, signs of the elbow angle) meet at hardly any layer: between,
+  // The two elbow sides (elbow sides, signs of the elbow angle) meet at hardly any layer: between,
   // each is a lattice of its own, which one thread goes through by itself. Nothing that one side
   // writes is read by the other.
   /// Most layers that the elbow sides go through, one after the other or side by side, until the
@@ -94,30 +94,30 @@ class GridCostToGo final : public CostToGo {
   static constexpr int kMostAlone = 64;
   /// Returns true if the elbow sides are apart from a layer to the next. Where an edge is removed
   /// there one thread looks at both.
-  [[nodiscard]] bool families_part(int step_layer) const {
-    return !lattice_->families_meet(step_layer) && !verdicts_.removed_edges(step_layer);
+  [[nodiscard]] bool elbow_sides_part(int step_layer) const {
+    return !lattice_->may_change_elbow_side(step_layer) && !verdicts_.removed_edges(step_layer);
   }
-  /// Calls part(family) for both elbow sides, on two threads where work is shared.
+  /// Calls part(elbow side) for both elbow sides, on two threads where work is shared.
   template <class Part>
-  void by_family(const Part& part);
+  void by_elbow_side(const Part& part);
   void collect_counts();
   Workspace& workspace(int layer) { return *workspace_[static_cast<std::size_t>(layer % 2)]; }
-  LayerJoints& joints(int family, int layer);
+  LayerJoints& joints(int side, int layer);
   void forget_joints();
-  void solve_columns(Workspace& workspace, int family, int first, int last);
-  void find_ranges(LayerJoints& joints, int family, int column) const;
-  void begin(int family, int layer, Workspace& workspace) const;
-  void begin_with_all(int family, int layer, Workspace& workspace);  // every node at cost 0
+  void solve_columns(Workspace& workspace, int side, int first, int last);
+  void find_ranges(LayerJoints& joints, int side, int column) const;
+  void begin(int side, int layer, Workspace& workspace) const;
+  void begin_with_all(int side, int layer, Workspace& workspace);  // every node at cost 0
   /// Loads the values of columns, and their joints. Columns that are not among those `reached`, if
   /// given, get no value and need no joints.
-  void load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
-  void reach_back(int family, int step_layer, const Workspace& to, Workspace& from);
-  void relax(int family, int step_layer, Workspace& from, const Workspace& to);
+  void load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached = nullptr);
+  void reach_back(int side, int step_layer, const Workspace& to, Workspace& from);
+  void relax(int side, int step_layer, Workspace& from, const Workspace& to);
   void relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other, double* best);
-  void apply_masks(int family, Workspace& workspace) const;
-  void add_node_costs(int family, Workspace& workspace) const;
-  void prune_above_limit(int family, Workspace& workspace) const;
-  void publish_values(int family, Workspace& workspace) const;
+  void apply_masks(int side, Workspace& workspace) const;
+  void add_node_costs(int side, Workspace& workspace) const;
+  void prune_above_limit(int side, Workspace& workspace) const;
+  void publish_values(int side, Workspace& workspace) const;
   /// Returns true if no step takes a joint from one range into the other. Continuous joints have no
   /// plain ranges, which tell nothing.
   [[nodiscard]] bool out_of_step(int step_layer, int joint, const JointRange& a, const JointRange& b) const;
@@ -127,11 +127,11 @@ class GridCostToGo final : public CostToGo {
   /// Finds the angles in the windows of these; gaps between two of a column are filled, so there
   /// may be more.
   void widen(const AngleSet& angles, AngleSet& result) const;
-  void store_tiles(int family, const Workspace& workspace);
+  void store_tiles(int side, const Workspace& workspace);
   /// Replaces the values kept of these angles. Returns true if any differ, `changed` says which.
   /// What the workspace holds of other angles of their columns may be too much, since not all of
   /// their windows were loaded.
-  [[nodiscard]] bool renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
+  [[nodiscard]] bool renew_tiles(int side, const Workspace& workspace, const AngleSet& angles, AngleSet& changed);
   template <class Worth, class Visit>
   void each_in_window(int layer, int slot, const Config& q, const Worth& worth, const Visit& visit);
   [[nodiscard]] double relax_one(int layer, int slot);  // at() as it should be
@@ -147,7 +147,7 @@ class GridCostToGo final : public CostToGo {
   /// of the layer.
   [[nodiscard]] const float* cost_before(int layer) const;
   void begin_reach_rows(int layers);
-  void keep_reach(int family, int layer, float* kept);
+  void keep_reach(int side, int layer, float* kept);
   [[nodiscard]] bool knows_reach() const { return reach_.known && reach_.removed == verdicts_.removed(); }
   void forget_reach() {
     reach_.known = false;
@@ -183,7 +183,7 @@ class GridCostToGo final : public CostToGo {
     bool apart = false;
     std::array<TileTable::Held, 2> tiles;
   } saved_;
-  std::vector<LayerJoints> passing_;                     // [family][layer % 2]: those at hand
+  std::vector<LayerJoints> passing_;                     // [elbow side][layer % 2]: those at hand
   std::array<std::unique_ptr<Workspace>, 2> workspace_;  // [layer % 2]
   /// Joints of columns around nodes that were asked about one by one, since others around them will
   /// be asked about too.

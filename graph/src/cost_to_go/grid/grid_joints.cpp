@@ -6,8 +6,8 @@
 
 namespace swivel {
 
-GridCostToGo::LayerJoints& GridCostToGo::joints(int family, int layer) {
-  LayerJoints* joints = &passing_[static_cast<std::size_t>(2 * family + layer % 2)];
+GridCostToGo::LayerJoints& GridCostToGo::joints(int side, int layer) {
+  LayerJoints* joints = &passing_[static_cast<std::size_t>(2 * side + layer % 2)];
   if (joints->layer != layer) {
     const int n = lattice_->angles(), window = lattice_->window();
     joints->layer = layer;
@@ -19,9 +19,9 @@ GridCostToGo::LayerJoints& GridCostToGo::joints(int family, int layer) {
   return *joints;
 }
 
-void GridCostToGo::solve_columns(Workspace& workspace, int family, int first, int last) {
-  Workspace::Half& half = workspace.half(family);
-  if (!half.joints) half.joints = &joints(family, half.layer);
+void GridCostToGo::solve_columns(Workspace& workspace, int side, int first, int last) {
+  Workspace::Half& half = workspace.half(side);
+  if (!half.joints) half.joints = &joints(side, half.layer);
   LayerJoints& joints = *half.joints;
   const int n = lattice_->angles(), window = lattice_->window();
   for (int column = first, next = first; column < last; column = next) {
@@ -31,24 +31,24 @@ void GridCostToGo::solve_columns(Workspace& workspace, int family, int first, in
     std::fill(joints.solved.begin() + column, joints.solved.begin() + next, std::uint8_t{1});
     const int begin = column * kTileWidth, end = std::min(n, next * kTileWidth);
     half.ik_nodes += static_cast<std::int64_t>(end - begin) * half_solutions();
-    lattice_->solve_part(family, window + begin, window + end, joints.nodes);
-    for (int done = column; done < next; ++done) find_ranges(joints, family, done);
+    lattice_->solve_part(side, window + begin, window + end, joints.nodes);
+    for (int done = column; done < next; ++done) find_ranges(joints, side, done);
     // The window reaches around the circle.
-    if (begin < window) joints.nodes.repeat(family, window + begin, window + begin + n, std::min(end, window) - begin);
+    if (begin < window) joints.nodes.repeat(side, window + begin, window + begin + n, std::min(end, window) - begin);
     if (end > n - window) {
       const int from = std::max(begin, n - window);
-      joints.nodes.repeat(family, window + from, window + from - n, end - from);
+      joints.nodes.repeat(side, window + from, window + from - n, end - from);
     }
   }
 }
 
-void GridCostToGo::find_ranges(LayerJoints& joints, int family, int column) const {
+void GridCostToGo::find_ranges(LayerJoints& joints, int side, int column) const {
   const int half = lattice_->solutions() / 2, begin = lattice_->window() + column * kTileWidth;
   const int count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     std::array<const double*, 2> known{};  // solutions share arrays: two for each sign of a triple
     std::array<JointRange, 2> found;
-    for (int solution = family * half; solution < (family + 1) * half; ++solution) {
+    for (int solution = side * half; solution < (side + 1) * half; ++solution) {
       const double* q = joints.nodes.q(solution, MiddleRanges::kJoints[m]) + begin;
       if (q != known[0]) {
         std::swap(known[0], known[1]);
@@ -77,25 +77,25 @@ void GridCostToGo::forget_joints() {
   for (LayerJoints& joints : passing_) joints.layer = -1;
 }
 
-const LayerNodes& GridCostToGo::neighbours(int layer, int family, int column) {
+const LayerNodes& GridCostToGo::neighbours(int layer, int side, int column) {
   // so that neighbours along path and coordinate share no place
   constexpr std::int64_t kLayersApart = 67;
   if (neighbours_.empty()) neighbours_.resize(kNeighbourhoods);
-  const std::int64_t in_layer = family * tile_columns() + column;
+  const std::int64_t in_layer = side * tile_columns() + column;
   Neighbours& found = neighbours_[static_cast<std::size_t>(layer * kLayersApart + in_layer) % kNeighbourhoods];
   if (const std::int64_t of = layer * std::int64_t{2} * tile_columns() + in_layer; found.of != of) {
     const int count = std::min(kTileWidth, lattice_->angles());
     found.of = of;
     ik_nodes_ += static_cast<std::int64_t>(count) * lattice_->solutions() / 2;
     lattice_->lay_out(layer, column * kTileWidth, count, found.nodes);
-    lattice_->solve_part(family, 0, count, found.nodes);
+    lattice_->solve_part(side, 0, count, found.nodes);
   }
   return found.nodes;
 }
 
 GridCostToGo::OneNode GridCostToGo::one_node(int layer, int slot) {
   const int solution = lattice_->solution_of(slot), angle = lattice_->angle_of(slot), column = angle / kTileWidth;
-  return {&neighbours(layer, lattice_->family_of(solution), column), solution, angle - column * kTileWidth};
+  return {&neighbours(layer, lattice_->elbow_side_of(solution), column), solution, angle - column * kTileWidth};
 }
 
 Config GridCostToGo::config(int layer, int slot) {

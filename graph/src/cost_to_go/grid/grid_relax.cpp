@@ -6,9 +6,9 @@
 
 namespace swivel {
 
-void GridCostToGo::begin(int family, int layer, Workspace& workspace) const {
+void GridCostToGo::begin(int side, int layer, Workspace& workspace) const {
   const int length = lattice_->angles() + 2 * lattice_->window();
-  Workspace::Half& half = workspace.half(family);
+  Workspace::Half& half = workspace.half(side);
   half.layer = layer;
   half.joints = nullptr;
   for (const int solution : half.solutions) {
@@ -20,36 +20,36 @@ void GridCostToGo::begin(int family, int layer, Workspace& workspace) const {
   half.reached.assign(static_cast<std::size_t>(tile_columns()), 0);
 }
 
-void GridCostToGo::begin_with_all(int family, int layer, Workspace& workspace) {
-  begin(family, layer, workspace);
-  if (!lattice_->alive(layer, family)) return;
+void GridCostToGo::begin_with_all(int side, int layer, Workspace& workspace) {
+  begin(side, layer, workspace);
+  if (!lattice_->alive(layer, side)) return;
   const int width = lattice_->width() / 2;
-  std::fill_n(workspace.row.begin() + family * width, width, 0.0);
-  solve_columns(workspace, family, 0, tile_columns());
-  Workspace::Half& half = workspace.half(family);
-  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
+  std::fill_n(workspace.row.begin() + side * width, width, 0.0);
+  solve_columns(workspace, side, 0, tile_columns());
+  Workspace::Half& half = workspace.half(side);
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
     for (int column = 0; column < tile_columns() && half.joints->nodes.alive(solution); ++column)
       half.tiles.push_back({solution, column, true});
-  apply_masks(family, workspace);
+  apply_masks(side, workspace);
 }
 
-void GridCostToGo::reach_back(int family, int step_layer, const Workspace& to, Workspace& from) {
-  Workspace::Half& half = from.half(family);
-  if (!lattice_->alive(half.layer, family)) return;
+void GridCostToGo::reach_back(int side, int step_layer, const Workspace& to, Workspace& from) {
+  Workspace::Half& half = from.half(side);
+  if (!lattice_->alive(half.layer, side)) return;
   std::vector<int>& columns = half.columns;
   columns.clear();
-  const Workspace::Half& own = to.half(family);
+  const Workspace::Half& own = to.half(side);
   const Workspace::Half* other =
-      lattice_->families_meet(step_layer, half.layer, family, own.layer, 1 - family) ? &to.half(1 - family) : nullptr;
+      lattice_->may_change_elbow_side(step_layer, half.layer, side, own.layer, 1 - side) ? &to.half(1 - side) : nullptr;
   for (int column = 0; column < tile_columns(); ++column) {
     const auto c = static_cast<std::size_t>(column);
     if (own.reached[c] || (other && other->reached[c])) columns.push_back(column);
   }
   for (std::size_t k = 0, next = 0; k < columns.size(); k = next) {
     for (next = k + 1; next < columns.size() && columns[next] == columns[next - 1] + 1;) ++next;
-    solve_columns(from, family, columns[k], columns[next - 1] + 1);
+    solve_columns(from, side, columns[k], columns[next - 1] + 1);
   }
-  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
     for (const int column : columns) half.tiles.push_back({solution, column});
 }
 
@@ -65,8 +65,8 @@ bool GridCostToGo::may_meet(int step_layer, const MiddleRanges& a, const MiddleR
 
 bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int solution, int column, const Workspace& to,
                                int other) const {
-  const LayerJoints &own_joints = *from.half(lattice_->family_of(solution)).joints,
-                    &other_joints = *to.half(lattice_->family_of(other)).joints;
+  const LayerJoints &own_joints = *from.half(lattice_->elbow_side_of(solution)).joints,
+                    &other_joints = *to.half(lattice_->elbow_side_of(other)).joints;
   const MiddleRanges& own_ranges = own_joints.of_tile[tile_of_layer(solution, column)];
   if (!may_meet(step_layer, own_ranges, other_joints.of_layer[static_cast<std::size_t>(other)])) return false;
   const Workspace::Window& windows = to.windows[tile_of_layer(other, column)];
@@ -74,7 +74,7 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int soluti
   const auto theirs = [&](int joint) {
     return JointRange(other_joints.nodes.q(other, joint), value, windows.first, windows.last + 1);
   };
-  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->family_of(solution))];
+  MiddleRanges& ranges = windows.ranges[static_cast<std::size_t>(lattice_->elbow_side_of(solution))];
   for (std::size_t m = 0; m < MiddleRanges::kJoints.size(); ++m) {
     JointRange& range = ranges.joint[m];
     if (range.empty()) range = theirs(MiddleRanges::kJoints[m]);
@@ -84,11 +84,11 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int soluti
   // tell windings apart.
   const int begin = lattice_->window() + column * kTileWidth,
             count = std::min(kTileWidth, lattice_->angles() - column * kTileWidth);
-  const bool one_family = lattice_->family_of(solution) == lattice_->family_of(other);
+  const bool one_elbow_side = lattice_->elbow_side_of(solution) == lattice_->elbow_side_of(other);
   for (const int joint : SrsLattice::kOuterJoints) {
     const double* q = own_joints.nodes.q(solution, joint);
     // shared, so it tells nothing apart
-    const bool shared = one_family && q == own_joints.nodes.q(other, joint);
+    const bool shared = one_elbow_side && q == own_joints.nodes.q(other, joint);
     if (shared || lattice_->continuous()[static_cast<std::size_t>(joint)]) continue;
     const JointRange own(q + begin, count);
     if (out_of_step(step_layer, joint, own, theirs(joint))) return false;
@@ -99,8 +99,8 @@ bool GridCostToGo::may_connect(int step_layer, const Workspace& from, int soluti
 void GridCostToGo::relax_run(int step_layer, Workspace& from, int solution, int first, int count, const Workspace& to, int other,
                              double* best) {
   const int window = lattice_->window(), length = lattice_->angles() + 2 * window;
-  Workspace::Half& half = from.half(lattice_->family_of(solution));
-  const LayerNodes& other_nodes = to.half(lattice_->family_of(other)).joints->nodes;
+  Workspace::Half& half = from.half(lattice_->elbow_side_of(solution));
+  const LayerNodes& other_nodes = to.half(lattice_->elbow_side_of(other)).joints->nodes;
   RelaxTask<double> task = relax_task(*lattice_, step_layer);
   task.n = count;
   task.offsets = 2 * window + 1;
@@ -114,18 +114,19 @@ void GridCostToGo::relax_run(int step_layer, Workspace& from, int solution, int 
   relax_kernels().relax(task);
 }
 
-void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Workspace& to) {
+void GridCostToGo::relax(int side, int step_layer, Workspace& from, const Workspace& to) {
   const int n = lattice_->angles();
-  const Workspace::Half& here = from.half(family);
-  std::vector<Tile>& tiles = from.half(family).tiles;
+  const Workspace::Half& here = from.half(side);
+  std::vector<Tile>& tiles = from.half(side).tiles;
   for (const Tile& tile : tiles) {
     double* const row = from.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
     std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
   }
   if (!here.joints) return;  // no column is reached
-  std::array<bool, SrsLattice::kFamilies> meets;
-  for (int other = 0; other < SrsLattice::kFamilies; ++other)
-    meets[static_cast<std::size_t>(other)] = lattice_->families_meet(step_layer, here.layer, family, to.half(family).layer, other);
+  std::array<bool, SrsLattice::kElbowSides> meets;
+  for (int other = 0; other < SrsLattice::kElbowSides; ++other)
+    meets[static_cast<std::size_t>(other)] =
+        lattice_->may_change_elbow_side(step_layer, here.layer, side, to.half(side).layer, other);
   for (std::size_t first = 0, last = 0; first < tiles.size(); first = last) {
     budget_.poll();
     const int solution = tiles[first].solution;
@@ -156,15 +157,15 @@ void GridCostToGo::relax(int family, int step_layer, Workspace& from, const Work
       }
       relax_columns();
     };
-    for (int others = 0; others < SrsLattice::kFamilies; ++others)
+    for (int others = 0; others < SrsLattice::kElbowSides; ++others)
       if (meets[static_cast<std::size_t>(others)])
         for (const int other : to.half(others).solutions) relax_with(other, *to.half(others).joints);
   }
 }
 
-void GridCostToGo::publish_values(int family, Workspace& workspace) const {
+void GridCostToGo::publish_values(int side, Workspace& workspace) const {
   const int n = lattice_->angles(), window = lattice_->window(), length = n + 2 * window;
-  Workspace::Half& half = workspace.half(family);
+  Workspace::Half& half = workspace.half(side);
   std::size_t kept = 0;
   for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;

@@ -32,7 +32,7 @@ void GridCostToGo::each_in_window(int layer, int slot, const Config& q, const Wo
       const LayerNodes* nodes = nullptr;
       for (int j = 0; j < next - k; ++j) {
         if (!worth(rest[j])) continue;
-        if (!nodes) nodes = &neighbours(layer + 1, lattice_->family_of(solution), column);
+        if (!nodes) nodes = &neighbours(layer + 1, lattice_->elbow_side_of(solution), column);
         visit(solution * n + angle + j, rest[j], lattice_->delta(q, nodes->config(solution, in_tile + j)));
       }
     }
@@ -81,11 +81,11 @@ void GridCostToGo::relax_removed(int layer) {
 
 // --- removals and costs
 
-void GridCostToGo::add_node_costs(int family, Workspace& workspace) const {
-  const double* own = verdicts_.costs(workspace.half(family).layer);
+void GridCostToGo::add_node_costs(int side, Workspace& workspace) const {
+  const double* own = verdicts_.costs(workspace.half(side).layer);
   if (!own) return;
   const int n = lattice_->angles();
-  for (const Tile& tile : workspace.half(family).tiles)
+  for (const Tile& tile : workspace.half(side).tiles)
     for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
       workspace.row[static_cast<std::size_t>(slot)] += own[slot];
 }
@@ -143,66 +143,66 @@ void GridCostToGo::propagate_removals() {
   forget_joints();
   auto& pending = verdicts_.pending;
   while (!pending.empty() && pending.rbegin()->first > goal_) pending.erase(std::prev(pending.end()));
-  std::array<Front, SrsLattice::kFamilies> fronts;
+  std::array<Front, SrsLattice::kElbowSides> fronts;
   for (Front& front : fronts) front.after = front.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
   const auto set = [&](int layer, int slot, double value) {
     if (at(layer, slot) == value) return;
     value_at(layer, slot) = value;
-    Front& front = fronts[static_cast<std::size_t>(lattice_->family_of(lattice_->solution_of(slot)))];
+    Front& front = fronts[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
     const int angle = lattice_->angle_of(slot);
     front.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
     front.any_here = true;
   };
-  const auto of_family = [&](int family, int slot) { return lattice_->family_of(lattice_->solution_of(slot)) == family; };
+  const auto on_elbow_side = [&](int side, int slot) { return lattice_->elbow_side_of(lattice_->solution_of(slot)) == side; };
   // Nodes that cost more now are first computed with the layer after as it was; where that changed
   // too, they are relaxed next.
-  const auto raise = [&](int family, int layer, const Verdicts::Pending& now) {
+  const auto raise = [&](int side, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.raised)
-      if (of_family(family, slot))
+      if (on_elbow_side(side, slot))
         if (const double value = at(layer, slot); value != kUnreachable) set(layer, slot, verdicts_.cost(layer, slot) + value);
   };
-  const auto remove = [&](int family, int layer, const Verdicts::Pending& now) {
+  const auto remove = [&](int side, int layer, const Verdicts::Pending& now) {
     for (const int slot : now.nodes)
-      if (of_family(family, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
+      if (on_elbow_side(side, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
   };
   // Find what depends on the changes of the layer after, and what of that layer it depends on.
-  const auto load_after = [&](int family, int layer, Front& front) {
+  const auto load_after = [&](int side, int layer, Front& front) {
     widen(front.after, front.dependent);
     widen(front.dependent, front.needed);
-    load_tiles(family, layer + 1, front.needed, workspace(layer + 1));
-    publish_values(family, workspace(layer + 1));
+    load_tiles(side, layer + 1, front.needed, workspace(layer + 1));
+    publish_values(side, workspace(layer + 1));
   };
-  const auto relax_loaded = [&](int family, int layer) {
-    relax(family, layer, workspace(layer), workspace(layer + 1));
-    apply_masks(family, workspace(layer));
-    add_node_costs(family, workspace(layer));
+  const auto relax_loaded = [&](int side, int layer) {
+    relax(side, layer, workspace(layer), workspace(layer + 1));
+    apply_masks(side, workspace(layer));
+    add_node_costs(side, workspace(layer));
   };
-  const auto settle = [&](int family, int layer, Front& front) {
-    prune_above_limit(family, workspace(layer));
-    if (renew_tiles(family, workspace(layer), front.dependent, front.here)) front.any_here = true;
+  const auto settle = [&](int side, int layer, Front& front) {
+    prune_above_limit(side, workspace(layer));
+    if (renew_tiles(side, workspace(layer), front.dependent, front.here)) front.any_here = true;
   };
   const auto goes_alone = [&](int layer) {
     const auto now = pending.find(layer);
     return (layer > 0 || !lattice_->has_start()) && (now == pending.end() || now->second.tails.empty()) &&
-           (layer == goal_ || families_part(layer));
+           (layer == goal_ || elbow_sides_part(layer));
   };
   for (int layer = pending.empty() ? -1 : pending.rbegin()->first; layer >= 0;) {
     int end = layer;  // end of the layers that elbow sides go through alone
     while (end >= 0 && layer - end < kMostAlone && goes_alone(end)) --end;
     if (end < layer) {
       budget_.poll();
-      by_family([&](int family) {
-        Front& front = fronts[static_cast<std::size_t>(family)];
+      by_elbow_side([&](int side) {
+        Front& front = fronts[static_cast<std::size_t>(side)];
         for (int here = layer; here > end; --here) {
           const auto now = pending.find(here);
-          if (now != pending.end()) raise(family, here, now->second);
+          if (now != pending.end()) raise(side, here, now->second);
           if (front.any_after) {
-            load_after(family, here, front);
-            load_tiles(family, here, front.dependent, workspace(here), &workspace(here + 1).half(family).reached);
-            relax_loaded(family, here);
-            settle(family, here, front);
+            load_after(side, here, front);
+            load_tiles(side, here, front.dependent, workspace(here), &workspace(here + 1).half(side).reached);
+            relax_loaded(side, here);
+            settle(side, here, front);
           }
-          if (now != pending.end()) remove(family, here, now->second);
+          if (now != pending.end()) remove(side, here, now->second);
           front.next_layer();
         }
       });
@@ -213,23 +213,22 @@ void GridCostToGo::propagate_removals() {
       fronts[1].add(fronts[0]);
       const bool any = fronts[0].any_after;
       const auto now = pending.find(layer);
-      for (int family = 0; family < SrsLattice::kFamilies && now != pending.end(); ++family) raise(family, layer, now->second);
+      for (int side = 0; side < SrsLattice::kElbowSides && now != pending.end(); ++side) raise(side, layer, now->second);
       if (any && layer == 0 && lattice_->has_start()) {
         const int slot = lattice_->start_slot();
         if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
       } else if (any) {
-        by_family([&](int family) {
-          Front& front = fronts[static_cast<std::size_t>(family)];
-          load_after(family, layer, front);
-          load_tiles(family, layer, front.dependent, workspace(layer));
+        by_elbow_side([&](int side) {
+          Front& front = fronts[static_cast<std::size_t>(side)];
+          load_after(side, layer, front);
+          load_tiles(side, layer, front.dependent, workspace(layer));
         });
-        by_family([&](int family) { relax_loaded(family, layer); });
+        by_elbow_side([&](int side) { relax_loaded(side, layer); });
         relax_removed(layer);
-        for (int family = 0; family < SrsLattice::kFamilies; ++family)
-          settle(family, layer, fronts[static_cast<std::size_t>(family)]);
+        for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, layer, fronts[static_cast<std::size_t>(side)]);
       }
       if (now != pending.end()) {
-        for (int family = 0; family < SrsLattice::kFamilies; ++family) remove(family, layer, now->second);
+        for (int side = 0; side < SrsLattice::kElbowSides; ++side) remove(side, layer, now->second);
         for (const int slot : now->second.tails) {
           budget_.poll();
           if (layer < goal_ && at(layer, slot) != kUnreachable) set(layer, slot, relax_one(layer, slot));
@@ -274,13 +273,13 @@ void GridCostToGo::begin_reach_rows(int layers) {
 }
 
 /// Keeps the costs of one elbow side's nodes, rounded down; `kept` has all slots.
-void GridCostToGo::keep_reach(int family, int layer, float* kept) {
+void GridCostToGo::keep_reach(int side, int layer, float* kept) {
   constexpr double kMost = 1e30;  // that a float can hold
   const int n = lattice_->angles(), width = lattice_->width() / 2;
-  std::fill_n(kept + family * width, width, std::numeric_limits<float>::infinity());
+  std::fill_n(kept + side * width, width, std::numeric_limits<float>::infinity());
   const Workspace& here = workspace(layer);
-  if (here.half(family).layer != layer) return;  // this elbow side does not come here
-  for (const Tile& tile : here.half(family).tiles)
+  if (here.half(side).layer != layer) return;  // this elbow side does not come here
+  for (const Tile& tile : here.half(side).tiles)
     for (int slot = tile.solution * n + tile.begin(); slot < tile.solution * n + tile.end(n); ++slot)
       kept[slot] = std::nextafter(static_cast<float>(std::min(here.row[static_cast<std::size_t>(slot)], kMost)), 0.0F);
 }
@@ -292,47 +291,47 @@ int GridCostToGo::deepest_reachable() {
   reach_.rows.clear();
   const int n = lattice_->angles();
   forget_joints();
-  by_family([&](int family) {
-    begin_with_all(family, 0, workspace(0));
-    publish_values(family, workspace(0));
+  by_elbow_side([&](int side) {
+    begin_with_all(side, 0, workspace(0));
+    publish_values(side, workspace(0));
   });
   if (!workspace(0).reaches_any()) return -1;
-  std::array<int, SrsLattice::kFamilies> deepest{0, 0};
+  std::array<int, SrsLattice::kElbowSides> deepest{0, 0};
   // costs of these layers' nodes
   std::vector<float> ended(static_cast<std::size_t>(lattice_->width()));
   const auto row_of = [&](int layer) {
     const int row = (layer + Reach::kStride - 1) / Reach::kStride;
     return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
   };
-  const auto keep_every_few = [&](int family, int layer) {
-    if (layer % Reach::kStride == 0) keep_reach(family, layer, row_of(layer));
+  const auto keep_every_few = [&](int side, int layer) {
+    if (layer % Reach::kStride == 0) keep_reach(side, layer, row_of(layer));
   };
-  const auto step = [&](int family, int layer) {
+  const auto step = [&](int side, int layer) {
     Workspace &here = workspace(layer), &before = workspace(layer - 1);
-    begin(family, layer, here);
-    reach_back(family, layer - 1, before, here);
-    relax(family, layer - 1, here, before);
-    apply_masks(family, here);
+    begin(side, layer, here);
+    reach_back(side, layer - 1, before, here);
+    relax(side, layer - 1, here, before);
+    apply_masks(side, here);
   };
   // Recomputes the cost of a node where the step that it came by is removed, or where the layer
   // before is the start alone.
   const auto step_one = [&](int layer, int slot) {
     Workspace& here = workspace(layer);
     const Tile tile{lattice_->solution_of(slot), lattice_->angle_of(slot) / kTileWidth, true};
-    const int family = lattice_->family_of(tile.solution);
-    std::vector<Tile>& tiles = here.half(family).tiles;
+    const int side = lattice_->elbow_side_of(tile.solution);
+    std::vector<Tile>& tiles = here.half(side).tiles;
     double* row = here.row.data() + tile.solution * n;
     const auto place = std::lower_bound(tiles.begin(), tiles.end(), tile);
     if (place == tiles.end() || *place != tile) {
       std::fill(row + tile.begin(), row + tile.end(n), kUnreachable);
       tiles.insert(place, tile);
     }
-    solve_columns(here, family, tile.column, tile.column + 1);
+    solve_columns(here, side, tile.column, tile.column + 1);
     row[lattice_->angle_of(slot)] = relax_one_forward(layer, slot, workspace(layer - 1));
   };
   const auto step_from_start = [&] {
     const SrsLattice::Run run = lattice_->run_after(0, lattice_->start_slot());
-    for (int family = 0; family < SrsLattice::kFamilies; ++family) begin(family, 1, workspace(1));
+    for (int side = 0; side < SrsLattice::kElbowSides; ++side) begin(side, 1, workspace(1));
     for (int solution = 0; solution < lattice_->solutions(); ++solution)
       for (int k = 0; k < run.count; ++k) step_one(1, solution * n + (run.first + k) % n);
   };
@@ -349,14 +348,14 @@ int GridCostToGo::deepest_reachable() {
           }))
         step_one(layer, b);
   };
-  const auto goes_alone = [&](int layer) { return (layer > 1 || !lattice_->has_start()) && families_part(layer - 1); };
-  const auto finish = [&](int family, int layer) {
-    publish_values(family, workspace(layer));
-    int& last = deepest[static_cast<std::size_t>(family)];
-    if (!workspace(layer).half(family).solutions.empty())
+  const auto goes_alone = [&](int layer) { return (layer > 1 || !lattice_->has_start()) && elbow_sides_part(layer - 1); };
+  const auto finish = [&](int side, int layer) {
+    publish_values(side, workspace(layer));
+    int& last = deepest[static_cast<std::size_t>(side)];
+    if (!workspace(layer).half(side).solutions.empty())
       last = layer;
     else if (last == layer - 1)
-      keep_reach(family, last, ended.data());
+      keep_reach(side, last, ended.data());
   };
   begin_reach_rows(0);
   for (int layer = 1, end = 0; layer < lattice_->layers() && workspace(layer - 1).reaches_any(); layer = end) {
@@ -367,11 +366,11 @@ int GridCostToGo::deepest_reachable() {
     begin_reach_rows(end - 1);
     const auto* removed = verdicts_.removed_edges(layer - 1);
     const bool from_start = layer == 1 && lattice_->has_start();
-    by_family([&](int family) {
+    by_elbow_side([&](int side) {
       for (int at = layer; at < end; ++at) {
-        keep_every_few(family, at - 1);
-        if (!from_start) step(family, at);
-        if (alone) finish(family, at);
+        keep_every_few(side, at - 1);
+        if (!from_start) step(side, at);
+        if (alone) finish(side, at);
       }
     });
     if (alone) continue;
@@ -379,16 +378,16 @@ int GridCostToGo::deepest_reachable() {
       step_from_start();
     else if (removed)
       step_again(layer, *removed);
-    for (int family = 0; family < SrsLattice::kFamilies; ++family) finish(family, layer);
+    for (int side = 0; side < SrsLattice::kElbowSides; ++side) finish(side, layer);
     collect_counts();
   }
   reach_.deepest = std::max(deepest[0], deepest[1]);
   const bool to_the_end = reach_.deepest == lattice_->layers() - 1;
   float* const row = row_of(reach_.deepest);
-  for (int family = 0; family < SrsLattice::kFamilies; ++family) {
-    const int first = first_solution(family) * n, width = lattice_->width() / 2;
-    if (to_the_end || deepest[static_cast<std::size_t>(family)] < reach_.deepest)
-      keep_reach(family, reach_.deepest, row);
+  for (int side = 0; side < SrsLattice::kElbowSides; ++side) {
+    const int first = first_solution(side) * n, width = lattice_->width() / 2;
+    if (to_the_end || deepest[static_cast<std::size_t>(side)] < reach_.deepest)
+      keep_reach(side, reach_.deepest, row);
     else
       std::copy_n(ended.begin() + first, width, row + first);
   }

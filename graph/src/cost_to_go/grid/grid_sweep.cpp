@@ -40,9 +40,9 @@ GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budge
   }
 }
 
-void GridCostToGo::apply_masks(int family, Workspace& workspace) const {
+void GridCostToGo::apply_masks(int side, Workspace& workspace) const {
   const int n = lattice_->angles(), window = lattice_->window();
-  const Workspace::Half& half = workspace.half(family);
+  const Workspace::Half& half = workspace.half(side);
   for (const Tile& tile : half.tiles) {
     if (!tile.live) continue;
     const int slot = tile.solution * n + tile.begin(), at = window + tile.begin(), count = tile.end(n) - tile.begin();
@@ -58,11 +58,11 @@ void GridCostToGo::apply_masks(int family, Workspace& workspace) const {
   }
 }
 
-void GridCostToGo::prune_above_limit(int family, Workspace& workspace) const {
+void GridCostToGo::prune_above_limit(int side, Workspace& workspace) const {
   if (limit_ == kUnreachable) return;
   const int n = lattice_->angles();
-  const float* bound = cost_before(workspace.half(family).layer);
-  for (const Tile& tile : workspace.half(family).tiles) {
+  const float* bound = cost_before(workspace.half(side).layer);
+  for (const Tile& tile : workspace.half(side).tiles) {
     if (!tile.live) continue;
     const int slot = tile.solution * n + tile.begin(), count = tile.end(n) - tile.begin();
     double* const values = workspace.row.data() + slot;
@@ -73,9 +73,9 @@ void GridCostToGo::prune_above_limit(int family, Workspace& workspace) const {
   }
 }
 
-void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
+void GridCostToGo::store_tiles(int side, const Workspace& workspace) {
   const int n = lattice_->angles();
-  const Workspace::Half& half = workspace.half(family);
+  const Workspace::Half& half = workspace.half(side);
   for (const Tile& tile : half.tiles) {
     TileTable::Costs& costs = tiles_of(tile.solution).hold(tile_index(half.layer, tile.solution, tile.column));
     const double* row = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n;
@@ -83,31 +83,31 @@ void GridCostToGo::store_tiles(int family, const Workspace& workspace) {
   }
 }
 
-void GridCostToGo::load_tiles(int family, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached) {
-  begin(family, layer, workspace);
+void GridCostToGo::load_tiles(int side, int layer, const ColumnSet& columns, Workspace& workspace, const ColumnSet* reached) {
+  begin(side, layer, workspace);
   const int n = lattice_->angles();
-  for (int solution = first_solution(family); solution < first_solution(family) + half_solutions(); ++solution)
+  for (int solution = first_solution(side); solution < first_solution(side) + half_solutions(); ++solution)
     for (int column = 0; column < tile_columns(); ++column) {
       const std::size_t held = tile_index(layer, solution, column);
       if (!columns[static_cast<std::size_t>(column)] || !tiles_of(solution).holds(held)) continue;
       const TileTable::Costs& costs = tiles_of(solution)[held];
       if (*std::min_element(costs.begin(), costs.end()) == kUnreachable) continue;
       const bool live = !reached || (*reached)[static_cast<std::size_t>(column)];
-      const Tile& tile = workspace.half(family).tiles.emplace_back(Tile{solution, column, live});
+      const Tile& tile = workspace.half(side).tiles.emplace_back(Tile{solution, column, live});
       if (!live) continue;
-      solve_columns(workspace, family, column, column + 1);
+      solve_columns(workspace, side, column, column + 1);
       std::copy_n(costs.begin(), tile.end(n) - tile.begin(),
                   workspace.row.begin() + static_cast<std::ptrdiff_t>(solution) * n + tile.begin());
     }
 }
 
-bool GridCostToGo::renew_tiles(int family, const Workspace& workspace, const AngleSet& angles, AngleSet& changed) {
+bool GridCostToGo::renew_tiles(int side, const Workspace& workspace, const AngleSet& angles, AngleSet& changed) {
   const int n = lattice_->angles();
   bool any = false;
-  for (const Tile& tile : workspace.half(family).tiles) {
+  for (const Tile& tile : workspace.half(side).tiles) {
     const auto column = static_cast<std::size_t>(tile.column);
     const double* const values = workspace.row.data() + static_cast<std::ptrdiff_t>(tile.solution) * n + tile.begin();
-    TileTable::Costs& known = tiles_of(tile.solution).hold(tile_index(workspace.half(family).layer, tile.solution, tile.column));
+    TileTable::Costs& known = tiles_of(tile.solution).hold(tile_index(workspace.half(side).layer, tile.solution, tile.column));
     unsigned differ = 0;
     for (unsigned k = 0; k < static_cast<unsigned>(tile.end(n) - tile.begin()); ++k) {
       if (!(angles[column] >> k & 1) || values[k] == known[k]) continue;
@@ -211,15 +211,15 @@ void GridCostToGo::sweep_once() {
   const TraceSpan span("sweep");
   clear_values();
   forget_joints();
-  const auto settle = [&](int family, Workspace& here) {
-    prune_above_limit(family, here);
-    publish_values(family, here);
-    store_tiles(family, here);
+  const auto settle = [&](int side, Workspace& here) {
+    prune_above_limit(side, here);
+    publish_values(side, here);
+    store_tiles(side, here);
   };
-  by_family([&](int family) {
-    begin_with_all(family, goal_, workspace(goal_));
-    add_node_costs(family, workspace(goal_));
-    settle(family, workspace(goal_));
+  by_elbow_side([&](int side) {
+    begin_with_all(side, goal_, workspace(goal_));
+    add_node_costs(side, workspace(goal_));
+    settle(side, workspace(goal_));
   });
   const int last = lattice_->has_start() ? 1 : 0;
   bool reached = workspace(goal_).reaches_any();
@@ -227,22 +227,22 @@ void GridCostToGo::sweep_once() {
     budget_.tell(Stage::kSweep, goal_ - layer, goal_);
     const bool some_removed = verdicts_.removed_edges(layer) != nullptr;
     int end = layer - 1;  // end of the layers that elbow sides go through alone
-    if (families_part(layer))
-      while (end >= last && layer - end < kMostAlone && families_part(end)) --end;
-    by_family([&](int family) {
+    if (elbow_sides_part(layer))
+      while (end >= last && layer - end < kMostAlone && elbow_sides_part(end)) --end;
+    by_elbow_side([&](int side) {
       for (int at = layer; at > end; --at) {
         Workspace &here = workspace(at), &next = workspace(at + 1);
-        begin(family, at, here);
-        reach_back(family, at, next, here);
-        relax(family, at, here, next);
-        apply_masks(family, here);
-        add_node_costs(family, here);
-        if (!some_removed) settle(family, here);
+        begin(side, at, here);
+        reach_back(side, at, next, here);
+        relax(side, at, here, next);
+        apply_masks(side, here);
+        add_node_costs(side, here);
+        if (!some_removed) settle(side, here);
       }
     });
     if (some_removed) {
       relax_removed(layer);
-      for (int family = 0; family < SrsLattice::kFamilies; ++family) settle(family, workspace(layer));
+      for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, workspace(layer));
     }
     reached = workspace(end + 1).reaches_any();
     layer = end;

@@ -73,7 +73,7 @@ struct GridCostToGo::Workspace {
   /// first.
   struct Window {
     int first = 0, last = -1;
-    mutable std::array<MiddleRanges, 2> ranges;  // filled when asked for: [family that asks]
+    mutable std::array<MiddleRanges, 2> ranges;  // filled when asked for: [elbow side that asks]
   };
   std::vector<Window> windows;  // [solution][column], of the IK solutions with a finite value
   /// The solutions of one elbow side. One thread writes to it, and to those solutions' part of the
@@ -87,25 +87,25 @@ struct GridCostToGo::Workspace {
     std::vector<int> columns;       // scratch of reach_back
     std::int64_t ik_nodes = 0, edges = 0;
   };
-  std::array<Half, 2> halves;  // [family]
-  [[nodiscard]] Half& half(int family) { return halves[static_cast<std::size_t>(family)]; }
-  [[nodiscard]] const Half& half(int family) const { return halves[static_cast<std::size_t>(family)]; }
+  std::array<Half, 2> halves;  // [elbow side]
+  [[nodiscard]] Half& half(int side) { return halves[static_cast<std::size_t>(side)]; }
+  [[nodiscard]] const Half& half(int side) const { return halves[static_cast<std::size_t>(side)]; }
   [[nodiscard]] bool find(const SrsLattice& lattice, int slot) const {
     const int solution = lattice.solution_of(slot);
-    const std::vector<Tile>& tiles = half(lattice.family_of(solution)).tiles;
+    const std::vector<Tile>& tiles = half(lattice.elbow_side_of(solution)).tiles;
     return std::binary_search(tiles.begin(), tiles.end(), Tile{solution, lattice.angle_of(slot) / kTileWidth});
   }
   [[nodiscard]] bool reaches_any() const { return !halves[0].solutions.empty() || !halves[1].solutions.empty(); }
 };
 
 template <class Part>
-void GridCostToGo::by_family(const Part& part) {
+void GridCostToGo::by_elbow_side(const Part& part) {
   struct CollectsCounts {
     GridCostToGo* grid;
     ~CollectsCounts() { grid->collect_counts(); }
   } const at_end{this};
-  if (apart_) return work_.for_each(SrsLattice::kFamilies, [&part](int family, int) { part(family); });
-  for (int family = 0; family < SrsLattice::kFamilies; ++family) part(family);
+  if (apart_) return work_.for_each(SrsLattice::kElbowSides, [&part](int side, int) { part(side); });
+  for (int side = 0; side < SrsLattice::kElbowSides; ++side) part(side);
 }
 
 }  // namespace swivel

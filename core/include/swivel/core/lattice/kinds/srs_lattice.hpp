@@ -164,26 +164,28 @@ class SrsLattice final : public Lattice {
   /// Nodes j = first ... first + count - 1 of every IK solution, taken around the circle; first < angles, count <= 2 angles.
   void solve(int layer, int first, int count, LayerNodes& out) const;
   void solve(int layer, LayerNodes& out) const { solve(layer, 0, angles_, out); }
-  /// IK solutions fall into two families, the signs of the elbow, each a half of them in order; a family is solved together.
-  static constexpr int kFamilies = 2;
-  [[nodiscard]] int family_of(int solution) const { return solution / windings_ & kElbowBit ? 1 : 0; }
-  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the IK solutions of one family.
+  /// IK solutions fall into two elbow sides, the signs of the elbow, each a half of them in order; an elbow side is solved
+  /// together.
+  static constexpr int kElbowSides = 2;
+  [[nodiscard]] int elbow_side_of(int solution) const { return solution / windings_ & kElbowBit ? 1 : 0; }
+  /// The same as solve(), bit by bit: room for the run, then entries begin ... end - 1 of it for the IK solutions of one elbow
+  /// side.
   void lay_out(int layer, int first, int count, LayerNodes& out) const;
-  void solve_part(int family, int begin, int end, LayerNodes& out) const;
+  void solve_part(int side, int begin, int end, LayerNodes& out) const;
   /// False where no node of the layer exists, because its pose is out of reach or joint 4 cannot bend as it asks.
   [[nodiscard]] bool alive(int layer) const { return alive(layer, 0) || alive(layer, 1); }
-  /// Whether a family has nodes in a layer at all.
-  [[nodiscard]] bool alive(int layer, int family) const {
-    return layer == 0 && start_ ? family_of(solution_of(start_->slot)) == family : elbow_alive(layer, family);
+  /// Whether an elbow side has nodes in a layer at all.
+  [[nodiscard]] bool alive(int layer, int side) const {
+    return layer == 0 && start_ ? elbow_side_of(solution_of(start_->slot)) == side : elbow_alive(layer, side);
   }
-  /// False where no edge leads from a family of `layer` to another of a neighbouring layer; the step's number is `step_layer`.
-  [[nodiscard]] bool families_meet(int step_layer, int layer, int family, int other_layer, int other) const;
-  /// The same of either family of a step's first layer and the other one of the next.
-  [[nodiscard]] bool families_meet(int step_layer) const {
-    return families_meet(step_layer, step_layer, 0, step_layer + 1, 1) ||
-           families_meet(step_layer, step_layer, 1, step_layer + 1, 0);
+  /// False where no edge leads from an elbow side of `layer` to another of a neighbouring layer; the step's number is `step_layer`.
+  [[nodiscard]] bool may_change_elbow_side(int step_layer, int layer, int side, int other_layer, int other) const;
+  /// The same of either elbow side of a step's first layer and the other one of the next.
+  [[nodiscard]] bool may_change_elbow_side(int step_layer) const {
+    return may_change_elbow_side(step_layer, step_layer, 0, step_layer + 1, 1) ||
+           may_change_elbow_side(step_layer, step_layer, 1, step_layer + 1, 0);
   }
-  /// A branch flips only through the zero of a middle joint: these tell IK solutions apart, the first two those of one family.
+  /// A branch flips only through the zero of a middle joint: these tell IK solutions apart, the first two those of one elbow side.
   static constexpr std::array<int, 3> kMiddleJoints{1, 5, 3};
   /// Near such a zero the outer joints must meet as well. Joints of several turns tell windings apart.
   static constexpr std::array<int, 5> kOuterJoints{0, 2, 4, 6, 3};
