@@ -106,7 +106,7 @@ void print_srs(const SrsArm& srs) {
     say("fit        exact\n");
   else
     say("fit        axes within %.3f mm and %.3f mrad of the ideal arm\n", 1e3 * srs.deviation.offset, 1e3 * srs.deviation.angle);
-  if (!srs.exact) say("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.misfit.maxCoeff());
+  if (!srs.exact) say("misfit     joints within %.3g rad of the ideal arm's away from singular poses\n", srs.fit_error.maxCoeff());
   say("shoulder   %.6f %.6f %.6f m\n", srs.S.x(), srs.S.y(), srs.S.z());
   say("lengths    shoulder-elbow %.6f m, elbow-wrist %.6f m, wrist-tip %.6f m\n", srs.upper, srs.fore, srs.wrist_in_tool.norm());
   say("reach      shoulder-wrist %.6f to %.6f m before joint limits\n", std::abs(srs.upper - srs.fore), srs.upper + srs.fore);

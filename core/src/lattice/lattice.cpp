@@ -61,8 +61,8 @@ class Step {
 
 }  // namespace
 
-Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& misfit)
-    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost), misfit_(misfit) {
+Lattice::Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& fit_error)
+    : chain_(&chain), path_(&path), limits_(problem.limits), cost_(problem.cost), fit_error_(fit_error) {
   const bool timed = limits_.tool_speed || limits_.tool_turn_speed;
   for (std::size_t k = 0; k < kDof; ++k) {
     const JointLimit& limit = chain.limit[k];
@@ -115,7 +115,7 @@ std::vector<Config> Lattice::step_bounds_along(const Chain& chain, const ToolPat
 void Lattice::set_row_step_bounds(std::vector<Config> bounds) {
   row_step_bounds_ = std::move(bounds);
   step_bounds_.clear();
-  for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * misfit_);
+  for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * fit_error_);
 }
 
 Lattice::Between Lattice::between(int, int, const Config&, int, const Config&) const {

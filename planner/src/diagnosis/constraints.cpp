@@ -196,7 +196,7 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     add_steps(qa, delta, bound, Config::Zero(), found);
   } else if (lattice_.has_own_rows()) {  // nodes have a bound of their own
     const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
-    if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.misfit(), found);
+    if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
   }
   if (found.done()) return found.set;
   moves_ += 10;

@@ -60,7 +60,7 @@ class Plain {
       for (Config* move : {&nodes, &rows})
         if (lattice_->continuous()[static_cast<std::size_t>(j)]) (*move)[j] = std::remainder((*move)[j], kTwoPi);
       const double most = lattice_->row_step_bound(layer)[j];  // joint_step and speeds
-      if (std::abs(nodes[j]) > most + 2 * lattice_->misfit()[j] || std::abs(rows[j]) > most) return false;
+      if (std::abs(nodes[j]) > most + 2 * lattice_->fit_error()[j] || std::abs(rows[j]) > most) return false;
     }
     if (!lattice_->follows_path(layer, a, qa, b, qb)) return false;
     return limits.edges == EdgeMode::kNodes || !edge_blocked_plain(query_, rule_, qa, qa + rows);

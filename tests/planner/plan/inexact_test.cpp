@@ -131,8 +131,8 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
     const SrsArm arm = fit_srs(chain, robot.name);
     EXPECT_FALSE(arm.exact);
     std::printf("%s: off by %.2g mm and %.2g mrad, misfit up to %.2g rad\n", robot.name.c_str(), 1e3 * arm.deviation.offset,
-                1e3 * arm.deviation.angle, arm.misfit.maxCoeff());
-    EXPECT_GT(arm.misfit.minCoeff(), 0);
+                1e3 * arm.deviation.angle, arm.fit_error.maxCoeff());
+    EXPECT_GT(arm.fit_error.minCoeff(), 0);
     for (int trial = 0; trial < 40; ++trial) {
       Config q = random_config(chain, random);
       const int joint = random.below(kDof);
@@ -161,7 +161,7 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
       ASSERT_TRUE(polished) << robot.name;
       ASSERT_LE((*polished - q).cwiseAbs().maxCoeff(), 1e-7) << robot.name;
       for (int j = 0; j < kDof; ++j) {
-        EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.misfit()[j] + 1e-9) << robot.name << " joint " << j;
+        EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.fit_error()[j] + 1e-9) << robot.name << " joint " << j;
         const JointLimit& bound = chain.limit[static_cast<std::size_t>(j)];
         beyond += !bound.continuous && ((*node)[j] < bound.lower || (*node)[j] > bound.upper);
       }

@@ -88,7 +88,7 @@ void Cutter::find_crossings(const std::vector<Point>& points, int chords) {
       if (a.q[j] - away > data_.lower[at] && a.q[j] + away < data_.upper[at]) continue;
       if (!cubic) cubic.emplace(a, b, 1.0);
       const double middle = (data_.lower[at] + data_.upper[at]) / 2, start = middle + wrapped(a.q[j] - middle);
-      // A cubic leaves the range of its ends by 4/27 of the misfit of its tangents at most.
+      // A cubic leaves the range of its ends by 4/27 of the fit error of its tangents at most.
       const double bulge = 0.15 * (std::abs(cubic->m0[j] - cubic->d[j]) + std::abs(cubic->m1[j] - cubic->d[j]));
       const double least = std::min(start, start + cubic->d[j]) - bulge, most = std::max(start, start + cubic->d[j]) + bulge;
       // Limits plus or minus a turn lie beyond the range.

@@ -94,7 +94,7 @@ class Curves {
   void join_neighbours();
   /// Returns how badly a smooth curve fits the move from a half-edge to another, rad; none where it
   /// does not fit.
-  [[nodiscard]] std::optional<double> misfit(int half, int other) const;
+  [[nodiscard]] std::optional<double> fit_error(int half, int other) const;
   [[nodiscard]] bool straight(int half, int other, const Config& chord) const;
   [[nodiscard]] Config middle(int half, int other) const;
   /// A gap between two half-edges, to be closed over the point to which Newton leads from `guess`.
@@ -216,7 +216,7 @@ void Curves::add_seeds() {
   first_.push_back(static_cast<int>(vertices_.size()));
 }
 
-std::optional<double> Curves::misfit(int half, int other) const {
+std::optional<double> Curves::fit_error(int half, int other) const {
   constexpr double kBend = 0.06;  // 1 - cosine of tangent and chord: 0.35 rad
   // part of the chord by which a parabola with the tangents may miss it
   constexpr double kUneven = 0.02;
@@ -263,7 +263,7 @@ std::optional<Curves::Turn> Curves::turning(int half, int other) const {
 }
 
 void Curves::join(int half, int other, int depth, std::vector<Gap>& gaps) {
-  if (misfit(half, other)) {
+  if (fit_error(half, other)) {
     const Config chord = difference(at(other).q, at(half).q);
     if (depth == 0 || straight(half, other, chord))
       link(half, other);
@@ -307,7 +307,7 @@ void Curves::join_neighbours() {
       double least = 0;
       for (int b = first_[next]; b < first_[next + 1]; ++b) {
         if (taken[static_cast<std::size_t>(b)] != 0) continue;
-        const auto miss = misfit(2 * a + 1, 2 * b);
+        const auto miss = fit_error(2 * a + 1, 2 * b);
         if (miss && (best < 0 || *miss < least)) {
           best = b;
           least = *miss;

@@ -106,7 +106,7 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
   return std::nullopt;
 }
 
-Config measure_misfit(const Chain& chain, const SrsArm& arm) {
+Config measure_fit_error(const Chain& chain, const SrsArm& arm) {
   constexpr int kPostures = 400;
   constexpr double kLeastSine = 0.1;
   std::mt19937_64 engine(1);
@@ -114,7 +114,7 @@ Config measure_misfit(const Chain& chain, const SrsArm& arm) {
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(engine() >> 11) * 0x1.0p-53);
   };
-  Config misfit = Config::Zero();
+  Config fit_error = Config::Zero();
   for (int posture = 0; posture < kPostures; ++posture) {
     Config q;
     for (std::size_t j = 0; j < kDof; ++j) {
@@ -130,9 +130,9 @@ Config measure_misfit(const Chain& chain, const SrsArm& arm) {
     const double phi = plane.angle_of(arm.elbow_axis(q));
     Config apart = srs_ik(arm, elbow_circles(arm, plane, tool), phi, arm.branch(q)) - q;
     for (double& joint : apart) joint = std::abs(wrap_angle(joint));
-    if (apart.maxCoeff() <= kMostPolished) misfit = misfit.cwiseMax(apart);
+    if (apart.maxCoeff() <= kMostPolished) fit_error = fit_error.cwiseMax(apart);
   }
-  return misfit;
+  return fit_error;
 }
 
 std::optional<Config> polish_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,

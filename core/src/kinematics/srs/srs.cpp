@@ -160,7 +160,7 @@ SrsArm fit_srs(const Chain& chain, const std::string& source) {
   arm.home_rotation = chain.home.linear();
   arm.wrist_in_tool = chain.home.linear().transpose() * (arm.W - chain.home.translation());
   arm.exact = arm.deviation.offset < kExact && arm.deviation.angle < kExact;
-  if (!arm.exact) arm.misfit = measure_misfit(chain, arm);
+  if (!arm.exact) arm.fit_error = measure_fit_error(chain, arm);
   return arm;
 }
 

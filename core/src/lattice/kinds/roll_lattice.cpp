@@ -65,7 +65,7 @@ RollLattice::Knots RollLattice::knots_along(const ToolPath& path, const Resoluti
 
 RollLattice::RollLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
                          Knots knots, std::optional<double> last_joint)
-    : Lattice(chain, *knots.path, problem, arm.misfit),
+    : Lattice(chain, *knots.path, problem, arm.fit_error),
       arm_(&arm),
       last_joint_(last_joint),
       whole_(&path),

@@ -59,7 +59,11 @@ std::string gigabytes(double bytes) {
 
 SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& path, const Problem& problem, const Budget& budget,
                        std::vector<ArmPlane> planes, std::optional<double> last_joint)
-    : Lattice(chain, path, problem, arm.misfit), id_(next_id()), arm_(&arm), last_joint_(last_joint), planes_(std::move(planes)) {
+    : Lattice(chain, path, problem, arm.fit_error),
+      id_(next_id()),
+      arm_(&arm),
+      last_joint_(last_joint),
+      planes_(std::move(planes)) {
   const TraceSpan span("lattice");
   if (last_joint_) continuous_[kLastJoint] = true;  // whatever the arm angle, it stays within its limits
   const Resolution& resolution = problem.resolution;
@@ -76,7 +80,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
     } else {
       const double lower = limit.lower + limits_.joint_margin, upper = limit.upper - limits_.joint_margin;
       const auto joint = static_cast<Eigen::Index>(j);
-      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.misfit[joint]);
+      images = images_between(lower, upper, problem.start ? (*problem.start)[joint] : lower, arm.fit_error[joint]);
     }
     if (!(std::abs(images.base) <= kFarthest))
       throw InputError(problem.source, "joint '" + chain.joint_names[j] +
@@ -165,15 +169,15 @@ std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, co
   return planes;
 }
 
-SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start, double misfit) {
+SrsLattice::Images SrsLattice::images_between(double lower, double upper, double start, double fit_error) {
   const double whole = std::floor((upper - lower) / kTwoPi), rest = (upper - lower) - whole * kTwoPi;
   Images images;
   images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
   const double length = images.count * kTwoPi;
-  // What is wider by the misfit at both ends must not be another image of what is there already.
+  // What is wider by the fit error at both ends must not be another image of what is there already.
   const double spare = std::max(0.0, (length - (upper - lower)) / 2);
-  images.base = lower - kLimitTolerance - std::min(misfit, spare);
-  images.upper = upper + kLimitTolerance + misfit;
+  images.base = lower - kLimitTolerance - std::min(fit_error, spare);
+  images.upper = upper + kLimitTolerance + fit_error;
   // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
   if (start >= images.base + length) images.base = upper + kLimitTolerance - length;
   return images;

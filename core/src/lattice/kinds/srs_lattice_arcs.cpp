@@ -38,8 +38,9 @@ void SrsLattice::prepare_arcs() {
           ranges[j] = {begin, end};
           continue;
         }
-        // Of an arm that is not exact, images reach beyond the limits by the misfit; its rows are surely within them as far inside.
-        const double inside = limits_.joint_margin - kLimitTolerance + misfit()[static_cast<Eigen::Index>(first + j)];
+        // Of an arm that is not exact, images reach beyond the limits by the fit error; its rows are surely within them as far
+        // inside.
+        const double inside = limits_.joint_margin - kLimitTolerance + fit_error()[static_cast<Eigen::Index>(first + j)];
         ranges[j] = {std::max(begin, limit.lower + inside), std::min(end, limit.upper - inside)};
       }
       triple_limits_[static_cast<std::size_t>(triple)].emplace_back(ranges, triple == 0 ? arm_->shoulder.shift : arm_->wrist.shift);

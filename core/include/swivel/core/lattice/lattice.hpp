@@ -160,7 +160,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// Every |delta| within step_bound().
   [[nodiscard]] bool step_allowed(int layer, const Config& delta) const;
   /// Largest |delta_j| allowed on the step from `layer`: joint_step, speed limits and, of the roll of an arm of six joints, what
-  /// roll_slope allows (roll_step_bound()); widened by twice the misfit.
+  /// roll_slope allows (roll_step_bound()); widened by twice the fit error.
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
@@ -169,9 +169,9 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] const Config& row_step_bound(int layer) const {
     return row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
-  /// By how much a row's joints differ from their node's on this arm, as measured (SrsArm::misfit), rad: 0 where every node is its
-  /// own row. Limits and steps of nodes are wider by it, so that few rows are missed.
-  [[nodiscard]] const Config& misfit() const { return misfit_; }
+  /// By how much a row's joints differ from their node's on this arm, as measured (SrsArm::fit_error), rad: 0 where every node is
+  /// its own row. Limits and steps of nodes are wider by it, so that few rows are missed.
+  [[nodiscard]] const Config& fit_error() const { return fit_error_; }
   /// Cost of a move, a multiple of 2^-40 units.
   [[nodiscard]] double edge_cost(const Config& delta) const;
   /// Tool-path, tool-angle and step-error bounds of the joint-linear move from row q0 (slot a) to row q1 (slot b).
@@ -218,7 +218,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
  protected:
   Lattice(const Lattice&) = default;  // copied whole, as what it is
   /// Throws InputError where a speed limit or the metric asks for joint speeds that the robot does not state.
-  Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& misfit = Config::Zero());
+  Lattice(const Chain& chain, const ToolPath& path, const Problem& problem, const Config& fit_error = Config::Zero());
   /// Largest move of each joint on each step of a path; one entry where all are the same.
   [[nodiscard]] static std::vector<Config> step_bounds_along(const Chain& chain, const ToolPath& path, const Limits& limits,
                                                              const Resolution& resolution);
@@ -248,7 +248,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   double cost_unit_ = 1, steps_ = 1;  // of coarse costs, in 1: 2^24 / unit
   std::array<double, kDof> middle_weight_{};
   std::vector<double> roll_weights_;  // by layer; empty where the roll costs nothing
-  Config misfit_;
+  Config fit_error_;
   std::vector<Config> step_bounds_, row_step_bounds_;  // one for all steps, or one each
 };
 

@@ -53,7 +53,7 @@ struct SrsArm {
   /// each joint, rad: 0 where exact, else the most over seeded postures within the limits at which
   /// no |sin| of shoulder, elbow and wrist is below 0.1 and no joint differs by more than polish()
   /// may move it.
-  Config misfit = Config::Zero();
+  Config fit_error = Config::Zero();
 
   /// Returns the shoulder angle (joint 2 from its singular pose, where its sine is 0), rad.
   [[nodiscard]] double shoulder_angle(const Config& q) const { return q[1] + shoulder.shift; }
@@ -134,7 +134,7 @@ inline constexpr double kMostPolished = 0.05;
 /// kMostPolished in all. Returns the seed unchanged for an exact arm.
 [[nodiscard]] std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
                                            double phi, const Config& seed);
-/// Measures SrsArm::misfit of an arm fitted to a chain, rad.
-[[nodiscard]] Config measure_misfit(const Chain& chain, const SrsArm& arm);
+/// Measures SrsArm::fit_error of an arm fitted to a chain, rad.
+[[nodiscard]] Config measure_fit_error(const Chain& chain, const SrsArm& arm);
 
 }  // namespace swivel

@@ -70,7 +70,7 @@ class LayerNodes {
 /// of over 64 turns is treated as a continuous one (JointLimit::wide): its angles begin in the turn about 0, or in the nearest that
 /// leaves 31 turns to both limits.
 ///
-/// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's misfit; rows are
+/// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's fit error; rows are
 /// polished.
 ///
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `solutions` = 8 branches x windings of
@@ -145,7 +145,7 @@ class SrsLattice final : public Lattice {
   // --- arcs
   /// Replaces `out` by the arcs of arm angles at which an IK solution's joints are within their limits, found in closed form,
   /// whether nodes are there or not; a given start counts as any pose. Of an arm that is not exactly S-R-S those at which rows are
-  /// as well: within limits narrowed by the misfit.
+  /// as well: within limits narrowed by the fit error.
   void arcs(int layer, int solution, std::vector<AngleArc>& out) const;
   /// A cell whose node does not stand at its own angle.
   struct Moved {
@@ -202,7 +202,7 @@ class SrsLattice final : public Lattice {
     double base = 0, upper = 0;  // image 0 lies in [base, base + 2 pi); valid up to upper
     int count = 1;
   };
-  static Images images_between(double lower, double upper, double start, double misfit);
+  static Images images_between(double lower, double upper, double start, double fit_error);
   struct Start {
     int slot = 0;
     double phi = 0;
