@@ -105,15 +105,15 @@ TEST(Lattice, NodesWithOneElbowAreAsManipulable) {
   each_small(random, [&](const Small& small) {
     const Chain& chain = small.arm.chain;
     const SrsLattice& lattice = *small.lattice;
-    ASSERT_NE(lattice.alike_in_manipulability(), 0u);
-    std::vector<int> alike;
+    ASSERT_NE(lattice.manipulability_groups(), 0u);
+    std::vector<int> same_poses;
     for (int layer = 0; layer < lattice.layers(); ++layer)
       for (int slot = 0; slot < lattice.width(); ++slot) {
         const auto q = lattice.node(layer, slot);
         if (!q) continue;
-        lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
+        lattice.slots_with_same_body_poses(layer, slot, lattice.manipulability_groups(), same_poses);
         const double here = chain.manipulability(*q);
-        for (const int other : alike)
+        for (const int other : same_poses)
           if (const auto there = other > slot ? lattice.node(layer, other) : std::nullopt) {
             most = std::max(most, std::abs(std::pow(chain.manipulability(*there), 2) - here * here));
             ++pairs;
@@ -138,7 +138,7 @@ TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
         small.rebuild();
         const SrsLattice& lattice = *small.lattice;
         ASSERT_TRUE(lattice.has_own_rows());
-        std::vector<int> alike;
+        std::vector<int> same_poses;
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int slot = 0; slot < lattice.width(); ++slot) {
             const auto q = lattice.node(layer, slot);
@@ -147,11 +147,11 @@ TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
             ++rows;
             too_few += !lattice.manipulable(*row);
             rounded_too_few += rounded && !lattice.manipulable(*row);
-            if (!lattice.all_unmanipulable(layer, *q)) continue;
+            if (!lattice.all_below_manipulability(layer, *q)) continue;
             ++shared;
             rounded_shared += rounded;
-            lattice.alike(layer, slot, lattice.alike_in_manipulability(), alike);
-            for (const int other : alike) {
+            lattice.slots_with_same_body_poses(layer, slot, lattice.manipulability_groups(), same_poses);
+            for (const int other : same_poses) {
               const auto node = lattice.node(layer, other);
               const auto there = node ? lattice.row(layer, other, *node) : std::nullopt;
               ASSERT_FALSE(there && lattice.manipulable(*there)) << small.problem.source << " layer " << layer << " slot " << other;

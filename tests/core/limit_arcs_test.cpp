@@ -202,11 +202,11 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
             const double margin = small.problem.limits.joint_margin;
             ASSERT_TRUE(limit.continuous || (cell.q[j] >= limit.lower + margin - 2e-9 && cell.q[j] <= limit.upper - margin + 2e-9));
           }
-          // IK solutions whose bodies are said to stand alike have the same arm angle.
-          std::vector<int> alike;
-          lattice.alike(layer, cell.slot, 0b0011000, alike);
-          ASSERT_NE(std::find(alike.begin(), alike.end(), cell.slot), alike.end());
-          for (const int other : alike) {
+          // IK solutions whose bodies are said to have the same poses have the same arm angle.
+          std::vector<int> same_poses;
+          lattice.slots_with_same_body_poses(layer, cell.slot, 0b0011000, same_poses);
+          ASSERT_NE(std::find(same_poses.begin(), same_poses.end(), cell.slot), same_poses.end());
+          for (const int other : same_poses) {
             ASSERT_EQ(lattice.phi(layer, other), cell.phi);
             shared += other != cell.slot;
           }

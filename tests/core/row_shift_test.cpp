@@ -27,7 +27,7 @@ Eigen::Matrix<double, 6, kDof> jacobian_about(const Chain& chain, const Config& 
   return J;
 }
 
-/// Rows of all branches that share an elbow stand within the bound of every node at which the link stands alike.
+/// Rows of all branches that share an elbow stand within the bound of every node at which the link has the same pose.
 TEST(RowShift, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
   const std::uint64_t base = seed("RowShift");
   Random random(base);

@@ -161,9 +161,9 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
           if (kind == 0 && layer > 0) {
             cost_to_go->remove_edge(layer - 1, best[static_cast<std::size_t>(layer) - 1], slot);
           } else if (kind == 1) {
-            std::vector<int> alike;
-            lattice.alike(layer, slot, 1u << 4, alike);
-            for (const int like : alike) cost_to_go->verdicts().remove_node(layer, like);
+            std::vector<int> same_poses;
+            lattice.slots_with_same_body_poses(layer, slot, 1u << 4, same_poses);
+            for (const int like : same_poses) cost_to_go->verdicts().remove_node(layer, like);
           } else {  // a blob of arm angles, over some layers
             for (int i = layer; i < std::min(lattice.layers(), layer + 3); ++i)
               for (int k = -reach; k <= reach; ++k) {

@@ -25,8 +25,8 @@ void ExplicitLattice::layer_nodes(int layer, std::vector<Node>& out) const {
   for (int slot = 0; slot < slots(layer); ++slot) out.push_back({slot, point(layer, slot).q});
 }
 
-void ExplicitLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  if (!stand_alike(groups)) return out.assign(1, slot);
+void ExplicitLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+  if (!shares_body_poses(groups)) return out.assign(1, slot);
   out.resize(static_cast<std::size_t>(slots(layer)));
   std::iota(out.begin(), out.end(), 0);
 }

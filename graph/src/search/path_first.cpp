@@ -394,10 +394,10 @@ class Search {
           verdicts_.keep_node(x.layer, x.slot);
       } else {
         if (answers[k].shared)
-          lattice_.alike(x.layer, x.slot, answers[k].groups, alike_);
+          lattice_.slots_with_same_body_poses(x.layer, x.slot, answers[k].groups, same_poses_);
         else
-          alike_.assign(1, x.slot);
-        verdicts_.remove_nodes(x.layer, alike_);
+          same_poses_.assign(1, x.slot);
+        verdicts_.remove_nodes(x.layer, same_poses_);
         failed.push_back({x.layer, x.slot, answers[k].failure});
       }
     }
@@ -450,7 +450,7 @@ class Search {
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;
-  std::vector<int> alike_;
+  std::vector<int> same_poses_;
 };
 
 }  // namespace

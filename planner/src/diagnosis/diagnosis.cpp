@@ -49,7 +49,7 @@ class Counts {
 constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of the index of a pair
 
 /// Finds what blocks the nodes of one layer: manipulability, or a pair of bodies. A failure applies
-/// to every node at which the failing bodies have the same poses (Lattice::alike), so that most
+/// to every node at which the failing bodies have the same poses (Lattice::slots_with_same_body_poses), so that most
 /// nodes need no query, or a short one.
 class LayerBlockers {
  public:
@@ -94,9 +94,9 @@ class LayerBlockers {
       all_ = false;
       return known_[k];
     }
-    lattice_.alike(layer, slot, groups_of(world_, *pair), alike_);
-    all_ = static_cast<int>(alike_.size()) == lattice_.slots(layer);
-    for (const int other : alike_) {
+    lattice_.slots_with_same_body_poses(layer, slot, groups_of(world_, *pair), same_poses_);
+    all_ = static_cast<int>(same_poses_.size()) == lattice_.slots(layer);
+    for (const int other : same_poses_) {
       int& known = known_[static_cast<std::size_t>(other)];
       if (!asked_[static_cast<std::size_t>(other)]) known = known < 0 ? known_[k] : std::min(known, known_[k]);
     }
@@ -110,7 +110,7 @@ class LayerBlockers {
   std::vector<int> known_;   // [slot] what is known to block the node, or kUnknown
   std::vector<char> asked_;  // [slot] known_ is the first pair that does
   bool all_ = false;
-  std::vector<int> alike_;
+  std::vector<int> same_poses_;
 };
 
 class Inspector {

@@ -125,16 +125,16 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
     return NodeAnswer{false, shared, groups_of(*world_, pair), failure_of(pair)};
   };
   if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
-    return failure(*likely, lattice_->stand_alike(groups_of(*world_, *likely)));
+    return failure(*likely, lattice_->shares_body_poses(groups_of(*world_, *likely)));
   const auto unmanipulable = [&](bool shared) {
-    return NodeAnswer{false, shared, lattice_->alike_in_manipulability(), kManipulability};
+    return NodeAnswer{false, shared, lattice_->manipulability_groups(), kManipulability};
   };
   const bool likely_so = question.likely == kManipulability && !open.only_changed;
-  if (likely_so && lattice_->all_unmanipulable(question.layer, question.q)) return unmanipulable(true);
+  if (likely_so && lattice_->all_below_manipulability(question.layer, question.q)) return unmanipulable(true);
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q) return {};
   if (!open.only_changed && !lattice_->manipulable(*q))
-    return unmanipulable(!likely_so && lattice_->all_unmanipulable(question.layer, question.q));
+    return unmanipulable(!likely_so && lattice_->all_below_manipulability(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto shared = [&](const BodyPair& pair) {
     return is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, pair);
@@ -176,7 +176,7 @@ unsigned groups_of(const World& world, const BodyPair& pair) {
 /// verdict.
 bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query, int layer,
                const Config& node, const Config& row, const BodyPair& pair) {
-  if (!lattice.stand_alike(groups_of(world, pair))) return false;
+  if (!lattice.shares_body_poses(groups_of(world, pair))) return false;
   const double apart = row_margin.between_rows(layer, node, pair);
   if (apart > 0) return std::isfinite(apart) && query.surely_below(row, pair, Level(Keep::kNode, -apart));
   return query.certified() || query.pair_below(row, pair, Level(Keep::kNode, -kVerdictBand));

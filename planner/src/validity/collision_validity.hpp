@@ -98,7 +98,7 @@ class CollisionValidity final : public Validity {
 /// Returns the bits of the joint groups that move a pair's bodies, as NodeAnswer::groups has them.
 [[nodiscard]] unsigned groups_of(const World& world, const BodyPair& pair);
 /// Returns true if the failure of a pair at a node applies to every node of the layer at which its
-/// bodies have the same poses (Lattice::stand_alike). `node` holds the node's joints, `row` its
+/// bodies have the same poses (Lattice::shares_body_poses). `node` holds the node's joints, `row` its
 /// exact configuration, at which `query` has just named the pair.
 [[nodiscard]] bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query,
                              int layer, const Config& node, const Config& row, const BodyPair& pair);

@@ -63,7 +63,8 @@ TestRobot inexact_robot() {
   return robot;
 }
 
-/// Verdicts are shared among nodes whose bodies stand alike; the counts and the reason must be those of asking about every node.
+/// Verdicts are shared among nodes whose bodies have the same poses; the counts and the reason must be those of asking about every
+/// node.
 TEST(Diagnosis, CountsAreThoseOfAskingAboutEveryNode) {
   const std::uint64_t base = seed("Diagnosis");
   auto robots = all_robots();

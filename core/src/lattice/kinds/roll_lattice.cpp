@@ -267,12 +267,12 @@ int RollLattice::along(int layer, int slot, int by) const {
   return slot;
 }
 
-void RollLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
   if (has_own_rows() || (layer == 0 && start_)) {
     out.assign(1, slot);
     return;
   }
-  at_roll(slot / width_).alike(layer, slot % width_, groups, out);
+  at_roll(slot / width_).slots_with_same_body_poses(layer, slot % width_, groups, out);
   for (int& other : out) other = slot_of(slot / width_, other);
 }
 

@@ -27,7 +27,7 @@ constexpr double kFarthest = 1e6;  // rad; angles further from 0 lose too much p
 constexpr double kMostWindings = 1024;
 constexpr int kShoulderJoints = 0, kElbowJoint = 3, kWristJoints = 4;
 constexpr std::size_t kLastJoint = kDof - 1;
-/// Of groups of links, as of stand_alike().
+/// Of groups of links, as of shares_body_poses().
 constexpr unsigned kShoulderLinks = 0b0000110, kElbowLinks = 0b0011000, kWristLinks = 0b1100000, kTool = 0b10000000;
 
 int wrapped_index(long long j, int n) {
@@ -549,8 +549,8 @@ int SrsLattice::along(int layer, int slot, int by) const {
   return layer + by < 0 || layer + by >= layers() ? -1 : slot;
 }
 
-void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  if (!stand_alike(groups)) return out.assign(1, slot);
+void SrsLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
+  if (!shares_body_poses(groups)) return out.assign(1, slot);
   if (last_joint_ && groups & kTool) groups |= kWristLinks;
   const bool all_angles = (groups & (kShoulderLinks | kElbowLinks | kWristLinks)) == 0;
   out.clear();
@@ -568,11 +568,11 @@ void SrsLattice::alike(int layer, int slot, unsigned groups, std::vector<int>& o
   std::erase_if(out, [&](int other) { return phi(layer, other) != angle; });
 }
 
-unsigned SrsLattice::alike_in_manipulability() const {
+unsigned SrsLattice::manipulability_groups() const {
   return kElbowLinks;
 }
 
-bool SrsLattice::all_unmanipulable(int layer, const Config& q) const {
+bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
   constexpr double kBand = 1e-10;  // determinants of lengths of metres, which rounding changes by 1e-12
   const auto J = chain_->jacobian(q);
   const Eigen::Matrix<double, 6, 6> G = J * J.transpose();

@@ -173,17 +173,18 @@ void GridCostToGo::limit_by_reach() {
   // The costs kept by reach_ leave out what nodes themselves cost.
   for (int layer = 0; layer <= goal_; ++layer) by_reach_ = by_reach_ && !verdicts_.costs(layer);
   if (!by_reach_) return;
-  limit_ = lattice_->most_alike((1 + reach_.slack) * reach_.best);
+  limit_ = lattice_->largest_of_same_coarse_cost((1 + reach_.slack) * reach_.best);
   reach_.slack *= 2;
 }
 
 bool GridCostToGo::raise_limit() {
   if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
-    const double least = coarse_bound_->best(), found = limit_ == kUnreachable ? kUnreachable : lattice_->most_alike(best());
+    const double least = coarse_bound_->best(),
+                 found = limit_ == kUnreachable ? kUnreachable : lattice_->largest_of_same_coarse_cost(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     // most stop at the first: 2 to 10 % of the lattice
     for (const double share : {0.03, 0.25, 1.5}) {
-      limit_ = lattice_->most_alike(least * (1 + share));
+      limit_ = lattice_->largest_of_same_coarse_cost(least * (1 + share));
       if (limit_ > passed && (found == kUnreachable || found <= limit_)) return true;
     }
   }
@@ -193,7 +194,7 @@ bool GridCostToGo::raise_limit() {
 }
 
 void GridCostToGo::raise_limit_until_exact() {
-  while (limit_ != kUnreachable && !(lattice_->most_alike(best()) <= limit_)) {
+  while (limit_ != kUnreachable && !(lattice_->largest_of_same_coarse_cost(best()) <= limit_)) {
     if (!raise_limit()) return clear_values();
     sweep_once();
   }

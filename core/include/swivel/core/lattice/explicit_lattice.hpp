@@ -41,8 +41,8 @@ class ExplicitLattice : public Lattice {
   [[nodiscard]] int beside(int layer, int slot, int by) const override { return point(layer, slot).beside[by < 0 ? 0 : 1]; }
   [[nodiscard]] int along(int layer, int slot, int by) const override { return point(layer, slot).along[by < 0 ? 0 : 1]; }
   /// The last link and the tool stand where the layer puts them; any other body stands alone.
-  [[nodiscard]] bool stand_alike(unsigned groups) const override { return (groups & ~(1u << kDof)) == 0; }
-  void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return (groups & ~(1u << kDof)) == 0; }
+  void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] bool in_window(int, int, int) const override { return true; }
   void successors(int layer, int, std::vector<SlotRun>& out) const override { out.assign(1, {0, slots(layer + 1)}); }
 

@@ -195,7 +195,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// far below such a step, so that their coarse costs are equal.
   [[nodiscard]] double coarse_cost(double cost) const { return std::round(cost * steps_); }
   /// No cost with the same coarse cost is larger.
-  [[nodiscard]] double most_alike(double cost) const { return (coarse_cost(cost) + 0.5) / steps_; }
+  [[nodiscard]] double largest_of_same_coarse_cost(double cost) const { return (coarse_cost(cost) + 0.5) / steps_; }
   /// How far joints are from the middles of their ranges: the sum over the joints of distance times weight, in the same steps,
   /// each rounded. The weight is cost_scale(), but at least a hundredth of the largest, and 1 where all are 0. A joint without a
   /// range (continuous, or of over 64 turns) counts nothing. A bounded joint that is taken as a circle counts at the image within

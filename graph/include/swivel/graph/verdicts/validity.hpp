@@ -36,7 +36,7 @@ struct EdgeQuestion {
 struct NodeAnswer {
   bool valid = false;
   /// Of a failure: true if every node of the layer fails at which the bodies of `groups` stand as
-  /// they do at this one, see Lattice::alike(). So one failure may remove many nodes.
+  /// they do at this one, see Lattice::slots_with_same_body_poses(). So one failure may remove many nodes.
   bool shared = false;
   unsigned groups = 0;             ///< bit g: the bodies that move with joint g of 1..7
   FailureId failure = kNoFailure;  ///< the cause of a failure

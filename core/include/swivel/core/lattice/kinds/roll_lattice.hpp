@@ -96,11 +96,11 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int across(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// As in an SrsLattice, among nodes of one roll.
-  [[nodiscard]] bool stand_alike(unsigned groups) const override { return !has_own_rows() && (groups & kFollowers) == 0; }
-  void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
-  [[nodiscard]] unsigned alike_in_manipulability() const override { return at_roll(0).alike_in_manipulability(); }
-  [[nodiscard]] bool all_unmanipulable(int layer, const Config& q) const override {
-    return !has_own_rows() && at_roll(0).all_unmanipulable(layer, q);
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return !has_own_rows() && (groups & kFollowers) == 0; }
+  void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] unsigned manipulability_groups() const override { return at_roll(0).manipulability_groups(); }
+  [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override {
+    return !has_own_rows() && at_roll(0).all_below_manipulability(layer, q);
   }
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;

@@ -131,12 +131,12 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] const std::optional<double>& last_joint() const { return last_joint_; }
   /// The last link and the tool stand where the layer puts them, with links 5 and 6 where joint 7 stays; links 3 and 4 where arm
   /// angle and sign of the elbow do; links 1 and 2 depend on the shoulder's sign too, 5 and 6 on the wrist's.
-  [[nodiscard]] bool stand_alike(unsigned groups) const override { return (groups & kFollowers) == 0; }
-  void alike(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return (groups & kFollowers) == 0; }
+  void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   /// The elbow's: the other shoulder and the other wrist leave each joint's axis where it is, or turn it round, which turns a
   /// column of J round and leaves J J^T as it is.
-  [[nodiscard]] unsigned alike_in_manipulability() const override;
-  [[nodiscard]] bool all_unmanipulable(int layer, const Config& q) const override;
+  [[nodiscard]] unsigned manipulability_groups() const override;
+  [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override;
   [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
