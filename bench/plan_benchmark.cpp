@@ -62,7 +62,7 @@ struct Prepared {
     const World& world = robot.world();
     world.make_ready([] { return false; });
     World::Query query(world);
-    for (const BodyPair& pair : world.pairs()) benchmark::DoNotOptimize(query.pair_below(Config::Zero(), pair, kFar));
+    for (const BodyPair& pair : world.pairs()) benchmark::DoNotOptimize(query.pair_violates(Config::Zero(), pair, kFar));
   }
 };
 

@@ -44,7 +44,7 @@ void expect_valid(const TrackResult& result, const PreparedRobot& robot, const P
     s = from_start.dot(along);
     EXPECT_LT((from_start - s * along).norm(), 1e-6);
     EXPECT_LT((tool.linear() - line[0].orientation.toRotationMatrix()).norm(), 1e-6);
-    EXPECT_FALSE(query.first_below(q, problem.limits.clearance)) << "row " << i;
+    EXPECT_FALSE(query.find_violating_pair(q, problem.limits.clearance)) << "row " << i;
     for (int j = 0; j < kDof; ++j) {
       EXPECT_GE(q[j], chain.limit[static_cast<std::size_t>(j)].lower - 1e-9);
       EXPECT_LE(q[j], chain.limit[static_cast<std::size_t>(j)].upper + 1e-9);

@@ -103,10 +103,10 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
     for (int k = 0; k < configurations; ++k) {
       const Config q = test::random_config(arm.chain, random);
       const auto ask = [&](double d) {
-        const auto found = asked.first_below(q, d);
+        const auto found = asked.find_violating_pair(q, d);
         for (const BodyPair& pair : world.pairs()) {  // up to the first that FCL names
-          const bool below = off.pair_below(q, pair, d);
-          EXPECT_EQ(asked.pair_below(q, pair, d), below)
+          const bool below = off.pair_violates(q, pair, d);
+          EXPECT_EQ(asked.pair_violates(q, pair, d), below)
               << "SWIVEL_TEST_SEED=" << base << " scene " << s << " configuration " << k << " d " << d;
           ++pairs;
           if (below) {
@@ -131,10 +131,10 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
       ask(k % 3 == 0 ? 0 : k % 3 == 1 ? 0.005 : random.uniform(0, 0.05));
       if (k % 20 != 0) continue;
       double low = 0, high = 0.3;  // of the clearance
-      if (fast.first_below(q, low) || !fast.first_below(q, high)) continue;
+      if (fast.find_violating_pair(q, low) || !fast.find_violating_pair(q, high)) continue;
       while (high - low > 1e-7) {
         const double middle = (low + high) / 2;
-        (fast.first_below(q, middle) ? high : low) = middle;
+        (fast.find_violating_pair(q, middle) ? high : low) = middle;
       }
       for (const double offset : {-3 * kTau, -1.1 * kTau, -0.5 * kTau, 0.5 * kTau, 1.1 * kTau, 3 * kTau}) {
         if (low + offset < 0) continue;

@@ -62,7 +62,7 @@ TEST(EdgeRule, Midpoints) {
 bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
   const std::int64_t n = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < n; ++m)
-    if (query.pair_below(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair, Keep::kMidpoint))
+    if (query.pair_violates(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair, Keep::kMidpoint))
       return true;
   return false;
 }
@@ -84,7 +84,7 @@ TEST(EdgeBlocked, AgreesWithThePlainRule) {
     World::Query query(world);
     for (int k = 0; k < 25; ++k) {
       Config q0 = random.config(1.5);
-      for (int again = 0; again < 20 && query.first_below(q0, 0.001); ++again)
+      for (int again = 0; again < 20 && query.find_violating_pair(q0, 0.001); ++again)
         q0 = random.config(1.5);  // as a planner's: mostly free
       const Config q1 = q0 + random.config(0.06);
       leaves += rule.midpoints(q0, q1);
@@ -137,8 +137,8 @@ TEST(EdgeBlocked, ProvesTheWholeMotion) {
   const World world(empty, {{"speck", Sphere{0.001}, pose, {}}});
   const EdgeRule rule = world.edge_rule(motion_radii(arm.chain, world.bodies()));
   World::Query query(world);
-  EXPECT_FALSE(query.first_below(q0, 0.01));
-  EXPECT_FALSE(query.first_below(q1, 0.01));
+  EXPECT_FALSE(query.find_violating_pair(q0, 0.01));
+  EXPECT_FALSE(query.find_violating_pair(q1, 0.01));
   const auto pair = edge_blocked(query, rule, q0, q1);
   ASSERT_TRUE(pair);
   EXPECT_EQ(world.body_names()[pair->b], "speck");
@@ -237,21 +237,21 @@ TEST(Stretch, NoPairComesNearerThanSaid) {
       World::Query query(world, certificates), plain(world);
       for (int k = 0; k < 40; ++k) {
         Config q = random.config(1.5);
-        for (int again = 0; again < 20 && plain.first_below(q, 0.01); ++again) q = random.config(1.5);
+        for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random.config(1.5);
         Stretch stretch;
         stretch.half = random.config(random.uniform(0, 0.15));
         stretch.bend = rule.bend(stretch.half);
         const auto free = [&](double reserve) {
           stretch.reserve = reserve;
-          return !query.next_below_on(stretch, q, Level(Keep::kMidpoint, kNoBound));
+          return !query.find_violating_pair_over_motion(stretch, q, Level(Keep::kMidpoint, kNoBound));
         };
         ++(free(0) ? proved : refused);
         if (!free(0)) continue;
-        by_speed_alone += plain.first_below(q, Level(Keep::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
+        by_speed_alone += plain.find_violating_pair(q, Level(Keep::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
         double least = 0, most = 1;  // m: as much as can be asked for besides
         while (most - least > kTau / 4) (free((least + most) / 2) ? least : most) = (least + most) / 2;
         for (int i = -10; i <= 10; ++i)
-          ASSERT_FALSE(plain.first_below(q + i / 10.0 * stretch.half, Level(Keep::kMidpoint, least - kTau)))
+          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * stretch.half, Level(Keep::kMidpoint, least - kTau)))
               << w << " " << k << " " << i;
       }
     }

@@ -130,8 +130,8 @@ TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
     EXPECT_NEAR(wrist.median, 0.002, 0.0004);
     for (const Certificates certificates : {Certificates::kOff, Certificates::kOn}) {
       World::Query query(world, certificates);
-      EXPECT_FALSE(query.first_below(apart, Keep::kNode)) << clearance;
-      const auto pair = query.first_below(meeting, Keep::kNode);
+      EXPECT_FALSE(query.find_violating_pair(apart, Keep::kNode)) << clearance;
+      const auto pair = query.find_violating_pair(meeting, Keep::kNode);
       ASSERT_TRUE(pair) << clearance;
       EXPECT_EQ(*pair, wrist.pair);
     }
@@ -194,7 +194,7 @@ TEST(PairRules, AnSrdfLeavesNothingToSamples) {
     EXPECT_EQ(p.keeps.motion, 0.0015);
   }
   EXPECT_TRUE(world.warnings().empty());
-  EXPECT_TRUE(World::Query(world).first_below(Config::Zero(), Keep::kNode));  // 2 mm apart
+  EXPECT_TRUE(World::Query(world).find_violating_pair(Config::Zero(), Keep::kNode));  // 2 mm apart
 }
 
 TEST(PairRules, ForgivenNearnessIsNoContact) {
@@ -207,9 +207,9 @@ TEST(PairRules, ForgivenNearnessIsNoContact) {
     problem.limits.clearance = clearance;
     const World strict(robot, arm_of(robot), problem), forgiving(strict, problem, {}, kVerdictBand);
     World::Query query(forgiving);
-    EXPECT_EQ(World::Query(strict).first_below(Config::Zero(), Keep::kNode).has_value(), clearance > 0.002);
-    EXPECT_EQ(query.first_below(Config::Zero(), Keep::kNode).has_value(), !apart_is_forgiven) << clearance;
-    EXPECT_TRUE(query.first_below(touching, Keep::kNode)) << clearance;
+    EXPECT_EQ(World::Query(strict).find_violating_pair(Config::Zero(), Keep::kNode).has_value(), clearance > 0.002);
+    EXPECT_EQ(query.find_violating_pair(Config::Zero(), Keep::kNode).has_value(), !apart_is_forgiven) << clearance;
+    EXPECT_TRUE(query.find_violating_pair(touching, Keep::kNode)) << clearance;
     EXPECT_TRUE(edge_blocked(query, forgiving.edge_rule({1, 1, 1, 1, 1, 0.2, 0.2}), touching, touching));
   }
 }

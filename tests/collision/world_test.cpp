@@ -76,7 +76,7 @@ TEST(World, ClearanceAndFirstBelowAgreeWithTheReference) {
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->distance, least, kTau);
     for (const double d : {0.0, 0.005, 0.05, least + 0.001, std::max(0.0, least - 0.001)}) {
-      const auto first = query.first_below(q, d);
+      const auto first = query.find_violating_pair(q, d);
       std::size_t expected = 0;
       bool band = false;
       for (; expected < truth.size() && truth[expected] >= d && truth[expected] > 0; ++expected) band |= truth[expected] < d + kTau;
@@ -106,8 +106,8 @@ TEST(World, TheLikelyPairIsAskedFirst) {
   for (int k = 0; k < 3000; ++k) {
     const Config q = random.config(2.5);
     const BodyPair likely = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
-    const bool guilty = query.pair_below(q, likely, 0.005);
-    const auto plain = query.first_below(q, 0.005), found = query.first_below(q, 0.005, likely);
+    const bool guilty = query.pair_violates(q, likely, 0.005);
+    const auto plain = query.find_violating_pair(q, 0.005), found = query.find_violating_pair(q, 0.005, likely);
     ASSERT_EQ(plain.has_value(), found.has_value());
     if (!found) {
       ++none;
@@ -130,7 +130,7 @@ TEST(World, NothingToTouch) {
   const World world(robot, arm_of(robot), problem_for(robot));
   World::Query query(world);
   EXPECT_TRUE(world.pairs().empty());
-  EXPECT_FALSE(query.first_below(Config::Zero(), 1.0));
+  EXPECT_FALSE(query.find_violating_pair(Config::Zero(), 1.0));
   EXPECT_FALSE(query.clearance(Config::Zero()));
   EXPECT_EQ(query.counters().fcl_calls, 0);
 }
@@ -141,7 +141,7 @@ TEST(World, FarAwayCostsNoFclCall) {
   problem.scene.push_back({"far", Box{Vector3d(1, 1, 1)}, at(9, 0, 0), {}});
   const World world(robot, arm_of(robot), problem);
   World::Query query(world);
-  EXPECT_FALSE(query.first_below(Config::Zero(), 0.005));
+  EXPECT_FALSE(query.find_violating_pair(Config::Zero(), 0.005));
   const auto before = query.counters().fcl_calls;
   EXPECT_LE(before, 10);  // neighbours' neighbours of the arm itself at most
 }
@@ -171,7 +171,7 @@ TEST(World, AnEpisodeIsTheSameAsAFreshWorld) {
   Random random(32);
   for (int k = 0; k < 300; ++k) {
     const Config q = random.config(2.5);
-    const auto x = a.first_below(q, 0.005), y = b.first_below(q, 0.005);
+    const auto x = a.find_violating_pair(q, 0.005), y = b.find_violating_pair(q, 0.005);
     ASSERT_EQ(x.has_value(), y.has_value());
     ASSERT_TRUE(!x || (x->a == y->a && x->b == y->b));
   }
@@ -191,7 +191,7 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
   for (int k = 0; k < 1000; ++k) questions.push_back({random.config(2.0), k % 3 == 0 ? 0.005 : random.uniform(0, 0.05)});
   using Answer = std::pair<int, int>;
   const auto ask = [&](World::Query& query, std::size_t k) {
-    const auto pair = query.first_below(questions[k].q, questions[k].d);
+    const auto pair = query.find_violating_pair(questions[k].q, questions[k].d);
     return pair ? Answer(pair->a, pair->b) : Answer(-1, -1);
   };
   std::vector<Answer> serial;

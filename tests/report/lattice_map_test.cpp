@@ -94,7 +94,7 @@ TEST(MapOfRolls, IsThatOfTheNodesWhereThePathIs) {
         const auto q = lattice.node(layer, slot);
         ASSERT_EQ(q.has_value(), seen.state >= NodeState::kNotLookedAt) << layer << ' ' << k;
         if (q) {
-          ASSERT_EQ(seen.state, query.first_below(*q, problem.limits.clearance) ? NodeState::kBlocked : NodeState::kFree);
+          ASSERT_EQ(seen.state, query.find_violating_pair(*q, problem.limits.clearance) ? NodeState::kBlocked : NodeState::kFree);
         } else {
           ASSERT_EQ(seen.state == NodeState::kJointLimit, lattice.fault(layer, slot).status == NodeStatus::kLimit);
         }
@@ -174,7 +174,7 @@ TEST(MapOfArcs, HasNoHolesBetweenNodesOfAnArc) {
           }
           EXPECT_NE(std::find(slots.begin(), slots.end(), map.slots[k]), slots.end()) << layer << ' ' << cell;
           const bool blocked = std::any_of(slots.begin(), slots.end(), [&](int slot) {
-            return query.first_below(*lattice.node(layer, slot), problem.limits.clearance).has_value();
+            return query.find_violating_pair(*lattice.node(layer, slot), problem.limits.clearance).has_value();
           });
           EXPECT_EQ(map.nodes[k].state, blocked ? NodeState::kBlocked : NodeState::kFree) << name << ' ' << layer << ' ' << cell;
         }
@@ -261,13 +261,13 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
         continue;
       }
       const std::int64_t asked = quick.counters().fcl_calls;
-      (void)quick.first_below(*q, lazy.problem.limits.clearance);
+      (void)quick.find_violating_pair(*q, lazy.problem.limits.clearance);
       ASSERT_EQ(known.certified, quick.counters().fcl_calls == asked);  // it took no FCL
       certified += known.certified;
       if (seen.state != NodeState::kNotLookedAt) {
         ASSERT_EQ(seen.certified, known.certified);
       }
-      const auto pair = query.first_below(*q, lazy.problem.limits.clearance);
+      const auto pair = query.find_violating_pair(*q, lazy.problem.limits.clearance);
       ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
       if (pair) {
         const auto& names = world.body_names();

@@ -83,7 +83,7 @@ double distance_of(const Level& level, const EdgeRule::Near& pair) {
 bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                 const Budget& budget) {
   const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
-    return query.pair_below(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
+    return query.pair_violates(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
   return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one).has_value();
@@ -95,7 +95,8 @@ std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, 
                                      const Budget& budget, double* spare) {
   if (spare) *spare = std::numeric_limits<double>::infinity();
   const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely, const Stretch* stretch) {
-    const auto pair = stretch ? query.next_below_on(*stretch, q, level) : query.next_below(q, level, likely);
+    const auto pair = stretch ? query.find_violating_pair_over_motion(*stretch, q, level)
+                              : query.find_violating_pair_incremental(q, level, likely);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
     if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
@@ -114,7 +115,7 @@ bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& 
   for (const EdgeRule::Near& near : rule.near)
     if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
   const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
-    return query.pair_below(q, pair, level) ? std::optional(pair) : std::nullopt;
+    return query.pair_violates(q, pair, level) ? std::optional(pair) : std::nullopt;
   };
   return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one).has_value();
 }

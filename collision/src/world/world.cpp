@@ -355,7 +355,7 @@ struct World::Query::Impl {
   std::array<Pose, kDof + 1> displacements;
   int displaced = 0;           // up to this group of the chain
   std::vector<char> in_place;  // bodies, at q
-  // For next_below(): what a pair's two bodies have moved in all is subtracted from the pair's
+  // For find_violating_pair_incremental(): what a pair's two bodies have moved in all is subtracted from the pair's
   // lower bound of the distance.
   // by body, up to `moved_to`: in all, and from the posture before, m
   std::vector<double> moved, step;
@@ -363,7 +363,7 @@ struct World::Query::Impl {
   std::vector<double> lower_bound;    // by pair, m
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
   std::vector<std::size_t> open;      // pairs whose bound does not prove them free
-  // For next_below_on().
+  // For find_violating_pair_over_motion().
   std::optional<Stretch> stretch;
   /// The displacement of a group of bodies by the joint steps of a stretch, to first order: a point
   /// x, base frame, moves by origin + turn x x.
@@ -467,7 +467,8 @@ struct World::Query::Impl {
     return std::min(d, world->required(k, level.keep) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
   }
 
-  std::optional<BodyPair> first_below(const Level& level, const std::optional<BodyPair>& likely, bool keep, bool own_too = true) {
+  std::optional<BodyPair> find_violating_pair(const Level& level, const std::optional<BodyPair>& likely, bool keep,
+                                              bool own_too = true) {
     all_certified = certificates != Certificates::kOff;
     const auto found = first(level, likely, keep && all_certified, own_too);
     (found ? own.certified_colliding : own.certified_free) += all_certified;
@@ -506,7 +507,7 @@ struct World::Query::Impl {
     const auto k = world->number_of(p);
     return is_below(p, d, k ? witness[*k] : none);
   }
-  bool surely_below(const BodyPair& p, const Level& level) {
+  bool proves_violation(const BodyPair& p, const Level& level) {
     if (certificates == Certificates::kOff) return false;
     const auto k = world->number_of(p);
     if (!k) return false;
@@ -621,7 +622,7 @@ struct World::Query::Impl {
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
   std::optional<Clearance> nearest(const Clearance& so_far);
-  double clear_by(std::size_t k, double least, double enough) {
+  double clearance_lower_bound(std::size_t k, double least, double enough) {
     const BodyPair& p = world->pairs[k];
     place_body(p.a);
     place_body(p.b);
@@ -646,41 +647,43 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::first_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
-  impl_->move_to(q);
-  impl_->stretch.reset();
-  return impl_->first_below(level, likely, false);
-}
-
-std::optional<BodyPair> World::Query::next_below(const Config& q, const Level& level, const std::optional<BodyPair>& likely) {
-  impl_->move_to(q);
-  impl_->stretch.reset();
-  return impl_->first_below(level, likely, true);
-}
-
-std::optional<BodyPair> World::Query::next_below_of_scene(const Config& q, const Level& level,
+std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Level& level,
                                                           const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
   impl_->stretch.reset();
-  return impl_->first_below(level, likely, true, false);
+  return impl_->find_violating_pair(level, likely, false);
 }
 
-std::optional<BodyPair> World::Query::next_below_on(const Stretch& stretch, const Config& q, const Level& level) {
+std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Level& level,
+                                                                      const std::optional<BodyPair>& likely) {
+  impl_->move_to(q);
+  impl_->stretch.reset();
+  return impl_->find_violating_pair(level, likely, true);
+}
+
+std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Level& level,
+                                                                     const std::optional<BodyPair>& likely) {
+  impl_->move_to(q);
+  impl_->stretch.reset();
+  return impl_->find_violating_pair(level, likely, true, false);
+}
+
+std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const Stretch& stretch, const Config& q, const Level& level) {
   impl_->move_to(q);
   impl_->begin(stretch);
-  return impl_->first_below(level, {}, true);
+  return impl_->find_violating_pair(level, {}, true);
 }
 
 double World::Query::spare(const Level& level) const {
   return impl_->spare(level);
 }
 
-double World::Query::clear_by(const Config& q, std::size_t pair, double least, double enough) {
+double World::Query::clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough) {
   impl_->move_to(q);
-  return impl_->clear_by(pair, least, enough);
+  return impl_->clearance_lower_bound(pair, least, enough);
 }
 
-std::span<const double> World::Query::moved(const Config& q) {
+std::span<const double> World::Query::accumulated_displacement(const Config& q) {
   impl_->move_to(q);
   impl_->place_bodies();
   impl_->move_on();
@@ -691,17 +694,17 @@ bool World::Query::certified() const {
   return impl_->last_certified;
 }
 
-bool World::Query::pair_below(const Config& q, const BodyPair& pair, const Level& level) {
+bool World::Query::pair_violates(const Config& q, const BodyPair& pair, const Level& level) {
   impl_->move_to(q);
   return impl_->below(pair, level);
 }
 
-bool World::Query::surely_below(const Config& q, const BodyPair& pair, const Level& level) {
+bool World::Query::proves_violation(const Config& q, const BodyPair& pair, const Level& level) {
   impl_->move_to(q);
-  return impl_->surely_below(pair, level);
+  return impl_->proves_violation(pair, level);
 }
 
-bool World::Query::proves_soon(const BodyPair& pair) const {
+bool World::Query::violation_proof_is_cheap(const BodyPair& pair) const {
   // triangles; a search of fewer is short anyway, and their corners lie far apart
   constexpr std::size_t kHeavy = 500;
   const FclShape &a = impl_->world->body(pair.a).shape, &b = impl_->world->body(pair.b).shape;
@@ -718,7 +721,7 @@ std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) 
   return impl_->nearest({kMost, {}, 0, kMost});
 }
 
-std::optional<World::Query::Clearance> World::Query::clearance_below(const Config& q, const Clearance& so_far) {
+std::optional<World::Query::Clearance> World::Query::clearance_if_less(const Config& q, const Clearance& so_far) {
   impl_->move_to(q);
   return impl_->nearest(so_far);
 }

@@ -147,7 +147,7 @@ void Constraints::add_other_pairs(const Config& q, const Level& level, Violation
     const int number = pair(other);
     if (found.has(number) || (number >= 0 && left(of(number), found.waived) == 0)) continue;
     ++pairs_;
-    if (query_.pair_below(q, other, level) && found.add(number)) return;
+    if (query_.pair_violates(q, other, level) && found.add(number)) return;
   }
 }
 
@@ -168,7 +168,7 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
   node.exists = true;
   if (!found.done() && !lattice_.manipulable(node.q)) found.add(kManipulability);
   if (!found.done())
-    if (const auto first = query_.first_below(node.q, Keep::kNode))
+    if (const auto first = query_.find_violating_pair(node.q, Keep::kNode))
       if (!found.add(pair(*first))) add_other_pairs(node.q, Keep::kNode, found);
   if (check_ && found.set == 0 && !found.uncounted) {
     ++checked_;
@@ -282,7 +282,7 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
   }
   for (const Config& q : between.rows)
-    if (const auto first = query_.first_below(q, Keep::kNode)) {
+    if (const auto first = query_.find_violating_pair(q, Keep::kNode)) {
       if (!found.add(pair(*first))) add_other_pairs(q, Keep::kNode, found);
       if (found.done()) return;
     }
@@ -297,10 +297,10 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
 std::optional<double> Constraints::clearance(const BodyPair& pair, const Config& q, double most) {
   double low = 0, high = most;  // the clearance is below `high` and not below `low`
   constexpr double kContact = 1e-6, kTelling = 1e-5;
-  if (query_.pair_below(q, pair, kContact)) return 0;
+  if (query_.pair_violates(q, pair, kContact)) return 0;
   while (high - low > kTelling) {
     const double middle = (low + high) / 2;
-    (query_.pair_below(q, pair, middle) ? high : low) = middle;
+    (query_.pair_violates(q, pair, middle) ? high : low) = middle;
   }
   return low;
 }
@@ -314,7 +314,7 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   } else if (cause.kind == Cause::Kind::kPair) {
     // A link may have several bodies: the nearest counts.
     for (const BodyPair& p : world_.pairs()) {
-      if (world_.names(p) != cause.bodies || !query_.pair_below(q, p, Keep::kNode)) continue;
+      if (world_.names(p) != cause.bodies || !query_.pair_violates(q, p, Keep::kNode)) continue;
       const double keeps = world_.keeps(p).node;
       const auto value = keeps < 0 ? -query_.depth(q, p).at_least : clearance(p, q, keeps);
       if (!cause.value || (value && *value < *cause.value)) {

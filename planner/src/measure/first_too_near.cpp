@@ -70,7 +70,7 @@ class OpenParts {
     bodies_ = world.bodies().size();
     for (std::size_t k = 0; k < joints_->size(); ++k) {
       if (k % 64 == 0) budget_->poll();
-      const std::span<const double> moved = query_->moved((*joints_)[k]);
+      const std::span<const double> moved = query_->accumulated_displacement((*joints_)[k]);
       moved_.insert(moved_.end(), moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(bodies_));
       if (k == 0) {
         turned_.push_back({});
@@ -150,7 +150,7 @@ class OpenParts {
   double clear_at(std::size_t pair, const Config& q, double need) {
     constexpr double kFurthest = 0.1;  // m; between meshes a large clearance takes long to prove
     const Pair& p = pairs_[pair];
-    return query_->clear_by(q, pair, p.least(), p.both() + std::min(need, kFurthest));
+    return query_->clearance_lower_bound(q, pair, p.least(), p.both() + std::min(need, kFurthest));
   }
   double at_row(std::size_t pair, std::size_t row, double need) {
     const double clear = clear_at(pair, (*joints_)[row], need);
@@ -239,7 +239,7 @@ std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, 
   for (std::size_t k = 0; k < rows.size(); ++k) {
     budget.poll();
     if (open.rows[k])
-      if (const auto pair = query.next_below(rows[k], Keep::kNode)) return TooNear{k, *pair};
+      if (const auto pair = query.find_violating_pair_incremental(rows[k], Keep::kNode)) return TooNear{k, *pair};
     if (k > 0 && open.moves[k - 1])
       if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return TooNear{k, *pair, true};
   }

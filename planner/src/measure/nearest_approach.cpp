@@ -19,9 +19,9 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     const Level level(Keep::kNode, nearest->clearance.margin() + 2 * kVerdictBand);
     double* known = proved ? &(*proved)[static_cast<std::size_t>(row)] : nullptr;
     if (known && *known >= level.more) return true;
-    if (query.next_below(q, level)) return false;
+    if (query.find_violating_pair_incremental(q, level)) return false;
     if (known) *known = std::max(*known, level.more + std::max(0.0, query.spare(level)));
-    return seek == Seek::kMargin || !query.next_below(q, Level(nearest->least + 2 * kVerdictBand));
+    return seek == Seek::kMargin || !query.find_violating_pair_incremental(q, Level(nearest->least + 2 * kVerdictBand));
   };
   int looked_at = 0;
   const auto look_at = [&](int row) {
@@ -32,7 +32,7 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     if (nearest && nearest->clearance.distance > 0) {
       World::Query::Clearance below = nearest->clearance;
       below.least = nearest->least;
-      here = query.clearance_below(q, below);
+      here = query.clearance_if_less(q, below);
     } else {
       here = query.clearance(q);
     }

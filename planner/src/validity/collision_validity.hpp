@@ -15,7 +15,7 @@ namespace swivel {
 
 /// Validates nodes and edges by the costly predicates of docs/model.md, with collision queries on
 /// the executor's threads. A batch is cut into a fixed number of contiguous partitions, each with
-/// its own query cache (World::Query::next_below()). What a partition caches depends on its own
+/// its own query cache (World::Query::find_violating_pair_incremental()). What a partition caches depends on its own
 /// questions alone, so that counters do not depend on the number of threads.
 class CollisionValidity final : public Validity {
  public:

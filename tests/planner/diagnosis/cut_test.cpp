@@ -44,8 +44,8 @@ class Plain {
     const auto [at, is_new] = valid_.try_emplace({layer, slot}, false);
     if (is_new) {
       const auto q = lattice_->row(layer, slot);
-      at->second =
-          q && lattice_->chain().manipulability(*q) >= lattice_->limits().manipulability && !query_.first_below(*q, Keep::kNode);
+      at->second = q && lattice_->chain().manipulability(*q) >= lattice_->limits().manipulability &&
+                   !query_.find_violating_pair(*q, Keep::kNode);
     }
     return at->second;
   }

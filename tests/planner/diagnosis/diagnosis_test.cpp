@@ -38,14 +38,14 @@ struct Laid {
   }
 };
 
-/// What first_below says of every node of a layer, one by one: "" is counted where a node is valid.
+/// What find_violating_pair says of every node of a layer, one by one: "" is counted where a node is valid.
 std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   World::Query query(laid.robot.world());
   std::map<std::string, std::int64_t> reasons;
   for (int slot = 0; slot < laid.lattice.width(); ++slot) {
     const auto q = laid.lattice.row(layer, slot);
     if (!q) continue;
-    const auto pair = query.first_below(*q, Keep::kNode);
+    const auto pair = query.find_violating_pair(*q, Keep::kNode);
     const auto& names = laid.robot.world().body_names();
     const auto name = [&](int body) { return names[static_cast<std::size_t>(body)]; };
     ++reasons[!laid.lattice.manipulable(*q) ? "manipulability" : pair ? name(pair->a) + " - " + name(pair->b) : ""];

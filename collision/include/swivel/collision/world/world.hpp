@@ -137,8 +137,8 @@ class World {
   /// Robot bodies in the order of bodies(), then scene objects. A link with several shapes has its name several times.
   [[nodiscard]] const std::vector<std::string>& body_names() const;
   [[nodiscard]] std::array<std::string, 2> names(const BodyPair& pair) const;
-  /// In the order in which first_below asks: the environment before the robot itself, inflated booleans before distances, the tool
-  /// before the base.
+  /// In the order in which find_violating_pair asks: the environment before the robot itself, inflated booleans before distances,
+  /// the tool before the base.
   [[nodiscard]] const std::vector<BodyPair>& pairs() const;
   /// The pairs of a moving body and a scene object that may touch, ordered by the scene and, for one object, as bodies() are.
   [[nodiscard]] const std::vector<AllowedPair>& allowed() const;
@@ -178,38 +178,40 @@ class World {
 
     /// First of pairs() whose clearance at q is below its level, or none: "clearance >= level" for all pairs. The pair that is
     /// likely to be below is asked before the others. A function of the arguments alone.
-    [[nodiscard]] std::optional<BodyPair> first_below(const Config& q, const Level& level,
-                                                      const std::optional<BodyPair>& likely = {});
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair(const Config& q, const Level& level,
+                                                              const std::optional<BodyPair>& likely = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
     /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before.
     /// With Certificates::kOff nothing is kept.
-    [[nodiscard]] std::optional<BodyPair> next_below(const Config& q, const Level& level,
-                                                     const std::optional<BodyPair>& likely = {});
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_incremental(const Config& q, const Level& level,
+                                                                          const std::optional<BodyPair>& likely = {});
     /// The same of `likely` and the pairs with the scene alone.
-    [[nodiscard]] std::optional<BodyPair> next_below_of_scene(const Config& q, const Level& level,
-                                                              const std::optional<BodyPair>& likely);
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_with_scene(const Config& q, const Level& level,
+                                                                         const std::optional<BodyPair>& likely);
     /// The same, where more than the level's Keep is asked of a pair only as far as it can come nearer on the stretch about q.
-    [[nodiscard]] std::optional<BodyPair> next_below_on(const Stretch& stretch, const Config& q, const Level& level);
-    /// At the posture of the last next_below or next_below_on, which named no pair at this level: as FCL sees it, every pair's
-    /// clearance is more than what was asked of it by this, m; less than 0 where that is not known.
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_over_motion(const Stretch& stretch, const Config& q,
+                                                                          const Level& level);
+    /// At the posture of the last find_violating_pair_incremental or find_violating_pair_over_motion, which named no pair at this
+    /// level: as FCL sees it, every pair's clearance is more than what was asked of it by this, m; less than 0 where that is not
+    /// known.
     [[nodiscard]] double spare(const Level& level) const;
     /// Without FCL: a number that the clearance of a pair, by its place in pairs(), is not below as FCL sees it, m. Looked for
     /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Certificates::kOff by bounds alone.
-    [[nodiscard]] double clear_by(const Config& q, std::size_t pair, double least, double enough);
-    /// By body: how far no point of it has moved in all, m, on the chords from each posture asked about here or in next_below() to
-    /// the next. Valid until the next question.
-    [[nodiscard]] std::span<const double> moved(const Config& q);
-    /// Of the pair that one of these has just named, or surely_below(): its clearance is proved below its level by more than FCL
-    /// may err.
+    [[nodiscard]] double clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough);
+    /// By body: how far no point of it has moved in all, m, on the chords from each posture asked about here or in
+    /// find_violating_pair_incremental() to the next. Valid until the next question.
+    [[nodiscard]] std::span<const double> accumulated_displacement(const Config& q);
+    /// Of the pair that one of these has just named, or proves_violation(): its clearance is proved below its level by more than
+    /// FCL may err.
     [[nodiscard]] bool certified() const;
     /// Whether one pair's clearance is below its level.
-    [[nodiscard]] bool pair_below(const Config& q, const BodyPair& pair, const Level& level);
+    [[nodiscard]] bool pair_violates(const Config& q, const BodyPair& pair, const Level& level);
     /// Without FCL, proves that one pair's clearance is below its level, which may be below zero here: then that one body holds a
     /// point of the other as deep inside it. False where a short search finds no proof.
-    [[nodiscard]] bool surely_below(const Config& q, const BodyPair& pair, const Level& level);
-    /// Whether surely_below() proves most of what is below, in a fraction of the time that it takes to prove the rest free: where a
-    /// mesh of many triangles is held against a box or a cylinder.
-    [[nodiscard]] bool proves_soon(const BodyPair& pair) const;
+    [[nodiscard]] bool proves_violation(const Config& q, const BodyPair& pair, const Level& level);
+    /// Whether proves_violation() proves most of what is below, in a fraction of the time that it takes to prove the rest free:
+    /// where a mesh of many triangles is held against a box or a cylinder.
+    [[nodiscard]] bool violation_proof_is_cheap(const BodyPair& pair) const;
     /// How deep the two bodies of a pair are in each other, within 0.02 mm and, of a cylinder, 0.3 % of its radius. The search ends
     /// early once at_most <= `from`, m. FCL is not asked.
     [[nodiscard]] Depth depth(const Config& q, const BodyPair& pair, double from = -std::numeric_limits<double>::infinity());
@@ -225,7 +227,7 @@ class World {
     [[nodiscard]] std::optional<Clearance> clearance(const Config& q);
     /// The same, but none where neither its margin nor its least is below that of `so_far`, whose bodies do not touch: a proof of
     /// that will do. Where the least alone is, the distance is the largest number there is.
-    [[nodiscard]] std::optional<Clearance> clearance_below(const Config& q, const Clearance& so_far);
+    [[nodiscard]] std::optional<Clearance> clearance_if_less(const Config& q, const Clearance& so_far);
     /// A point of each of the two bodies of clearance(q), base frame, as far apart as the bodies are: within 0.1 mm. For drawing.
     /// None where they touch, and where FCL has no points that can be believed.
     [[nodiscard]] std::optional<std::array<Vector3d, 2>> nearest_points(const Config& q, const Clearance& clearance);

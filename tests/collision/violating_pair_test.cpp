@@ -72,32 +72,33 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       std::optional<BodyPair> likely;
       if (random.coin(0.2)) likely = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
       const Level level = special ? Level(Keep::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Level(d);
-      const auto expected = plain.first_below(q, level, likely), found = kept.next_below(q, level, likely);
+      const auto expected = plain.find_violating_pair(q, level, likely),
+                 found = kept.find_violating_pair_incremental(q, level, likely);
       ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
                                  << d;
       if (found && kept.certified()) {
         const double required = special ? world.keeps(*found).node + level.more : d;
-        ASSERT_TRUE(required <= kVerdictBand || plain.pair_below(q, *found, required - kVerdictBand));
+        ASSERT_TRUE(required <= kVerdictBand || plain.pair_violates(q, *found, required - kVerdictBand));
         reduced += special && world.keeps(*found).node < 0.04;
       }
       if (random.coin(0.2)) {
         const auto of_scene = [&]() -> std::optional<BodyPair> {
-          if (likely && plain.pair_below(q, *likely, level)) return likely;
+          if (likely && plain.pair_violates(q, *likely, level)) return likely;
           for (const BodyPair& pair : world.pairs())
-            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_below(q, pair, level)) return pair;
+            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_violates(q, pair, level)) return pair;
           return std::nullopt;
         }();
-        ASSERT_EQ(kept.next_below_of_scene(q, level, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
+        ASSERT_EQ(kept.find_violating_pair_with_scene(q, level, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
         ++scene_questions;
         only_own += found && !of_scene;
       }
       if (random.coin(0.1)) {  // other questions to the same query disturb nothing
         const Config elsewhere = test::random_config(arm.chain, random);
-        ASSERT_EQ(kept.first_below(elsewhere, d), plain.first_below(elsewhere, d));
+        ASSERT_EQ(kept.find_violating_pair(elsewhere, d), plain.find_violating_pair(elsewhere, d));
       }
       for (const BodyPair& pair : world.pairs()) {
         if (k >= 50) break;
-        ASSERT_EQ(kept.pair_below(q, pair, level), fcl.pair_below(q, pair, level));
+        ASSERT_EQ(kept.pair_violates(q, pair, level), fcl.pair_violates(q, pair, level));
       }
       ++questions;
       pairs += static_cast<std::int64_t>(world.pairs().size());
@@ -129,7 +130,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
 }
 INSTANTIATE_TEST_SUITE_P(Robots, Kept, ::testing::Range(0, 5));
 
-/// What surely_below() says is so, and it misses little where proves_soon().
+/// What proves_violation() says is so, and it misses little where violation_proof_is_cheap().
 TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
   const std::uint64_t base = test::seed("ProvesSoon");
   Random random(base);
@@ -152,11 +153,11 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
       for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
       const double d = random.uniform(0, 0.03);
       for (const BodyPair& pair : world.pairs()) {
-        const bool too_near = fcl.pair_below(q, pair, d), certain = query.surely_below(q, pair, d);
+        const bool too_near = fcl.pair_violates(q, pair, d), certain = query.proves_violation(q, pair, d);
         if (certain) {
           ASSERT_TRUE(too_near && query.certified()) << "SWIVEL_TEST_SEED=" << base << " scene " << scene << " posture " << k;
         }
-        if (!query.proves_soon(pair)) continue;
+        if (!query.violation_proof_is_cheap(pair)) continue;
         ASSERT_EQ(world.names(pair)[1], "fine");
         ASSERT_TRUE(world.names(pair)[0] == "block" || world.names(pair)[0] == "rod");
         ++soon;
