@@ -133,9 +133,9 @@ void BasinLattice::trace(std::vector<int>& points, std::vector<Edge>& edges) con
 bool BasinLattice::node_good(int layer, int point) {
   Point& p = points_[at(layer)][at(point)];
   if (p.state == State::kUnknown) {
-    const bool too_near =
-        at_.find_violating_pair_incremental(p.q, Level(Keep::kNode, rules_.margins ? RefineOptions().extra_clearance : 0)) ||
-        (rules_.margins && at_.find_violating_pair_incremental(p.q, Keep::kMidpoint));
+    const bool too_near = at_.find_violating_pair_incremental(
+                              p.q, Threshold(ClearanceRule::kNode, rules_.margins ? RefineOptions().extra_clearance : 0)) ||
+                          (rules_.margins && at_.find_violating_pair_incremental(p.q, ClearanceRule::kMidpoint));
     p.state = too_near ? State::kBad : State::kGood;
   }
   return p.state == State::kGood;

@@ -67,7 +67,7 @@ struct Fixture {
         edges.push_back({a, b, *q});
     }
     World::Query query(world);  // FCL's trees of meshes are built at its first question
-    for (const Node& x : nodes) static_cast<void>(query.find_violating_pair(x.q, Keep::kNode));
+    for (const Node& x : nodes) static_cast<void>(query.find_violating_pair(x.q, ClearanceRule::kNode));
   }
   Fixture(const Fixture&) = delete;
 
@@ -236,13 +236,14 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
   options.planner = PlannerKind::kLazy;
   add("posture/kept", [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
     World::Query query(c.world, Certificates::kOn);
-    cycle(state, rows, [&](const TrajectoryRow& row) { return query.find_violating_pair_incremental(row.q, Keep::kNode); });
+    cycle(state, rows,
+          [&](const TrajectoryRow& row) { return query.find_violating_pair_incremental(row.q, ClearanceRule::kNode); });
   });
   for (const auto& [name, certificates] : {std::pair{"fcl", Certificates::kOff}, {"certificates", Certificates::kOn}}) {
     const auto who = certificates;  // a structured binding cannot be captured
     add(std::string("posture/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);
-      cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.find_violating_pair(x.q, Keep::kNode); });
+      cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.find_violating_pair(x.q, ClearanceRule::kNode); });
     });
     add(std::string("motion/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);

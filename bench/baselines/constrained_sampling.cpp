@@ -152,7 +152,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
       const double margin = problem.limits.joint_margin - kSlack;
       if (!limit.continuous && (x[j] < limit.lower + margin || x[j] > limit.upper - margin)) return false;
     }
-    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack && !query.find_violating_pair(joints(x), Keep::kNode);
+    return x[kPlace] >= -kSlack && x[kPlace] <= kLength + kSlack && !query.find_violating_pair(joints(x), ClearanceRule::kNode);
   };
 
   const auto ambient = std::make_shared<ob::RealVectorStateSpace>(kDof + 1);

@@ -45,9 +45,10 @@ void print_pairs(const std::string& file) {
     if (p.dropped)
       say("%9s\n", "touching");
     else if (std::isinf(p.median))
-      say("%9s %12.3f %13.3f %12.3f\n", "-", 1e3 * p.keeps.node, 1e3 * p.keeps.motion, 1e3 * p.keeps.tolerance);
+      say("%9s %12.3f %13.3f %12.3f\n", "-", 1e3 * p.required.node, 1e3 * p.required.motion, 1e3 * p.required.tolerance);
     else
-      say("%9.3f %12.3f %13.3f %12.3f\n", 1e3 * p.median, 1e3 * p.keeps.node, 1e3 * p.keeps.motion, 1e3 * p.keeps.tolerance);
+      say("%9.3f %12.3f %13.3f %12.3f\n", 1e3 * p.median, 1e3 * p.required.node, 1e3 * p.required.motion,
+          1e3 * p.required.tolerance);
   }
 }
 

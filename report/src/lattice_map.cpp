@@ -226,7 +226,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     if (!lattice.manipulable(*row)) return LatticeMap::Node{NodeState::kSingular};
     const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
     const std::int64_t before = decided(query.counters());
-    pair = query.find_violating_pair(*row, Keep::kNode);
+    pair = query.find_violating_pair(*row, ClearanceRule::kNode);
     return LatticeMap::Node{pair ? NodeState::kBlocked : NodeState::kFree, 0, decided(query.counters()) > before};
   };
   int rank = 0;

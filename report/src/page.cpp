@@ -199,10 +199,10 @@ Nearness nearness(const World& world, const std::array<std::string, 2>& names, c
     return own == names || (own[0] == names[1] && own[1] == names[0]);
   };
   for (const BodyPair& pair : world.pairs()) {
-    if (!named(pair) || !query.proves_violation(q, pair, Level(-depth))) continue;
+    if (!named(pair) || !query.proves_violation(q, pair, Threshold(-depth))) continue;
     for (double above = kDeepest; above - depth > kTelling;) {
       const double middle = (depth + above) / 2;
-      (query.proves_violation(q, pair, Level(-middle)) ? depth : above) = middle;
+      (query.proves_violation(q, pair, Threshold(-middle)) ? depth : above) = middle;
     }
     deepest = pair;
   }

@@ -62,7 +62,8 @@ TEST(EdgeRule, Midpoints) {
 bool blocked_by_plain(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1) {
   const std::int64_t n = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < n; ++m)
-    if (query.pair_violates(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair, Keep::kMidpoint))
+    if (query.pair_violates(q0 + (static_cast<double>(m) + 0.5) / static_cast<double>(n) * (q1 - q0), pair,
+                            ClearanceRule::kMidpoint))
       return true;
   return false;
 }
@@ -243,15 +244,16 @@ TEST(Stretch, NoPairComesNearerThanSaid) {
         stretch.bend = rule.bend(stretch.half);
         const auto free = [&](double reserve) {
           stretch.reserve = reserve;
-          return !query.find_violating_pair_over_motion(stretch, q, Level(Keep::kMidpoint, kNoBound));
+          return !query.find_violating_pair_over_motion(stretch, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
         };
         ++(free(0) ? proved : refused);
         if (!free(0)) continue;
-        by_speed_alone += plain.find_violating_pair(q, Level(Keep::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
+        by_speed_alone +=
+            plain.find_violating_pair(q, Threshold(ClearanceRule::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
         double least = 0, most = 1;  // m: as much as can be asked for besides
         while (most - least > kTau / 4) (free((least + most) / 2) ? least : most) = (least + most) / 2;
         for (int i = -10; i <= 10; ++i)
-          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * stretch.half, Level(Keep::kMidpoint, least - kTau)))
+          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * stretch.half, Threshold(ClearanceRule::kMidpoint, least - kTau)))
               << w << " " << k << " " << i;
       }
     }

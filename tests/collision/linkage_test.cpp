@@ -96,7 +96,8 @@ TEST(LinkageWorld, MotionsAreProved) {
     World::Query fast(world, Certificates::kOn), plain(world);
     for (int k = 0; k < 12; ++k) {
       Config q0 = random_config(1.5, random);
-      for (int again = 0; again < 20 && plain.find_violating_pair(q0, Keep::kNode); ++again) q0 = random_config(1.5, random);
+      for (int again = 0; again < 20 && plain.find_violating_pair(q0, ClearanceRule::kNode); ++again)
+        q0 = random_config(1.5, random);
       const Config q1 = q0 + random_config(random.coin() ? 0.15 : 0.03, random);
       const auto found = edge_blocked(fast, rule, q0, q1), expected = test::edge_blocked_plain(plain, rule, q0, q1);
       if (found.has_value() != expected.has_value()) {
@@ -111,7 +112,7 @@ TEST(LinkageWorld, MotionsAreProved) {
       }
       ++free;
       for (int i = 0; i <= 24; ++i) {
-        const auto pair = plain.find_violating_pair(q0 + i / 24.0 * (q1 - q0), Level(Keep::kMotion, -kVerdictBand));
+        const auto pair = plain.find_violating_pair(q0 + i / 24.0 * (q1 - q0), Threshold(ClearanceRule::kMotion, -kVerdictBand));
         ASSERT_FALSE(pair) << "trial " << trial << ": " << world.names(*pair)[0] << " - " << world.names(*pair)[1];
         for (const EdgeRule::Near& near : rule.near)
           ASSERT_FALSE(plain.pair_violates(q0 + i / 24.0 * (q1 - q0), near.pair, near.d_edge - kVerdictBand)) << "trial " << trial;
@@ -159,14 +160,15 @@ TEST(LinkageWorld, StretchesAreProvedBySpeed) {
       constexpr double kNoBound = 100;  // m
       const auto free = [&](double reserve) {
         stretch.reserve = reserve;
-        return !query.find_violating_pair_over_motion(stretch, q, Level(Keep::kMidpoint, kNoBound));
+        return !query.find_violating_pair_over_motion(stretch, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
       };
       if (!free(0)) continue;
       ++proved;
       double least = 0, greatest = 1;  // m: as much as can be asked for besides
       while (greatest - least > kVerdictBand / 4) (free((least + greatest) / 2) ? least : greatest) = (least + greatest) / 2;
       for (int i = -5; i <= 5; ++i)
-        ASSERT_FALSE(plain.find_violating_pair(q + i / 5.0 * stretch.half, Level(Keep::kMidpoint, least - kVerdictBand)))
+        ASSERT_FALSE(
+            plain.find_violating_pair(q + i / 5.0 * stretch.half, Threshold(ClearanceRule::kMidpoint, least - kVerdictBand)))
             << "trial " << trial << " " << k << " " << i;
     }
   }

@@ -95,16 +95,17 @@ void expect_keeps(const World& world, const Limits& limits) {
   for (const RobotPair& p : world.robot_pairs_with_medians()) {
     if (p.dropped) continue;
     const double self = limits.self_clearance.value_or(limits.clearance), h = limits.edge_tolerance;
-    EXPECT_DOUBLE_EQ(p.keeps.node, std::min(self, p.median / 2));
-    EXPECT_DOUBLE_EQ(p.keeps.motion, std::min(limits.edge_clearance.value_or(self / 2), p.median / 4));
+    EXPECT_DOUBLE_EQ(p.required.node, std::min(self, p.median / 2));
+    EXPECT_DOUBLE_EQ(p.required.motion, std::min(limits.edge_clearance.value_or(self / 2), p.median / 4));
     if (p.median / 2 > kVerdictBand) {
-      EXPECT_DOUBLE_EQ(p.keeps.tolerance, std::min(h, p.median / 2));
+      EXPECT_DOUBLE_EQ(p.required.tolerance, std::min(h, p.median / 2));
     }
-    EXPECT_GT(p.keeps.tolerance, 0);
-    EXPECT_EQ(p.reduced, p.keeps.node < self || p.keeps.motion < limits.edge_clearance.value_or(self / 2) || p.keeps.tolerance < h);
-    const PairKeeps keeps = world.keeps(p.pair);
-    EXPECT_EQ(keeps.node, p.keeps.node);
-    EXPECT_EQ(keeps.motion, p.keeps.motion);
+    EXPECT_GT(p.required.tolerance, 0);
+    EXPECT_EQ(p.reduced,
+              p.required.node < self || p.required.motion < limits.edge_clearance.value_or(self / 2) || p.required.tolerance < h);
+    const RequiredClearance required = world.required_clearance(p.pair);
+    EXPECT_EQ(required.node, p.required.node);
+    EXPECT_EQ(required.motion, p.required.motion);
   }
 }
 
@@ -130,8 +131,8 @@ TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
     EXPECT_NEAR(wrist.median, 0.002, 0.0004);
     for (const Certificates certificates : {Certificates::kOff, Certificates::kOn}) {
       World::Query query(world, certificates);
-      EXPECT_FALSE(query.find_violating_pair(apart, Keep::kNode)) << clearance;
-      const auto pair = query.find_violating_pair(meeting, Keep::kNode);
+      EXPECT_FALSE(query.find_violating_pair(apart, ClearanceRule::kNode)) << clearance;
+      const auto pair = query.find_violating_pair(meeting, ClearanceRule::kNode);
       ASSERT_TRUE(pair) << clearance;
       EXPECT_EQ(*pair, wrist.pair);
     }
@@ -166,9 +167,9 @@ TEST(PairRules, WhatPairsKeepGrowsWithTheLimits) {
         for (std::size_t k = 0; k < before.size(); ++k) {
           ASSERT_EQ(now[k].pair, before[k].pair);
           ASSERT_EQ(now[k].dropped, before[k].dropped);
-          ASSERT_GE(now[k].keeps.node, before[k].keeps.node);
-          ASSERT_GE(now[k].keeps.motion, before[k].keeps.motion);
-          ASSERT_EQ(now[k].keeps.tolerance, before[k].keeps.tolerance);
+          ASSERT_GE(now[k].required.node, before[k].required.node);
+          ASSERT_GE(now[k].required.motion, before[k].required.motion);
+          ASSERT_EQ(now[k].required.tolerance, before[k].required.tolerance);
           ++pairs;
           ++(now[k].reduced ? reduced : plain);
         }
@@ -190,11 +191,11 @@ TEST(PairRules, AnSrdfLeavesNothingToSamples) {
   const World world(robot, arm_of(robot), problem);
   for (const RobotPair& p : world.robot_pairs()) {
     EXPECT_FALSE(p.dropped || p.reduced);
-    EXPECT_EQ(p.keeps.node, 0.003);
-    EXPECT_EQ(p.keeps.motion, 0.0015);
+    EXPECT_EQ(p.required.node, 0.003);
+    EXPECT_EQ(p.required.motion, 0.0015);
   }
   EXPECT_TRUE(world.warnings().empty());
-  EXPECT_TRUE(World::Query(world).find_violating_pair(Config::Zero(), Keep::kNode));  // 2 mm apart
+  EXPECT_TRUE(World::Query(world).find_violating_pair(Config::Zero(), ClearanceRule::kNode));  // 2 mm apart
 }
 
 TEST(PairRules, ForgivenNearnessIsNoContact) {
@@ -207,9 +208,9 @@ TEST(PairRules, ForgivenNearnessIsNoContact) {
     problem.limits.clearance = clearance;
     const World strict(robot, arm_of(robot), problem), forgiving(strict, problem, {}, kVerdictBand);
     World::Query query(forgiving);
-    EXPECT_EQ(World::Query(strict).find_violating_pair(Config::Zero(), Keep::kNode).has_value(), clearance > 0.002);
-    EXPECT_EQ(query.find_violating_pair(Config::Zero(), Keep::kNode).has_value(), !apart_is_forgiven) << clearance;
-    EXPECT_TRUE(query.find_violating_pair(touching, Keep::kNode)) << clearance;
+    EXPECT_EQ(World::Query(strict).find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(), clearance > 0.002);
+    EXPECT_EQ(query.find_violating_pair(Config::Zero(), ClearanceRule::kNode).has_value(), !apart_is_forgiven) << clearance;
+    EXPECT_TRUE(query.find_violating_pair(touching, ClearanceRule::kNode)) << clearance;
     EXPECT_TRUE(edge_blocked(query, forgiving.edge_rule({1, 1, 1, 1, 1, 0.2, 0.2}), touching, touching));
   }
 }

@@ -71,24 +71,25 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
       std::optional<BodyPair> likely;
       if (random.coin(0.2)) likely = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
-      const Level level = special ? Level(Keep::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Level(d);
-      const auto expected = plain.find_violating_pair(q, level, likely),
-                 found = kept.find_violating_pair_incremental(q, level, likely);
+      const Threshold threshold =
+          special ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Threshold(d);
+      const auto expected = plain.find_violating_pair(q, threshold, likely),
+                 found = kept.find_violating_pair_incremental(q, threshold, likely);
       ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
                                  << d;
       if (found && kept.certified()) {
-        const double required = special ? world.keeps(*found).node + level.more : d;
+        const double required = special ? world.required_clearance(*found).node + threshold.more : d;
         ASSERT_TRUE(required <= kVerdictBand || plain.pair_violates(q, *found, required - kVerdictBand));
-        reduced += special && world.keeps(*found).node < 0.04;
+        reduced += special && world.required_clearance(*found).node < 0.04;
       }
       if (random.coin(0.2)) {
         const auto of_scene = [&]() -> std::optional<BodyPair> {
-          if (likely && plain.pair_violates(q, *likely, level)) return likely;
+          if (likely && plain.pair_violates(q, *likely, threshold)) return likely;
           for (const BodyPair& pair : world.pairs())
-            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_violates(q, pair, level)) return pair;
+            if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_violates(q, pair, threshold)) return pair;
           return std::nullopt;
         }();
-        ASSERT_EQ(kept.find_violating_pair_with_scene(q, level, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
+        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
         ++scene_questions;
         only_own += found && !of_scene;
       }
@@ -98,7 +99,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       }
       for (const BodyPair& pair : world.pairs()) {
         if (k >= 50) break;
-        ASSERT_EQ(kept.pair_violates(q, pair, level), fcl.pair_violates(q, pair, level));
+        ASSERT_EQ(kept.pair_violates(q, pair, threshold), fcl.pair_violates(q, pair, threshold));
       }
       ++questions;
       pairs += static_cast<std::int64_t>(world.pairs().size());

@@ -44,7 +44,8 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       }
       rows[i].push_back(lattice.row(static_cast<int>(i), slot, *q));
       const auto& row = rows[i].back();
-      if (!row || chain.manipulability(*row) < limits.manipulability || query.find_violating_pair(*row, Keep::kNode)) q.reset();
+      if (!row || chain.manipulability(*row) < limits.manipulability || query.find_violating_pair(*row, ClearanceRule::kNode))
+        q.reset();
       bool allowed = true;
       if (q && hooks.check) hooks.check->states({&*row, 1}, {&allowed, 1});
       if (!allowed) q.reset();
@@ -66,7 +67,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       Lattice::Between between = lattice.between(layer, sa, row_a, sb, row_b);
       if (between.fault != Lattice::Between::Fault::kNone) return std::nullopt;
       for (const Config& q : between.rows)
-        if (query.find_violating_pair(q, Keep::kNode)) return std::nullopt;
+        if (query.find_violating_pair(q, ClearanceRule::kNode)) return std::nullopt;
       between.rows.push_back(row_b);
       Config from = row_a;
       for (const Config& row : between.rows) {

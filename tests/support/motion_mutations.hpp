@@ -258,7 +258,8 @@ inline bool is_clear(const Judged& judged, World::Query& query, const Config& fr
   constexpr int kParts = 64;
   (void)judged;
   for (int part = 0; part <= kParts; ++part)
-    if (query.find_violating_pair(from + static_cast<double>(part) / kParts * (to - from), Level(Keep::kNode, more))) return false;
+    if (query.find_violating_pair(from + static_cast<double>(part) / kParts * (to - from), Threshold(ClearanceRule::kNode, more)))
+      return false;
   return true;
 }
 
@@ -425,11 +426,12 @@ inline const std::vector<MotionMutation>& motion_mutations() {
            other.problem.scene.push_back({"wire", Sphere{0.002}, pose, {}});
            const World world(m.robot->world(), as_a_motion(other));
            World::Query query(world);
-           if (query.find_violating_pair(from, Level(Keep::kNode, 1e-3)) || query.find_violating_pair(to, Level(Keep::kNode, 1e-3)))
+           if (query.find_violating_pair(from, Threshold(ClearanceRule::kNode, 1e-3)) ||
+               query.find_violating_pair(to, Threshold(ClearanceRule::kNode, 1e-3)))
              continue;
            bool free_at_rows = true;
            for (std::size_t k = 0; k < m.rows.size() && free_at_rows; k += 5)
-             free_at_rows = !query.find_violating_pair_incremental(m.q(k), Level(Keep::kNode, 1e-3));
+             free_at_rows = !query.find_violating_pair_incremental(m.q(k), Threshold(ClearanceRule::kNode, 1e-3));
            if (!free_at_rows) continue;
            m = std::move(other);
            insert(m, *swing);

@@ -14,7 +14,7 @@ namespace swivel::test {
   };
   const std::int64_t leaves = rule.midpoints(q0, q1);
   for (std::int64_t m = 0; m < leaves; ++m)
-    if (const auto pair = query.find_violating_pair(midpoint(m, leaves), Keep::kMidpoint)) return pair;
+    if (const auto pair = query.find_violating_pair(midpoint(m, leaves), ClearanceRule::kMidpoint)) return pair;
   for (const EdgeRule::Near& near : rule.near) {
     const std::int64_t own = rule.midpoints(q0, q1, near.h);
     for (std::int64_t m = 0; m < own; ++m)

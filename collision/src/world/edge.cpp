@@ -37,7 +37,7 @@ std::int64_t EdgeRule::midpoints(const Config& q0, const Config& q1, double tole
 namespace {
 
 /// Searches the motion from q0 to q1 for a pair that is too near, by bisection down to `leaves`
-/// midpoints. below(q, level, likely, stretch) returns a pair that is too near at q, or none; if
+/// midpoints. below(q, threshold, suspected, segment) returns a pair that is too near at q, or none; if
 /// `stretch` is not null, what it asks of a pair is limited to how much nearer the pair can come on
 /// that stretch about q. No pair comes nearer by more than `bound`, m, on the whole motion, and no
 /// point's path bends by more than `bend`, m, on half of it. Throws Stopped.
@@ -61,12 +61,12 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
       const double middle = (static_cast<double>(first) + static_cast<double>(size) / 2) / static_cast<double>(leaves);
       const Config q = q0 + middle * delta;
       if (size == 1) {
-        if (const auto pair = below(q, Keep::kMidpoint, std::nullopt, nullptr)) return pair;
+        if (const auto pair = below(q, ClearanceRule::kMidpoint, std::nullopt, nullptr)) return pair;
         continue;
       }
-      const auto likely = below(q, Level(Keep::kMidpoint, half_bound), std::nullopt, &stretch);
+      const auto likely = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &stretch);
       if (!likely) continue;
-      if (const auto pair = below(q, Keep::kMotion, likely, nullptr)) return pair;
+      if (const auto pair = below(q, ClearanceRule::kMotion, likely, nullptr)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }
@@ -76,14 +76,14 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
 }
 
 /// Returns the distance, m, that a level requires of a pair that has a rule of its own.
-double distance_of(const Level& level, const EdgeRule::Near& pair) {
-  return pair.d_edge + (level.keep == Keep::kMidpoint ? pair.h : 0) + level.more;
+double distance_of(const Threshold& threshold, const EdgeRule::Near& pair) {
+  return pair.d_edge + (threshold.rule == ClearanceRule::kMidpoint ? pair.h : 0) + threshold.more;
 }
 
 bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                 const Budget& budget) {
-  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
-    return query.pair_violates(q, near.pair, distance_of(level, near)) ? std::optional(near.pair) : std::nullopt;
+  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const Stretch*) {
+    return query.pair_violates(q, near.pair, distance_of(threshold, near)) ? std::optional(near.pair) : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
   return bisect(q0, q1, rule.midpoints(q0, q1, near.h), bound, 0, budget, this_one).has_value();
@@ -94,12 +94,12 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                      const Budget& budget, double* spare) {
   if (spare) *spare = std::numeric_limits<double>::infinity();
-  const auto any = [&](const Config& q, const Level& level, const std::optional<BodyPair>& likely, const Stretch* stretch) {
-    const auto pair = stretch ? query.find_violating_pair_over_motion(*stretch, q, level)
-                              : query.find_violating_pair_incremental(q, level, likely);
+  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& likely, const Stretch* stretch) {
+    const auto pair = stretch ? query.find_violating_pair_over_motion(*stretch, q, threshold)
+                              : query.find_violating_pair_incremental(q, threshold, likely);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
-    if (spare && !pair && level.keep == Keep::kMidpoint) *spare = std::min(*spare, query.spare(level));
+    if (spare && !pair && threshold.rule == ClearanceRule::kMidpoint) *spare = std::min(*spare, query.spare(threshold));
     return pair;
   };
   if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any))
@@ -114,8 +114,8 @@ bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& 
                      const Budget& budget) {
   for (const EdgeRule::Near& near : rule.near)
     if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
-  const auto this_one = [&](const Config& q, const Level& level, const std::optional<BodyPair>&, const Stretch*) {
-    return query.pair_violates(q, pair, level) ? std::optional(pair) : std::nullopt;
+  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const Stretch*) {
+    return query.pair_violates(q, pair, threshold) ? std::optional(pair) : std::nullopt;
   };
   return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one).has_value();
 }

@@ -210,10 +210,11 @@ std::vector<RobotPair> RobotPart::pairs(const Limits& limits) const {
     if (!pair.dropped) {
       pair.median = m;
       // Even if the median is nearly zero, the tolerance stays large enough for a proof.
-      pair.keeps = {std::min(limits.d_self(), m / 2), std::min(limits.d_self_edge(), m / 4),
-                    std::min(h, std::max(m / 2, kVerdictBand))};
+      pair.required = {std::min(limits.d_self(), m / 2), std::min(limits.d_self_edge(), m / 4),
+                       std::min(h, std::max(m / 2, kVerdictBand))};
       pair.near = m < far_enough(limits);
-      pair.reduced = pair.keeps.node < limits.d_self() || pair.keeps.motion < limits.d_self_edge() || pair.keeps.tolerance < h;
+      pair.reduced =
+          pair.required.node < limits.d_self() || pair.required.motion < limits.d_self_edge() || pair.required.tolerance < h;
     }
     pairs.push_back(pair);
   }

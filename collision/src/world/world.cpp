@@ -21,11 +21,12 @@ namespace {
 
 constexpr double kAskedNothing = -std::numeric_limits<double>::infinity();
 /// The clearance that one pair must keep, m, indexed by Keep.
-using Kept = std::array<double, 4>;
-constexpr auto kMotionIndex = static_cast<std::size_t>(Keep::kMotion), kMidpointIndex = static_cast<std::size_t>(Keep::kMidpoint);
-Kept kept(const PairKeeps& keeps, double forgiven) {
-  const double motion = std::max(0.0, keeps.motion - forgiven);
-  return {0, std::max(0.0, keeps.node - forgiven), motion, motion + keeps.tolerance};
+using RequiredByRule = std::array<double, 4>;
+constexpr auto kMotionIndex = static_cast<std::size_t>(ClearanceRule::kMotion),
+               kMidpointIndex = static_cast<std::size_t>(ClearanceRule::kMidpoint);
+RequiredByRule required_by_rule(const RequiredClearance& required, double forgiven) {
+  const double motion = std::max(0.0, required.motion - forgiven);
+  return {0, std::max(0.0, required.node - forgiven), motion, motion + required.tolerance};
 }
 
 /// Added to bounds, which are exact up to rounding, m: far above the rounding error and far below
@@ -68,9 +69,9 @@ struct World::Impl {
   std::vector<std::string> names;
   std::vector<BodyPair> pairs;
   std::vector<AllowedPair> allowed;
-  std::vector<Kept> keeps;      // by pair
-  std::vector<char> may_touch;  // by pair: it keeps a depth
-  std::vector<int> numbers;     // [a * bodies + b] of `pairs`; -1: none of them
+  std::vector<RequiredByRule> required_by_pair;  // by pair
+  std::vector<char> may_touch;                   // by pair: it keeps a depth
+  std::vector<int> numbers;                      // [a * bodies + b] of `pairs`; -1: none of them
   std::vector<EdgeRule::Near> near;
   std::vector<std::string> warnings;
   double forgiven;  // m, by which pairs may be nearer than they should
@@ -104,15 +105,16 @@ struct World::Impl {
       }
     }
     sort_pairs();
-    keeps.reserve(pairs.size());
+    required_by_pair.reserve(pairs.size());
     for (const BodyPair& p : pairs) {
-      const PairKeeps asked = keeps_of(p);
-      keeps.push_back(kept(asked, forgiven));
+      const RequiredClearance asked = required_of(p);
+      required_by_pair.push_back(required_by_rule(asked, forgiven));
       const RobotPair* known = robot_pair(p);
       may_touch.push_back(known == nullptr && depth_of(p));
-      if (may_touch.back()) keeps.back() = {kAskedNothing, asked.node - forgiven, asked.motion - forgiven, kAskedNothing};
+      if (may_touch.back())
+        required_by_pair.back() = {kAskedNothing, asked.node - forgiven, asked.motion - forgiven, kAskedNothing};
       if (known ? !known->near : !may_touch.back()) continue;
-      Kept& own = keeps.back();
+      RequiredByRule& own = required_by_pair.back();
       const Chain::Joints joints = robot->chain.joints_between(body(p.a).group, body(p.b).group);
       near.push_back({p, own[kMotionIndex], asked.tolerance, joints.first, joints.last});
       own[kMotionIndex] = own[kMidpointIndex] = kAskedNothing;
@@ -122,16 +124,16 @@ struct World::Impl {
     [[maybe_unused]] static const bool warm = warm_up();
   }
 
-  /// Returns the clearance required of pair k at this level, m.
-  [[nodiscard]] double required(std::size_t k, const Level& level) const {
-    return keeps[k][static_cast<std::size_t>(level.keep)] + level.more;
+  /// Returns the clearance required of pair k at this threshold, m.
+  [[nodiscard]] double required(std::size_t k, const Threshold& threshold) const {
+    return required_by_pair[k][static_cast<std::size_t>(threshold.rule)] + threshold.more;
   }
   /// Returns true for a pair of two robot bodies. These come last in `pairs`.
   [[nodiscard]] bool is_own(const BodyPair& p) const { return p.b < static_cast<int>(robot->bodies.size()); }
-  [[nodiscard]] double required(const BodyPair& p, const Level& level) const {
-    if (level.keep == Keep::kNothing) return level.more;
+  [[nodiscard]] double required(const BodyPair& p, const Threshold& threshold) const {
+    if (threshold.rule == ClearanceRule::kNothing) return threshold.more;
     const auto number = number_of(p);
-    return number ? required(*number, level) : kAskedNothing;
+    return number ? required(*number, threshold) : kAskedNothing;
   }
   /// Returns true if a threshold d, m, has to be tested for pair k: a negative one only for pairs
   /// that keep a depth.
@@ -151,9 +153,9 @@ struct World::Impl {
     numbers.assign(robot->bodies.size() * bodies.size(), -1);
     for (std::size_t k = 0; k < pairs.size(); ++k) numbers[place_of(pairs[k])] = static_cast<int>(k);
   }
-  [[nodiscard]] PairKeeps keeps_of(const BodyPair& p) const {
-    if (const RobotPair* known = robot_pair(p)) return known->keeps;
-    if (const auto depth = depth_of(p)) return keeps_of_depth(*depth);
+  [[nodiscard]] RequiredClearance required_of(const BodyPair& p) const {
+    if (const RobotPair* known = robot_pair(p)) return known->required;
+    if (const auto depth = depth_of(p)) return required_of_depth(*depth);
     return {limits.clearance, limits.d_edge(), limits.edge_tolerance};
   }
   /// Returns what a pair keeps whose bodies may be `depth`, m, deep in each other. A motion is
@@ -161,7 +163,7 @@ struct World::Impl {
   /// by twice the tolerance, so that a node from which no motion could be proved is refused at
   /// once. In verification (`forgiven` > 0) every row may be as deep as allowed, however close the
   /// rows are.
-  [[nodiscard]] PairKeeps keeps_of_depth(double depth) const {
+  [[nodiscard]] RequiredClearance required_of_depth(double depth) const {
     if (forgiven > 0) return {-depth, -depth, kVerdictBand};
     const double tolerance = std::min(limits.edge_tolerance, std::max(depth / 32, kVerdictBand));
     const double reserve = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
@@ -181,10 +183,10 @@ struct World::Impl {
   void keep_pairs(const std::vector<int>& objects, Pairs wanted) {
     const int robot_bodies = static_cast<int>(robot->bodies.size());
     const auto all = std::move(pairs);
-    const auto all_keeps = std::move(keeps);
+    const auto all_required = std::move(required_by_pair);
     const auto all_may_touch = std::move(may_touch);
     pairs.clear();
-    keeps.clear();
+    required_by_pair.clear();
     may_touch.clear();
     const auto is_wanted = [&](const BodyPair& p) {
       return (std::find(objects.begin(), objects.end(), p.b - robot_bodies) != objects.end()) == (wanted == Pairs::kOf);
@@ -192,7 +194,7 @@ struct World::Impl {
     for (std::size_t k = 0; k < all.size(); ++k)
       if (is_wanted(all[k])) {
         pairs.push_back(all[k]);
-        keeps.push_back(all_keeps[k]);
+        required_by_pair.push_back(all_required[k]);
         may_touch.push_back(all_may_touch[k]);
       }
     std::erase_if(near, [&](const EdgeRule::Near& x) { return !is_wanted(x.pair); });
@@ -207,8 +209,8 @@ struct World::Impl {
       const std::string text = names[p.pair.a] + " - " + names[p.pair.b];
       if (p.dropped)
         dropped.push_back(text);
-      else if (p.keeps.node < limits.d_self())
-        reduced.push_back(text + " " + millimetres(p.keeps.node));
+      else if (p.required.node < limits.d_self())
+        reduced.push_back(text + " " + millimetres(p.required.node));
     }
     if (!dropped.empty()) warnings.push_back("robot pairs that touch in every posture are not kept apart: " + list_of(dropped));
     if (!reduced.empty())
@@ -319,11 +321,11 @@ void World::make_ready(const std::function<bool()>& stop) const {
 Chain::Joints World::joints_between(const BodyPair& pair) const {
   return impl_->robot->chain.joints_between(impl_->body(pair.a).group, impl_->body(pair.b).group);
 }
-PairKeeps World::keeps(const BodyPair& pair) const {
-  return impl_->keeps_of(pair);
+RequiredClearance World::required_clearance(const BodyPair& pair) const {
+  return impl_->required_of(pair);
 }
-double World::required(std::size_t pair, Keep keep) const {
-  return impl_->required(pair, Level(keep));
+double World::required(std::size_t pair, ClearanceRule rule) const {
+  return impl_->required(pair, Threshold(rule));
 }
 double World::displacement(int object, const Pose& from, const Pose& to) const {
   const Bound& bound = impl_->bodies[impl_->robot->bodies.size() + static_cast<std::size_t>(object)].shape.bound;
@@ -459,47 +461,47 @@ struct World::Query::Impl {
       if (const double half = bound(body).half[k]; half > 0) speed += half * turn.cross(at.axes.col(k)).norm();
     return speed;
   }
-  /// Returns the clearance required of pair k at this level, m. On a stretch, level.more is
+  /// Returns the clearance required of pair k at this threshold, m. On a stretch, level.more is
   /// replaced by how far the pair can come nearer, if that is less.
-  [[nodiscard]] double required(std::size_t k, const Level& level) const {
-    const double d = world->required(k, level);
-    if (!stretch || !(level.more > 0)) return d;
-    return std::min(d, world->required(k, level.keep) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
+  [[nodiscard]] double required(std::size_t k, const Threshold& threshold) const {
+    const double d = world->required(k, threshold);
+    if (!stretch || !(threshold.more > 0)) return d;
+    return std::min(d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
   }
 
-  std::optional<BodyPair> find_violating_pair(const Level& level, const std::optional<BodyPair>& likely, bool keep,
+  std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep,
                                               bool own_too = true) {
     all_certified = certificates != Certificates::kOff;
-    const auto found = first(level, likely, keep && all_certified, own_too);
+    const auto found = first(threshold, likely, keep && all_certified, own_too);
     (found ? own.certified_colliding : own.certified_free) += all_certified;
     return found;
   }
-  std::optional<BodyPair> first(const Level& level, const std::optional<BodyPair>& likely, bool keep, bool own_too) {
-    if (likely && below(*likely, level)) return likely;
+  std::optional<BodyPair> first(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep, bool own_too) {
+    if (likely && below(*likely, threshold)) return likely;
     place_bodies();
-    if (keep) return first_open(level, likely, own_too);
+    if (keep) return first_open(threshold, likely, own_too);
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
-      const double d = required(k, level);
+      const double d = required(k, threshold);
       if (p != likely && world->is_asked(k, d) && is_below(p, d, witness[k])) return p;
     }
     return std::nullopt;
   }
-  std::optional<BodyPair> first_open(const Level& level, const std::optional<BodyPair>& likely, bool own_too) {
+  std::optional<BodyPair> first_open(const Threshold& threshold, const std::optional<BodyPair>& likely, bool own_too) {
     move_on();
-    find_open(level);
+    find_open(threshold);
     for (const std::size_t k : open) {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
-      const double d = required(k, level);
+      const double d = required(k, threshold);
       if (p == likely || !world->is_asked(k, d)) continue;
       if (d < 0 ? is_deeper_now(k, -d) : is_below(p, d, renewed(k, d))) return p;
     }
     return std::nullopt;
   }
-  bool below(const BodyPair& p, const Level& level) {
-    const double d = world->required(p, level);
+  bool below(const BodyPair& p, const Threshold& threshold) {
+    const double d = world->required(p, threshold);
     if (!world->is_asked(p, d)) return false;
     place_body(p.a);
     place_body(p.b);
@@ -507,13 +509,13 @@ struct World::Query::Impl {
     const auto k = world->number_of(p);
     return is_below(p, d, k ? witness[*k] : none);
   }
-  bool proves_violation(const BodyPair& p, const Level& level) {
+  bool proves_violation(const BodyPair& p, const Threshold& threshold) {
     if (certificates == Certificates::kOff) return false;
     const auto k = world->number_of(p);
     if (!k) return false;
     place_body(p.a);
     place_body(p.b);
-    const double d = world->required(p, level);
+    const double d = world->required(p, threshold);
     if (d < 0 && world->may_touch[*k])
       last_certified = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
     else
@@ -575,27 +577,27 @@ struct World::Query::Impl {
     }
   }
   [[nodiscard]] double moved_together(const BodyPair& p) const { return moved[p.a] + moved[p.b]; }
-  [[nodiscard]] double spare(const Level& level) const {
+  [[nodiscard]] double spare(const Threshold& threshold) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < lower_bound.size(); ++k)
-      if (const double d = required(k, level); world->is_asked(k, d)) {
+      if (const double d = required(k, threshold); world->is_asked(k, d)) {
         const double here = lower_bound[k] - moved_together(world->pairs[k]) - d - kKeptSafety;
         if (!(here >= 0)) return -1;  // NaN
         least = std::min(least, here);
       }
     return least;
   }
-  void find_open(const Level& level) {
+  void find_open(const Threshold& threshold) {
     open.resize(lower_bound.size());
     std::size_t found = 0;
     for (std::size_t k = 0; k < lower_bound.size(); ++k) {
       open[found] = k;
-      found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, level) + kKeptSafety);  // NaN is open
+      found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, threshold) + kKeptSafety);  // NaN is open
     }
     open.resize(found);
     if (stretch) {
       std::erase_if(open, [&](std::size_t k) {
-        return lower_bound[k] - moved_together(world->pairs[k]) >= required(k, level) + kKeptSafety;
+        return lower_bound[k] - moved_together(world->pairs[k]) >= required(k, threshold) + kKeptSafety;
       });
       found = open.size();
     }
@@ -647,35 +649,36 @@ World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
-std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Level& level,
+std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Threshold& threshold,
                                                           const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
   impl_->stretch.reset();
-  return impl_->find_violating_pair(level, likely, false);
+  return impl_->find_violating_pair(threshold, likely, false);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Level& level,
+std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Threshold& threshold,
                                                                       const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
   impl_->stretch.reset();
-  return impl_->find_violating_pair(level, likely, true);
+  return impl_->find_violating_pair(threshold, likely, true);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Level& level,
+std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
                                                                      const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
   impl_->stretch.reset();
-  return impl_->find_violating_pair(level, likely, true, false);
+  return impl_->find_violating_pair(threshold, likely, true, false);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const Stretch& stretch, const Config& q, const Level& level) {
+std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const Stretch& stretch, const Config& q,
+                                                                      const Threshold& threshold) {
   impl_->move_to(q);
   impl_->begin(stretch);
-  return impl_->find_violating_pair(level, {}, true);
+  return impl_->find_violating_pair(threshold, {}, true);
 }
 
-double World::Query::spare(const Level& level) const {
-  return impl_->spare(level);
+double World::Query::spare(const Threshold& threshold) const {
+  return impl_->spare(threshold);
 }
 
 double World::Query::clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough) {
@@ -694,14 +697,14 @@ bool World::Query::certified() const {
   return impl_->last_certified;
 }
 
-bool World::Query::pair_violates(const Config& q, const BodyPair& pair, const Level& level) {
+bool World::Query::pair_violates(const Config& q, const BodyPair& pair, const Threshold& threshold) {
   impl_->move_to(q);
-  return impl_->below(pair, level);
+  return impl_->below(pair, threshold);
 }
 
-bool World::Query::proves_violation(const Config& q, const BodyPair& pair, const Level& level) {
+bool World::Query::proves_violation(const Config& q, const BodyPair& pair, const Threshold& threshold) {
   impl_->move_to(q);
-  return impl_->proves_violation(pair, level);
+  return impl_->proves_violation(pair, threshold);
 }
 
 bool World::Query::violation_proof_is_cheap(const BodyPair& pair) const {
@@ -741,8 +744,8 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (world->may_touch[k]) continue;
     const BodyPair& p = pairs[k];
-    order.push_back(
-        {distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k, world->required(k, Keep::kNode)});
+    order.push_back({distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)), k,
+                     world->required(k, ClearanceRule::kNode)});
   }
   std::sort(order.begin(), order.end(), [](const Candidate& x, const Candidate& y) {
     return std::tuple(x.bound - x.required, x.pair) < std::tuple(y.bound - y.required, y.pair);

@@ -119,7 +119,7 @@ bool Witnesses::removes_node(int witness, int layer, int slot) {
   if (cause.kind == Cause::Kind::kManipulability) return !lattice_.manipulable(*q);
   if (cause.kind == Cause::Kind::kCheck) return !check_.states({&*q, 1})[0];
   return cause.kind == Cause::Kind::kPair && std::any_of(about.pairs.begin(), about.pairs.end(), [&](const BodyPair& pair) {
-           return query_.pair_violates(*q, pair, Keep::kNode);
+           return query_.pair_violates(*q, pair, ClearanceRule::kNode);
          });
 }
 
@@ -134,7 +134,8 @@ int Witnesses::of_node(int layer, int slot, int likely) {
   }
   if (!lattice_.manipulable(*q)) return number(of_kind(Cause::Kind::kManipulability));
   const auto pair = query_.find_violating_pair(
-      *q, Keep::kNode, is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(likely)].pairs[0]) : std::nullopt);
+      *q, ClearanceRule::kNode,
+      is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(likely)].pairs[0]) : std::nullopt);
   if (pair) return number(*pair);
   if (check_ && !check_.states({&*q, 1})[0]) {
     Cause cause = of_kind(Cause::Kind::kCheck);
@@ -222,7 +223,7 @@ bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer
     const Config& from = k == 0 ? move.from : between.rows[k - 1];
     const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
     for (const BodyPair& pair : about.pairs)
-      if ((k < between.rows.size() && query_.pair_violates(to, pair, Keep::kNode)) ||
+      if ((k < between.rows.size() && query_.pair_violates(to, pair, ClearanceRule::kNode)) ||
           (lattice_.limits().edges == EdgeMode::kContinuous && edge_blocked_by(pair, query_, rule_, from, to, budget_)))
         return true;
   }
@@ -239,7 +240,7 @@ int Witnesses::of_layers(int layer, int a, int b, const Move& move, int likely) 
     const Config& from = k == 0 ? move.from : between.rows[k - 1];
     const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
     if (k < between.rows.size())
-      if (const auto pair = query_.find_violating_pair(to, Keep::kNode)) return number(*pair);
+      if (const auto pair = query_.find_violating_pair(to, ClearanceRule::kNode)) return number(*pair);
     if (lattice_.limits().edges == EdgeMode::kContinuous)
       if (const auto pair = edge_blocked(query_, rule_, from, to, budget_)) return number(*pair);
   }

@@ -142,12 +142,12 @@ Cause Constraints::cause(int constraint) const {
   return cause;
 }
 
-void Constraints::add_other_pairs(const Config& q, const Level& level, Violations& found) {
+void Constraints::add_other_pairs(const Config& q, const Threshold& threshold, Violations& found) {
   for (const BodyPair& other : world_.pairs()) {
     const int number = pair(other);
     if (found.has(number) || (number >= 0 && left(of(number), found.waived) == 0)) continue;
     ++pairs_;
-    if (query_.pair_violates(q, other, level) && found.add(number)) return;
+    if (query_.pair_violates(q, other, threshold) && found.add(number)) return;
   }
 }
 
@@ -168,8 +168,8 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
   node.exists = true;
   if (!found.done() && !lattice_.manipulable(node.q)) found.add(kManipulability);
   if (!found.done())
-    if (const auto first = query_.find_violating_pair(node.q, Keep::kNode))
-      if (!found.add(pair(*first))) add_other_pairs(node.q, Keep::kNode, found);
+    if (const auto first = query_.find_violating_pair(node.q, ClearanceRule::kNode))
+      if (!found.add(pair(*first))) add_other_pairs(node.q, ClearanceRule::kNode, found);
   if (check_ && found.set == 0 && !found.uncounted) {
     ++checked_;
     if (!check_.states({&node.q, 1})[0]) found.add(kCheck);
@@ -214,7 +214,7 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
     if (const auto first = edge_blocked(query_, rule_, qa, qa + delta, budget_))
       if (!found.add(pair(*first)))
         for (const double t : {0.25, 0.5, 0.75})
-          if (!found.done()) add_other_pairs(qa + t * delta, Keep::kMotion, found);
+          if (!found.done()) add_other_pairs(qa + t * delta, ClearanceRule::kMotion, found);
   if (check_.checks_motions() && found.set == 0 && !found.uncounted && from.violated == 0 && to.violated == 0) {
     ++checked_;
     const StateCheck::Motion motion{qa, qa + delta};
@@ -282,8 +282,8 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
   }
   for (const Config& q : between.rows)
-    if (const auto first = query_.find_violating_pair(q, Keep::kNode)) {
-      if (!found.add(pair(*first))) add_other_pairs(q, Keep::kNode, found);
+    if (const auto first = query_.find_violating_pair(q, ClearanceRule::kNode)) {
+      if (!found.add(pair(*first))) add_other_pairs(q, ClearanceRule::kNode, found);
       if (found.done()) return;
     }
   if (lattice_.limits().edges != EdgeMode::kContinuous) return;
@@ -314,13 +314,13 @@ Cause Constraints::measured(int constraint, int, const Config& q) {
   } else if (cause.kind == Cause::Kind::kPair) {
     // A link may have several bodies: the nearest counts.
     for (const BodyPair& p : world_.pairs()) {
-      if (world_.names(p) != cause.bodies || !query_.pair_violates(q, p, Keep::kNode)) continue;
-      const double keeps = world_.keeps(p).node;
-      const auto value = keeps < 0 ? -query_.depth(q, p).at_least : clearance(p, q, keeps);
+      if (world_.names(p) != cause.bodies || !query_.pair_violates(q, p, ClearanceRule::kNode)) continue;
+      const double required = world_.required_clearance(p).node;
+      const auto value = required < 0 ? -query_.depth(q, p).at_least : clearance(p, q, required);
       if (!cause.value || (value && *value < *cause.value)) {
         cause.value = value;
-        cause.limit = keeps;
-        if (const double allowed = world_.keeps(p).motion; keeps < 0 && allowed < keeps) cause.over = -allowed;
+        cause.limit = required;
+        if (const double allowed = world_.required_clearance(p).motion; required < 0 && allowed < required) cause.over = -allowed;
       }
     }
     if (cause.value == 0.0) cause.kind = Cause::Kind::kContact;
@@ -338,9 +338,9 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
     for (const Config& q : lattice_.between(layer, a, qa, b, qb).rows) rows.push_back(q);
   rows.push_back(rows.back() + lattice_.delta(rows.back(), qb));
   for (const BodyPair& p : world_.pairs()) {  // a link may have several bodies
-    const PairKeeps keeps = world_.keeps(p);
-    if (keeps.motion >= 0 || world_.names(p) != cause.bodies) continue;
-    const double allowed = by_rows ? -keeps.node : -(keeps.motion + keeps.tolerance);
+    const RequiredClearance required = world_.required_clearance(p);
+    if (required.motion >= 0 || world_.names(p) != cause.bodies) continue;
+    const double allowed = by_rows ? -required.node : -(required.motion + required.tolerance);
     double deepest = allowed;  // at least: else nothing would be violated
     for (std::size_t k = 1; k < rows.size(); ++k)
       for (int part = k == 1 ? 0 : 1; part <= kParts; ++part)
@@ -348,7 +348,7 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
     if (cause.value && -deepest >= *cause.value) continue;
     cause.value = -deepest;
     cause.limit = -allowed;
-    cause.over = keeps.motion < -allowed ? std::optional(-keeps.motion) : std::nullopt;
+    cause.over = required.motion < -allowed ? std::optional(-required.motion) : std::nullopt;
   }
 }
 

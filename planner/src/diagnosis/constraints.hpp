@@ -118,7 +118,7 @@ class Constraints {
   static constexpr int kUnmet = -2;
   [[nodiscard]] int met(const BodyPair& pair);
   [[nodiscard]] std::pair<double, double> limits_of(int k) const;
-  void add_other_pairs(const Config& q, const Level& level, Violations& found);
+  void add_other_pairs(const Config& q, const Threshold& threshold, Violations& found);
   /// Adds what the move `moved` from `from` violates by its size. `bound` is what each joint may
   /// move by its speed; `more` is added to all bounds.
   void add_steps(const Config& from, const Config& moved, const Config& bound, const Config& more, Violations& found) const;

@@ -67,7 +67,7 @@ class LayerBlockers {
     const auto k = static_cast<std::size_t>(slot);
     if (known_[k] == kUnknown) return ask(layer, slot, q);
     for (int pair = 0; !asked_[k] && pair < known_[k]; ++pair)
-      if (query_.pair_violates(q, world_.pairs()[static_cast<std::size_t>(pair)], Keep::kNode)) known_[k] = pair;
+      if (query_.pair_violates(q, world_.pairs()[static_cast<std::size_t>(pair)], ClearanceRule::kNode)) known_[k] = pair;
     asked_[k] = 1;
     if (!lattice_.manipulable(q)) return kManipulability;
     return known_[k];
@@ -85,7 +85,7 @@ class LayerBlockers {
     const auto k = static_cast<std::size_t>(slot);
     asked_[k] = 1;
     if (!lattice_.manipulable(q)) return known_[k] = kManipulability;
-    const auto pair = query_.find_violating_pair(q, Keep::kNode);
+    const auto pair = query_.find_violating_pair(q, ClearanceRule::kNode);
     if (!pair) return known_[k] = kFree;
     const auto& pairs = world_.pairs();
     known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());

@@ -100,8 +100,9 @@ class OpenParts {
       const BodyPair& bodies = world.pairs()[k];
       const int of_a = group(bodies.a), of_b = group(bodies.b);
       const Chain::Joints joints = world.joints_between(bodies);
-      Pair pair{bodies.a, bodies.b, world.required(k, Keep::kNode), kNever, (of_a > 0) + (of_b > 0), joints.first, joints.last};
-      if (asks_moves_) pair.move = world.required(k, Keep::kMidpoint);
+      Pair pair{bodies.a,     bodies.b,   world.required(k, ClearanceRule::kNode), kNever, (of_a > 0) + (of_b > 0),
+                joints.first, joints.last};
+      if (asks_moves_) pair.move = world.required(k, ClearanceRule::kMidpoint);
       for (const EdgeRule::Near& near : rule.near)
         if (asks_moves_ && near.pair == bodies) pair.move = near.d_edge + near.h;
       pairs_.push_back(pair);
@@ -239,7 +240,7 @@ std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, 
   for (std::size_t k = 0; k < rows.size(); ++k) {
     budget.poll();
     if (open.rows[k])
-      if (const auto pair = query.find_violating_pair_incremental(rows[k], Keep::kNode)) return TooNear{k, *pair};
+      if (const auto pair = query.find_violating_pair_incremental(rows[k], ClearanceRule::kNode)) return TooNear{k, *pair};
     if (k > 0 && open.moves[k - 1])
       if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return TooNear{k, *pair, true};
   }

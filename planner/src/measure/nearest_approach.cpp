@@ -16,12 +16,12 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
   std::optional<NearestApproach> nearest = so_far;
   const auto is_further = [&](int row, const Config& q) {
     if (!(nearest->clearance.distance > 0)) return false;
-    const Level level(Keep::kNode, nearest->clearance.margin() + 2 * kVerdictBand);
+    const Threshold threshold(ClearanceRule::kNode, nearest->clearance.margin() + 2 * kVerdictBand);
     double* known = proved ? &(*proved)[static_cast<std::size_t>(row)] : nullptr;
-    if (known && *known >= level.more) return true;
-    if (query.find_violating_pair_incremental(q, level)) return false;
-    if (known) *known = std::max(*known, level.more + std::max(0.0, query.spare(level)));
-    return seek == Seek::kMargin || !query.find_violating_pair_incremental(q, Level(nearest->least + 2 * kVerdictBand));
+    if (known && *known >= threshold.more) return true;
+    if (query.find_violating_pair_incremental(q, threshold)) return false;
+    if (known) *known = std::max(*known, threshold.more + std::max(0.0, query.spare(threshold)));
+    return seek == Seek::kMargin || !query.find_violating_pair_incremental(q, Threshold(nearest->least + 2 * kVerdictBand));
   };
   int looked_at = 0;
   const auto look_at = [&](int row) {

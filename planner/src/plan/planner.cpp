@@ -118,7 +118,7 @@ void list_special_pairs(const World& world, PlanResult& result) {
   for (const RobotPair& p : world.robot_pairs())
     if (p.dropped || p.reduced)
       (p.dropped ? result.dropped_pairs : result.reduced_pairs)
-          .push_back({world.names(p.pair), p.median, p.keeps.node, p.keeps.motion});
+          .push_back({world.names(p.pair), p.median, p.required.node, p.required.motion});
 }
 
 PlanStatus stopped_status(const Budget& budget) {

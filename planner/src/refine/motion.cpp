@@ -110,7 +110,8 @@ class Bisection {
     constexpr double kInside = 1e-4, kClear = 1e-4;  // rad, m: so that samples beside are allowed as well
     TrajectoryRow row;
     row.q = q;
-    return !fault_of_joints(*chain_, problem_->limits, row, kInside) && !query_.find_violating_pair(q, Level(Keep::kNode, kClear));
+    return !fault_of_joints(*chain_, problem_->limits, row, kInside) &&
+           !query_.find_violating_pair(q, Threshold(ClearanceRule::kNode, kClear));
   }
 
   const Chain* chain_;

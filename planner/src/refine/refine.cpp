@@ -102,15 +102,17 @@ class Judge {
   /// the given path, whose distances from limits and singularities need not be exceeded. `jumps`:
   /// the path passes through a singularity at this node, so that it should be near one.
   [[nodiscard]] bool node(int layer, const Config& q, const Config& given, bool jumps = false) {
-    if (!valid(layer, q, given, jumps) || at_.find_violating_pair_incremental(q, Level(Keep::kNode, extra_))) return false;
+    if (!valid(layer, q, given, jumps) || at_.find_violating_pair_incremental(q, Threshold(ClearanceRule::kNode, extra_)))
+      return false;
     // The motions from and to the node will have to keep this: failing here, the node's bisection
     // ends at the right place, whereas a failing motion only shrinks roughly.
-    if (problem_->limits.edges == EdgeMode::kContinuous && at_.find_violating_pair_incremental(q, Keep::kMidpoint)) return false;
+    if (problem_->limits.edges == EdgeMode::kContinuous && at_.find_violating_pair_incremental(q, ClearanceRule::kMidpoint))
+      return false;
     return check_.states({&q, 1})[0];
   }
   /// Returns true if the node is valid without the margins of refinement.
   [[nodiscard]] bool bare_node(int layer, const Config& q) {
-    return valid(layer, q, q, false) && !at_.find_violating_pair_incremental(q, Keep::kNode) && check_.states({&q, 1})[0];
+    return valid(layer, q, q, false) && !at_.find_violating_pair_incremental(q, ClearanceRule::kNode) && check_.states({&q, 1})[0];
   }
 
   [[nodiscard]] bool edge(int layer, const TrajectoryRow& a, const TrajectoryRow& b) {

@@ -140,14 +140,14 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
     return is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, pair);
   };
   if (question.only_scene && likely && query.violation_proof_is_cheap(*likely)) {
-    if (!query.proves_violation(*q, *likely, Keep::kNode)) return {.valid = true};
+    if (!query.proves_violation(*q, *likely, ClearanceRule::kNode)) return {.valid = true};
     return failure(*likely, shared(*likely));
   }
-  const auto pair = question.only_scene
-                        ? query.find_violating_pair_with_scene(*q, Keep::kNode, likely)
-                        : query.find_violating_pair_incremental(*q, Keep::kNode, open.only_changed ? std::nullopt : likely);
+  const auto pair = question.only_scene ? query.find_violating_pair_with_scene(*q, ClearanceRule::kNode, likely)
+                                        : query.find_violating_pair_incremental(*q, ClearanceRule::kNode,
+                                                                                open.only_changed ? std::nullopt : likely);
   if (!pair) {
-    if (open.only_changed) open.spare = query.spare(Keep::kNode);
+    if (open.only_changed) open.spare = query.spare(ClearanceRule::kNode);
     return {.valid = true};
   }
   return failure(*pair, shared(*pair));
@@ -158,7 +158,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
 /// which the bodies have the same poses.
 bool CollisionValidity::fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
   const double margin = row_margin_.from_node(question.layer, question.q, pair);
-  return std::isfinite(margin) && query.proves_violation(question.q, pair, Level(Keep::kNode, -margin));
+  return std::isfinite(margin) && query.proves_violation(question.q, pair, Threshold(ClearanceRule::kNode, -margin));
 }
 
 unsigned groups_of(const World& world, const BodyPair& pair) {
@@ -179,8 +179,8 @@ bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_
                const Config& node, const Config& row, const BodyPair& pair) {
   if (!lattice.shares_body_poses(groups_of(world, pair))) return false;
   const double apart = row_margin.between_rows(layer, node, pair);
-  if (apart > 0) return std::isfinite(apart) && query.proves_violation(row, pair, Level(Keep::kNode, -apart));
-  return query.certified() || query.pair_violates(row, pair, Level(Keep::kNode, -kVerdictBand));
+  if (apart > 0) return std::isfinite(apart) && query.proves_violation(row, pair, Threshold(ClearanceRule::kNode, -apart));
+  return query.certified() || query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {
@@ -230,7 +230,7 @@ bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, 
   Lattice::Between between = lattice_->between(x.layer, x.a, qa, x.b, qb);
   if (between.fault != Lattice::Between::Fault::kNone) return false;
   for (const Config& q : between.rows)
-    if (const auto pair = query.find_violating_pair_incremental(q, Keep::kNode)) {
+    if (const auto pair = query.find_violating_pair_incremental(q, ClearanceRule::kNode)) {
       open.pair = *pair;
       return false;
     }

@@ -105,7 +105,7 @@ class Contacts {
     const auto& name = world_.body_names();
     return "'" + name[static_cast<std::size_t>(pair.a)] + "' and '" + name[static_cast<std::size_t>(pair.b)] + "'";
   }
-  [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const { return world_.keeps(pair); }
+  [[nodiscard]] RequiredClearance required_clearance(const BodyPair& pair) const { return world_.required_clearance(pair); }
   [[nodiscard]] std::int64_t fcl_calls() const { return query_.counters().fcl_calls; }
 
  private:
@@ -439,7 +439,7 @@ class Check {
       fail("row %zu: %s touch", k, contacts_.names(clearance->pair).c_str());
     else if (!(clearance->margin() >= 0))
       fail("row %zu: clearance %.3f mm between %s is below %.3f mm", k, 1e3 * clearance->distance,
-           contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.keeps(clearance->pair).node);
+           contacts_.names(clearance->pair).c_str(), 1e3 * contacts_.required_clearance(clearance->pair).node);
   }
 
   /// Examines the clearance of all rows and moves, whose joints have passed.
@@ -448,13 +448,13 @@ class Check {
     for (const TrajectoryRow& row : rows_) joints.push_back(row.q);
     const auto found = contacts_.first_along(limits_, joints);
     if (!found) return;
-    const PairKeeps keeps = contacts_.keeps(found->pair);
+    const RequiredClearance required = contacts_.required_clearance(found->pair);
     if (found->between)
       fail_move(found->row, found->pair);
     else
-      fail(keeps.node < 0 ? "row %zu: %s are more than %.3f mm deep in each other"
-                          : "row %zu: clearance between %s is below %.3f mm",
-           found->row, contacts_.names(found->pair).c_str(), 1e3 * std::abs(keeps.node));
+      fail(required.node < 0 ? "row %zu: %s are more than %.3f mm deep in each other"
+                             : "row %zu: clearance between %s is below %.3f mm",
+           found->row, contacts_.names(found->pair).c_str(), 1e3 * std::abs(required.node));
   }
 
   /// Returns by how much rolls may exceed their bounds, rad.
@@ -510,10 +510,10 @@ class Check {
 
   /// Fails the move to row k, on which the two bodies come too near.
   void fail_move(std::size_t k, const BodyPair& pair) {
-    const double keeps = contacts_.keeps(pair).motion;
-    fail(keeps < 0 ? "rows %zu-%zu: %s may come more than %.3f mm deep into each other"
-                   : "rows %zu-%zu: %s come closer than %.3f mm",
-         k - 1, k, contacts_.names(pair).c_str(), 1e3 * std::abs(keeps));
+    const double required = contacts_.required_clearance(pair).motion;
+    fail(required < 0 ? "rows %zu-%zu: %s may come more than %.3f mm deep into each other"
+                      : "rows %zu-%zu: %s come closer than %.3f mm",
+         k - 1, k, contacts_.names(pair).c_str(), 1e3 * std::abs(required));
   }
 
   /// Returns true if the tool has the same pose at row k - 1 and at row k; it may have turned away

@@ -45,7 +45,7 @@ class Plain {
     if (is_new) {
       const auto q = lattice_->row(layer, slot);
       at->second = q && lattice_->chain().manipulability(*q) >= lattice_->limits().manipulability &&
-                   !query_.find_violating_pair(*q, Keep::kNode);
+                   !query_.find_violating_pair(*q, ClearanceRule::kNode);
     }
     return at->second;
   }

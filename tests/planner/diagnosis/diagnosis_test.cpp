@@ -45,7 +45,7 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   for (int slot = 0; slot < laid.lattice.width(); ++slot) {
     const auto q = laid.lattice.row(layer, slot);
     if (!q) continue;
-    const auto pair = query.find_violating_pair(*q, Keep::kNode);
+    const auto pair = query.find_violating_pair(*q, ClearanceRule::kNode);
     const auto& names = laid.robot.world().body_names();
     const auto name = [&](int body) { return names[static_cast<std::size_t>(body)]; };
     ++reasons[!laid.lattice.manipulable(*q) ? "manipulability" : pair ? name(pair->a) + " - " + name(pair->b) : ""];

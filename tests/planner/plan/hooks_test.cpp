@@ -65,7 +65,7 @@ class WaveCheck : public StateCheck {
       allowed[k] = wave_(states[k]) <= states_above_;
       ++asked;
       refused += !allowed[k];
-      if (world_ && query_->find_violating_pair(states[k], Keep::kNode)) ++in_collision;
+      if (world_ && query_->find_violating_pair(states[k], ClearanceRule::kNode)) ++in_collision;
     }
   }
   [[nodiscard]] bool checks_motions() const override { return motions_above_ < 1; }

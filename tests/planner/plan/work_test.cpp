@@ -151,8 +151,8 @@ TEST(Work, AskingAboutAPostureAllocatesNothing) {
   for (const Config& q : postures) {
     const std::int64_t calls = query.counters().fcl_calls;
     const std::int64_t before = allocations;
-    static_cast<void>(query.find_violating_pair(q, Keep::kNode));
-    static_cast<void>(query.find_violating_pair_incremental(q, Keep::kNode));
+    static_cast<void>(query.find_violating_pair(q, ClearanceRule::kNode));
+    static_cast<void>(query.find_violating_pair_incremental(q, ClearanceRule::kNode));
     const std::int64_t made = allocations - before;
     if (query.counters().fcl_calls != calls) continue;  // FCL allocates
     EXPECT_EQ(made, 0);

@@ -539,7 +539,7 @@ bool keeps_rules(const Good& good, const World& world, World::Query& query, cons
   const double steps = std::max(1.0, std::floor(end - begin + 1e-9));
   if (move.lpNorm<Eigen::Infinity>() > std::min(3.0, 0.9 * steps * limits.joint_step)) return false;
   if (deviation(good, a.q, b.q, begin, end, 0.5 * *limits.tool_path_error, 0.01) > 1) return false;
-  return !query.find_violating_pair(b.q, Keep::kNode) &&
+  return !query.find_violating_pair(b.q, ClearanceRule::kNode) &&
          !test::edge_blocked_plain(query, world.edge_rule(good.robot->radii()), a.q, b.q);
 }
 

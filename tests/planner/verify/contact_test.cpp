@@ -134,7 +134,8 @@ TEST(Contact, BetweenLayersIsBoundedAsWell) {
                          bounded);
   const World world(planned_in, bounded, {}, kVerdictBand);  // rows may be as deep as allowed
   World::Query query(world);
-  for (const TrajectoryRow& row : free.trajectory) deeper_at_rows += query.find_violating_pair(row.q, Keep::kNode).has_value();
+  for (const TrajectoryRow& row : free.trajectory)
+    deeper_at_rows += query.find_violating_pair(row.q, ClearanceRule::kNode).has_value();
   EXPECT_EQ(deeper_at_rows, 0);
   EXPECT_FALSE(check_trajectory(bounded, free.trajectory).passed);
   const PlanResult result = planned(bounded);

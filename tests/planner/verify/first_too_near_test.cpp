@@ -19,7 +19,7 @@ using test::Random;
 std::optional<TooNear> by_each(const World& world, const EdgeRule& rule, const Limits& limits, const std::vector<Config>& rows) {
   World::Query query(world);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (const auto pair = query.find_violating_pair(rows[k], Keep::kNode)) return TooNear{k, *pair};
+    if (const auto pair = query.find_violating_pair(rows[k], ClearanceRule::kNode)) return TooNear{k, *pair};
     if (k == 0 || limits.edges != EdgeMode::kContinuous) continue;
     if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k])) return TooNear{k, *pair, true};
   }
@@ -30,7 +30,8 @@ std::optional<TooNear> by_each(const World& world, const EdgeRule& rule, const L
 std::vector<Config> walk(const World& world, const Chain& chain, Random& random) {
   World::Query query(world);
   Config q = test::random_config(chain, random), step;
-  for (int tries = 0; tries < 30 && query.find_violating_pair(q, Keep::kNode); ++tries) q = test::random_config(chain, random);
+  for (int tries = 0; tries < 30 && query.find_violating_pair(q, ClearanceRule::kNode); ++tries)
+    q = test::random_config(chain, random);
   std::vector<Config> rows;
   const double length = std::pow(10, random.uniform(-3.5, -0.7));
   for (int left = 1 + random.below(60); left > 0; --left) {

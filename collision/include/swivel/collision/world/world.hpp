@@ -34,7 +34,7 @@ struct AllowedPair {
 };
 
 /// How near a pair may come, m; less than zero: how deep the two may be in each other.
-struct PairKeeps {
+struct RequiredClearance {
   double node = 0;       ///< on layers; contact is never allowed, save by a depth, of which a part is kept for motions
   double motion = 0;     ///< between layers
   double tolerance = 0;  ///< h: a motion is proved by midpoints that are clear by motion + h; > 0
@@ -50,24 +50,24 @@ struct PairKeeps {
 struct RobotPair {
   BodyPair pair;
   bool dropped = false;
-  bool near = false;     ///< by design: the median is small or reduces what the pair keeps
-  bool reduced = false;  ///< keeps less than other robot pairs
-  double median = 0;     ///< m, over the samples; infinite where an SRDF speaks for the pair or it is too far to matter
-  PairKeeps keeps;       ///< unless dropped
+  bool near = false;           ///< by design: the median is small or reduces what the pair keeps
+  bool reduced = false;        ///< keeps less than other robot pairs
+  double median = 0;           ///< m, over the samples; infinite where an SRDF speaks for the pair or it is too far to matter
+  RequiredClearance required;  ///< unless dropped
 };
 
 /// What every pair's clearance is compared with: a distance, or what the pair must keep, and so much more.
-enum class Keep {
+enum class ClearanceRule {
   kNothing,
-  kNode,      ///< PairKeeps::node
-  kMotion,    ///< PairKeeps::motion; pairs that are near by design, or may touch, are left to EdgeRule
-  kMidpoint,  ///< the same and PairKeeps::tolerance
+  kNode,      ///< RequiredClearance::node
+  kMotion,    ///< RequiredClearance::motion; pairs that are near by design, or may touch, are left to EdgeRule
+  kMidpoint,  ///< the same and RequiredClearance::tolerance
 };
-struct Level {
-  Level(double distance) : more(distance) {}  // implicit: "all pairs below 5 mm"
-  Level(Keep what, double and_more = 0) : keep(what), more(and_more) {}
-  Keep keep = Keep::kNothing;
-  double more = 0;  ///< m; no pair is below a level less than zero, save those that may touch
+struct Threshold {
+  Threshold(double distance) : more(distance) {}  // implicit: "all pairs below 5 mm"
+  Threshold(ClearanceRule which, double and_more = 0) : rule(which), more(and_more) {}
+  ClearanceRule rule = ClearanceRule::kNothing;
+  double more = 0;  ///< m; no pair is below a threshold less than zero, save those that may touch
 };
 
 /// A stretch of a motion that is straight in joint space, from q - half to q + half about its middle posture q. How much nearer a
@@ -80,7 +80,7 @@ struct Stretch {
 };
 
 /// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
-/// continuous joints): every pair keeps its PairKeeps::motion. docs/model.md "Motions". Made by World::edge_rule.
+/// continuous joints): every pair keeps its RequiredClearance::motion. docs/model.md "Motions". Made by World::edge_rule.
 struct EdgeRule {
   std::array<double, kDof> radii{};  ///< core motion_radii, m
   double h = 0.0005;                 ///< m; > 0
@@ -155,10 +155,10 @@ class World {
   /// is left is made where it is first needed. Safe beside questions on other threads.
   void make_ready(const std::function<bool()>& stop) const;
   /// One of pairs(): what it must keep, by the limits of this world.
-  [[nodiscard]] PairKeeps keeps(const BodyPair& pair) const;
-  /// What is asked of a pair, by its place in pairs(), m: its PairKeeps less what this world forgives. Less than zero where it may
-  /// be so deep; minus infinity where it is asked nothing.
-  [[nodiscard]] double required(std::size_t pair, Keep keep) const;
+  [[nodiscard]] RequiredClearance required_clearance(const BodyPair& pair) const;
+  /// What is asked of a pair, by its place in pairs(), m: its RequiredClearance less what this world forgives. Less than zero where
+  /// it may be so deep; minus infinity where it is asked nothing.
+  [[nodiscard]] double required(std::size_t pair, ClearanceRule rule) const;
   [[nodiscard]] const std::vector<RobotPair>& robot_pairs() const;
   /// The same with every median known, however far.
   [[nodiscard]] std::vector<RobotPair> robot_pairs_with_medians() const;
@@ -176,39 +176,39 @@ class World {
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
 
-    /// First of pairs() whose clearance at q is below its level, or none: "clearance >= level" for all pairs. The pair that is
-    /// likely to be below is asked before the others. A function of the arguments alone.
-    [[nodiscard]] std::optional<BodyPair> find_violating_pair(const Config& q, const Level& level,
+    /// First of pairs() whose clearance at q is below its threshold, or none: "clearance >= threshold" for all pairs. The pair that
+    /// is likely to be below is asked before the others. A function of the arguments alone.
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair(const Config& q, const Threshold& threshold,
                                                               const std::optional<BodyPair>& likely = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
     /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before.
     /// With Certificates::kOff nothing is kept.
-    [[nodiscard]] std::optional<BodyPair> find_violating_pair_incremental(const Config& q, const Level& level,
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_incremental(const Config& q, const Threshold& threshold,
                                                                           const std::optional<BodyPair>& likely = {});
     /// The same of `likely` and the pairs with the scene alone.
-    [[nodiscard]] std::optional<BodyPair> find_violating_pair_with_scene(const Config& q, const Level& level,
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
                                                                          const std::optional<BodyPair>& likely);
-    /// The same, where more than the level's Keep is asked of a pair only as far as it can come nearer on the stretch about q.
+    /// The same, where more than the threshold's rule is asked of a pair only as far as it can come nearer on the stretch about q.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_over_motion(const Stretch& stretch, const Config& q,
-                                                                          const Level& level);
+                                                                          const Threshold& threshold);
     /// At the posture of the last find_violating_pair_incremental or find_violating_pair_over_motion, which named no pair at this
-    /// level: as FCL sees it, every pair's clearance is more than what was asked of it by this, m; less than 0 where that is not
-    /// known.
-    [[nodiscard]] double spare(const Level& level) const;
+    /// threshold: as FCL sees it, every pair's clearance is more than what was asked of it by this, m; less than 0 where that is
+    /// not known.
+    [[nodiscard]] double spare(const Threshold& threshold) const;
     /// Without FCL: a number that the clearance of a pair, by its place in pairs(), is not below as FCL sees it, m. Looked for
     /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Certificates::kOff by bounds alone.
     [[nodiscard]] double clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough);
     /// By body: how far no point of it has moved in all, m, on the chords from each posture asked about here or in
     /// find_violating_pair_incremental() to the next. Valid until the next question.
     [[nodiscard]] std::span<const double> accumulated_displacement(const Config& q);
-    /// Of the pair that one of these has just named, or proves_violation(): its clearance is proved below its level by more than
-    /// FCL may err.
+    /// Of the pair that one of these has just named, or proves_violation(): its clearance is proved below its threshold by more
+    /// than FCL may err.
     [[nodiscard]] bool certified() const;
-    /// Whether one pair's clearance is below its level.
-    [[nodiscard]] bool pair_violates(const Config& q, const BodyPair& pair, const Level& level);
-    /// Without FCL, proves that one pair's clearance is below its level, which may be below zero here: then that one body holds a
-    /// point of the other as deep inside it. False where a short search finds no proof.
-    [[nodiscard]] bool proves_violation(const Config& q, const BodyPair& pair, const Level& level);
+    /// Whether one pair's clearance is below its threshold.
+    [[nodiscard]] bool pair_violates(const Config& q, const BodyPair& pair, const Threshold& threshold);
+    /// Without FCL, proves that one pair's clearance is below its threshold, which may be below zero here: then that one body holds
+    /// a point of the other as deep inside it. False where a short search finds no proof.
+    [[nodiscard]] bool proves_violation(const Config& q, const BodyPair& pair, const Threshold& threshold);
     /// Whether proves_violation() proves most of what is below, in a fraction of the time that it takes to prove the rest free:
     /// where a mesh of many triangles is held against a box or a cylinder.
     [[nodiscard]] bool violation_proof_is_cheap(const BodyPair& pair) const;
@@ -246,12 +246,12 @@ class World {
   std::unique_ptr<Impl> impl_;
 };
 
-/// None when every pair is clear by its PairKeeps::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes too near.
-/// N is of the pair's own h. By bisection, coarse to fine: an interval is free when each pair is clear in its middle by as much as
-/// it can come nearer within the interval, blocked when its middle is below PairKeeps::motion. The query is of the world that the
-/// rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `spare`, where there is no such
-/// pair and the rule has none of its own: it would be the same if scene objects stood elsewhere by less than this, m. Throws
-/// Stopped.
+/// None when every pair is clear by its RequiredClearance::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes
+/// too near. N is of the pair's own h. By bisection, coarse to fine: an interval is free when each pair is clear in its middle by
+/// as much as it can come nearer within the interval, blocked when its middle is below RequiredClearance::motion. The query is of
+/// the world that the rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `spare`, where
+/// there is no such pair and the rule has none of its own: it would be the same if scene objects stood elsewhere by less than this,
+/// m. Throws Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                                    const Budget& budget = {}, double* spare = nullptr);
 /// Whether one pair of the world is what blocks it, whatever others do: too near at one of the midpoints. Throws Stopped.
