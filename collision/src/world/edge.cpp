@@ -92,21 +92,21 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 }  // namespace
 
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                     const Budget& budget, double* spare) {
-  if (spare) *spare = std::numeric_limits<double>::infinity();
+                                     const Budget& budget, double* slack) {
+  if (slack) *slack = std::numeric_limits<double>::infinity();
   const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& likely, const Stretch* stretch) {
     const auto pair = stretch ? query.find_violating_pair_over_motion(*stretch, q, threshold)
                               : query.find_violating_pair_incremental(q, threshold, likely);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
-    if (spare && !pair && threshold.rule == ClearanceRule::kMidpoint) *spare = std::min(*spare, query.spare(threshold));
+    if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint) *slack = std::min(*slack, query.slack(threshold));
     return pair;
   };
   if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any))
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
-  if (spare && !rule.near.empty()) *spare = 0;  // the slack of these pairs is unknown
+  if (slack && !rule.near.empty()) *slack = 0;  // the slack of these pairs is unknown
   return std::nullopt;
 }
 

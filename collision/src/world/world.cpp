@@ -577,7 +577,7 @@ struct World::Query::Impl {
     }
   }
   [[nodiscard]] double moved_together(const BodyPair& p) const { return moved[p.a] + moved[p.b]; }
-  [[nodiscard]] double spare(const Threshold& threshold) const {
+  [[nodiscard]] double slack(const Threshold& threshold) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < lower_bound.size(); ++k)
       if (const double d = required(k, threshold); world->is_asked(k, d)) {
@@ -677,8 +677,8 @@ std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const Stre
   return impl_->find_violating_pair(threshold, {}, true);
 }
 
-double World::Query::spare(const Threshold& threshold) const {
-  return impl_->spare(threshold);
+double World::Query::slack(const Threshold& threshold) const {
+  return impl_->slack(threshold);
 }
 
 double World::Query::clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough) {

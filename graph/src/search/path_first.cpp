@@ -305,7 +305,8 @@ class Search {
           beyond_reach_.push_back({layer, slot, failure});
           continue;
         }
-        if (const auto known = spared_.find(key(layer, slot)); known != spared_.end() && known->second == failure) continue;
+        if (const auto known = clear_of_scene_.find(key(layer, slot)); known != clear_of_scene_.end() && known->second == failure)
+          continue;
         wave.questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
         wave.keys.push_back(key(layer, slot));
       }
@@ -389,7 +390,7 @@ class Search {
       const NodeQuestion& x = questions[k];
       if (answers[k].valid) {
         if (x.only_scene)
-          spared_[key(x.layer, x.slot)] = x.likely;
+          clear_of_scene_[key(x.layer, x.slot)] = x.likely;
         else
           verdicts_.keep_node(x.layer, x.slot);
       } else {
@@ -443,7 +444,7 @@ class Search {
   int left_to_grow_ = 0;                 // questions about neighbours left in this round
   static constexpr std::size_t kGrownAtOnce = 32;
   // By key(): the failure that grow() asked about last, of nodes that the scene did not block.
-  std::unordered_map<std::int64_t, FailureId> spared_;
+  std::unordered_map<std::int64_t, FailureId> clear_of_scene_;
   static constexpr double kMuchDearer = 1.2;
   double first_cost_ = 0;              // cost of the first path
   std::vector<Failure> beyond_reach_;  // nodes at which regions ended

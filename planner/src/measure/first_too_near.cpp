@@ -213,10 +213,10 @@ class OpenParts {
   /// what it must on all of it.
   [[nodiscard]] bool reaches(std::size_t pair, std::size_t k, double share, double clear_from, double clear_to) const {
     const Pair& p = pairs_[pair];
-    const double spare = clear_from + clear_to - 2 * p.move;
+    const double slack = clear_from + clear_to - 2 * p.move;
     // both ends may lie off the chord
     const double off_chord = 2 * p.moving * (off_chords_[k + 1] - off_chords_[k]);
-    return spare >= share * turned(p, k, k + 1) || spare >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
+    return slack >= share * turned(p, k, k + 1) || slack >= share * (moved(p.a, k, k + 1) + moved(p.b, k, k + 1)) + 2 * off_chord;
   }
 
   const std::vector<Config>* joints_;

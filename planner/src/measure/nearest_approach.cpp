@@ -20,7 +20,7 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
     double* known = proved ? &(*proved)[static_cast<std::size_t>(row)] : nullptr;
     if (known && *known >= threshold.more) return true;
     if (query.find_violating_pair_incremental(q, threshold)) return false;
-    if (known) *known = std::max(*known, threshold.more + std::max(0.0, query.spare(threshold)));
+    if (known) *known = std::max(*known, threshold.more + std::max(0.0, query.slack(threshold)));
     return seek == Seek::kMargin || !query.find_violating_pair_incremental(q, Threshold(nearest->least + 2 * kVerdictBand));
   };
   int looked_at = 0;

@@ -90,7 +90,7 @@ ClearanceMemory::Holds ClearanceMemory::holds(const Finding& finding) {
   }
   if (finding.plan == 0 || finding.plan < unchanged_since_) return Holds::kNothing;
   if (changed_.empty() || finding.plan == plan_) return Holds::kAll;
-  const bool kept = finding.spare > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.spare;
+  const bool kept = finding.slack > 0 && finding.plan >= run_ && moved_since(finding.plan) < finding.slack;
   return kept ? Holds::kAll : Holds::kUnlessChanged;
 }
 
@@ -104,13 +104,13 @@ const ClearanceMemory::Finding* ClearanceMemory::edge(int layer, int a, int b) c
   return found == edges_.end() ? nullptr : &found->second;
 }
 
-void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double spare) {
-  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair, false, spare}, question.q, answer}});
+void ClearanceMemory::note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double slack) {
+  noted_nodes_.push_back({key(question.layer, question.slot), {{plan_, answer.valid, pair, false, slack}, question.q, answer}});
 }
 
-void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double spare) {
+void ClearanceMemory::note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack) {
   noted_edges_.push_back(
-      {{key(question.layer, question.a), question.b}, {{plan_, valid, pair, false, spare}, question.qa, question.qb}});
+      {{key(question.layer, question.a), question.b}, {{plan_, valid, pair, false, slack}, question.qa, question.qb}});
 }
 
 void ClearanceMemory::learn() {

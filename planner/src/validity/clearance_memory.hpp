@@ -29,7 +29,7 @@ class ClearanceMemory {
     bool listed = false;      ///< in the list of failures, although it may be valid by now
     /// If valid: it stays valid as long as none of the objects that had changed when it was found
     /// moves by this much, m.
-    double spare = -1;
+    double slack = -1;
   };
   struct NodeFinding : Finding {
     Config q;
@@ -58,12 +58,12 @@ class ClearanceMemory {
   [[nodiscard]] const Finding* edge(int layer, int a, int b) const;
   /// Returns how much of a finding holds for the present plan.
   [[nodiscard]] Holds holds(const Finding& finding);
-  /// Stores the answer about a node. `pair` is the pair that fails, or kNoPair; `spare` is
-  /// Finding::spare.
-  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double spare);
-  /// Stores the answer about an edge. `pair` is the pair that fails, or kNoPair; `spare` is
-  /// Finding::spare.
-  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double spare);
+  /// Stores the answer about a node. `pair` is the pair that fails, or kNoPair; `slack` is
+  /// Finding::slack.
+  void note_node(const NodeQuestion& question, const NodeAnswer& answer, const BodyPair& pair, double slack);
+  /// Stores the answer about an edge. `pair` is the pair that fails, or kNoPair; `slack` is
+  /// Finding::slack.
+  void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack);
 
   /// Returns all nodes and edges that fail, in the order in which they were found.
   [[nodiscard]] AskedFirst failures() const;

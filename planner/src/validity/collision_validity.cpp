@@ -112,7 +112,7 @@ void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::
   if (memory_)
     for (const Open& open : open_)
       if (const NodeQuestion& x = questions[open.index]; !x.only_scene || !answers[open.index].valid)
-        memory_->note_node(x, answers[open.index], open.pair, open.spare);
+        memory_->note_node(x, answers[open.index], open.pair, open.slack);
 }
 
 NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
@@ -147,7 +147,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
                                         : query.find_violating_pair_incremental(*q, ClearanceRule::kNode,
                                                                                 open.only_changed ? std::nullopt : likely);
   if (!pair) {
-    if (open.only_changed) open.spare = query.spare(ClearanceRule::kNode);
+    if (open.only_changed) open.slack = query.slack(ClearanceRule::kNode);
     return {.valid = true};
   }
   return failure(*pair, shared(*pair));
@@ -204,7 +204,7 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
   ask_open(
       [&](Open& open, int worker, Queries& queries) { answers[open.index] = edge(questions[open.index], open, worker, queries); });
   if (memory_)
-    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.spare);
+    for (const Open& open : open_) memory_->note_edge(questions[open.index], answers[open.index] != 0, open.pair, open.slack);
 }
 
 bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
@@ -218,7 +218,7 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
                              !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
     return false;
   if (edge_mode_ == EdgeMode::kNodes) return true;
-  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_, &open.spare)
+  const auto blocked = open.only_changed ? edge_blocked(*queries.changed, changed_rule_, *qa, *qa + move, budget_, &open.slack)
                                          : edge_blocked(queries.whole, rule_, *qa, *qa + move, budget_);
   if (blocked) open.pair = *blocked;
   return !blocked;

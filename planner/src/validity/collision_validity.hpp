@@ -52,7 +52,7 @@ class CollisionValidity final : public Validity {
     bool only_changed = false;
     /// on entry the pair to test first; then the pair that fails
     BodyPair pair = ClearanceMemory::kNoPair;
-    double spare = -1;  ///< see ClearanceMemory::Finding
+    double slack = -1;  ///< see ClearanceMemory::Finding
   };
   [[nodiscard]] Queries make_queries() const;
   /// Calls ask(open, worker, queries) for each open question on the executor's threads; beside

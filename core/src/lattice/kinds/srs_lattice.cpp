@@ -175,8 +175,8 @@ SrsLattice::Images SrsLattice::images_between(double lower, double upper, double
   images.count = std::max(1, static_cast<int>(whole) + (rest > kSliver ? 1 : 0));
   const double length = images.count * kTwoPi;
   // What is wider by the fit error at both ends must not be another image of what is there already.
-  const double spare = std::max(0.0, (length - (upper - lower)) / 2);
-  images.base = lower - kLimitTolerance - std::min(fit_error, spare);
+  const double slack = std::max(0.0, (length - (upper - lower)) / 2);
+  images.base = lower - kLimitTolerance - std::min(fit_error, slack);
   images.upper = upper + kLimitTolerance + fit_error;
   // A range of a sliver more than whole turns is cut off by the sliver: at the upper end, or at the lower where the start is there.
   if (start >= images.base + length) images.base = upper + kLimitTolerance - length;

@@ -27,7 +27,7 @@ const LayerNodes& RollCostToGo::nodes(int layer, int rank) {
   if (!solved.kept) {
     // The oldest layers make room, except the two that are being joined.
     while (bytes_ > kMostBytes && kept_.size() > 2) forget(kept_.front());
-    solved.of_roll.swap(spare_);
+    solved.of_roll.swap(recycled_);
     solved.of_roll.resize(static_cast<std::size_t>(lattice_->rolls()));
     solved.done.assign(solved.of_roll.size(), 0);
     solved.kept = true;
@@ -49,7 +49,7 @@ void RollCostToGo::forget(int layer) {
   if (!solved.kept) return;
   for (std::size_t r = 0; r < solved.done.size(); ++r)
     if (solved.done[r]) bytes_ -= solved.of_roll[r].bytes();
-  spare_.swap(solved.of_roll);
+  recycled_.swap(solved.of_roll);
   solved = {};
   std::erase(kept_, layer);
 }

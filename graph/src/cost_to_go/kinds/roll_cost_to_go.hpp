@@ -60,7 +60,7 @@ class RollCostToGo final : public LayerValues {
   std::vector<Solved> solved_;  // [layer]
   std::vector<int> kept_;       // layers, in the order in which they were first wanted
   std::size_t bytes_ = 0;
-  std::vector<LayerNodes> spare_;  // arrays of a layer that was forgotten, for the next
+  std::vector<LayerNodes> recycled_;  // arrays of a layer that was forgotten, for the next
 };
 
 }  // namespace swivel

@@ -194,7 +194,7 @@ class World {
     /// At the posture of the last find_violating_pair_incremental or find_violating_pair_over_motion, which named no pair at this
     /// threshold: as FCL sees it, every pair's clearance is more than what was asked of it by this, m; less than 0 where that is
     /// not known.
-    [[nodiscard]] double spare(const Threshold& threshold) const;
+    [[nodiscard]] double slack(const Threshold& threshold) const;
     /// Without FCL: a number that the clearance of a pair, by its place in pairs(), is not below as FCL sees it, m. Looked for
     /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Certificates::kOff by bounds alone.
     [[nodiscard]] double clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough);
@@ -249,11 +249,11 @@ class World {
 /// None when every pair is clear by its RequiredClearance::motion + h at every midpoint t = (m + 1/2) / N; else a pair that comes
 /// too near. N is of the pair's own h. By bisection, coarse to fine: an interval is free when each pair is clear in its middle by
 /// as much as it can come nearer within the interval, blocked when its middle is below RequiredClearance::motion. The query is of
-/// the world that the rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `spare`, where
+/// the world that the rule is of, and keeps clearances from one motion to the next, as from one posture to the next. `slack`, where
 /// there is no such pair and the rule has none of its own: it would be the same if scene objects stood elsewhere by less than this,
 /// m. Throws Stopped.
 [[nodiscard]] std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
-                                                   const Budget& budget = {}, double* spare = nullptr);
+                                                   const Budget& budget = {}, double* slack = nullptr);
 /// Whether one pair of the world is what blocks it, whatever others do: too near at one of the midpoints. Throws Stopped.
 [[nodiscard]] bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& rule, const Config& q0,
                                    const Config& q1, const Budget& budget = {});
