@@ -212,8 +212,8 @@ TEST(EdgeRule, NoPathBendsFurther) {
       const Vector3d velocity = (at(kSmall) - at(-kSmall)) / (2 * kSmall);
       for (const double t : {-1.0, 1.0}) {
         const double bent = (at(t) - at(0) - t * velocity).norm();
-        EXPECT_LE(bent, rule.bend(half) + 1e-7);
-        most = std::max(most, bent / rule.bend(half));
+        EXPECT_LE(bent, rule.tangent_deviation(half) + 1e-7);
+        most = std::max(most, bent / rule.tangent_deviation(half));
         ++tried;
       }
     }
@@ -222,9 +222,9 @@ TEST(EdgeRule, NoPathBendsFurther) {
   EXPECT_GT(most, 0.3);  // the bound is of the right size
 }
 
-/// Stretches that are proved by the speed of their bodies are free throughout, and many of them are not by how far joints could
+/// Segments that are proved by the speed of their bodies are free throughout, and many of them are not by how far joints could
 /// move anything.
-TEST(Stretch, NoPairComesNearerThanSaid) {
+TEST(MotionSegment, NoPairComesNearerThanSaid) {
   Random random(43);
   const RobotModel robot = capsule_arm();
   const ArmModel arm = arm_of(robot);
@@ -239,21 +239,21 @@ TEST(Stretch, NoPairComesNearerThanSaid) {
       for (int k = 0; k < 40; ++k) {
         Config q = random.config(1.5);
         for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random.config(1.5);
-        Stretch stretch;
-        stretch.half = random.config(random.uniform(0, 0.15));
-        stretch.bend = rule.bend(stretch.half);
-        const auto free = [&](double reserve) {
-          stretch.reserve = reserve;
-          return !query.find_violating_pair_over_motion(stretch, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
+        MotionSegment segment;
+        segment.half = random.config(random.uniform(0, 0.15));
+        segment.tangent_deviation = rule.tangent_deviation(segment.half);
+        const auto free = [&](double margin) {
+          segment.margin = margin;
+          return !query.find_violating_pair_over_motion(segment, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
         };
         ++(free(0) ? proved : refused);
         if (!free(0)) continue;
         by_speed_alone +=
-            plain.find_violating_pair(q, Threshold(ClearanceRule::kMidpoint, rule.motion(q, q + stretch.half))).has_value();
+            plain.find_violating_pair(q, Threshold(ClearanceRule::kMidpoint, rule.motion(q, q + segment.half))).has_value();
         double least = 0, most = 1;  // m: as much as can be asked for besides
         while (most - least > kTau / 4) (free((least + most) / 2) ? least : most) = (least + most) / 2;
         for (int i = -10; i <= 10; ++i)
-          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * stretch.half, Threshold(ClearanceRule::kMidpoint, least - kTau)))
+          ASSERT_FALSE(plain.find_violating_pair(q + i / 10.0 * segment.half, Threshold(ClearanceRule::kMidpoint, least - kTau)))
               << w << " " << k << " " << i;
       }
     }

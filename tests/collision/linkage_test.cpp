@@ -126,7 +126,7 @@ TEST(LinkageWorld, MotionsAreProved) {
   EXPECT_LE(in_band, 10);
 }
 
-/// Paths of points bend no further than said, and no pair of them comes nearer than the speeds on a stretch say.
+/// Paths of points bend no further than said, and no pair of them comes nearer than the speeds on a segment say.
 TEST(LinkageWorld, StretchesAreProvedBySpeed) {
   const std::uint64_t base = test::seed("LinkageWorld.Stretches");
   int proved = 0, bends = 0;
@@ -141,26 +141,26 @@ TEST(LinkageWorld, StretchesAreProvedBySpeed) {
     for (int k = 0; k < 10; ++k) {
       Config q = random_config(1.5, random);
       for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random_config(1.5, random);
-      Stretch stretch;
-      stretch.half = random_config(random.uniform(0, 0.15), random);
-      stretch.bend = rule.bend(stretch.half);
+      MotionSegment segment;
+      segment.half = random_config(random.uniform(0, 0.15), random);
+      segment.tangent_deviation = rule.tangent_deviation(segment.half);
       for (const RobotBody& body : world.bodies()) {
         const auto at = [&](double t) -> Vector3d {
-          return chain.all_displacements(q + t * stretch.half)[static_cast<std::size_t>(body.group)] * body.pose.translation();
+          return chain.all_displacements(q + t * segment.half)[static_cast<std::size_t>(body.group)] * body.pose.translation();
         };
         constexpr double kSmall = 1e-4;
         const Vector3d velocity = (at(kSmall) - at(-kSmall)) / (2 * kSmall);
         for (const double t : {-1.0, 1.0}) {
           const double bent = (at(t) - at(0) - t * velocity).norm();
-          ASSERT_LE(bent, stretch.bend + 1e-7) << "trial " << trial << " " << body.name;
-          if (stretch.bend > 1e-4) most = std::max(most, bent / stretch.bend);
+          ASSERT_LE(bent, segment.tangent_deviation + 1e-7) << "trial " << trial << " " << body.name;
+          if (segment.tangent_deviation > 1e-4) most = std::max(most, bent / segment.tangent_deviation);
           ++bends;
         }
       }
       constexpr double kNoBound = 100;  // m
-      const auto free = [&](double reserve) {
-        stretch.reserve = reserve;
-        return !query.find_violating_pair_over_motion(stretch, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
+      const auto free = [&](double margin) {
+        segment.margin = margin;
+        return !query.find_violating_pair_over_motion(segment, q, Threshold(ClearanceRule::kMidpoint, kNoBound));
       };
       if (!free(0)) continue;
       ++proved;
@@ -168,7 +168,7 @@ TEST(LinkageWorld, StretchesAreProvedBySpeed) {
       while (greatest - least > kVerdictBand / 4) (free((least + greatest) / 2) ? least : greatest) = (least + greatest) / 2;
       for (int i = -5; i <= 5; ++i)
         ASSERT_FALSE(
-            plain.find_violating_pair(q + i / 5.0 * stretch.half, Threshold(ClearanceRule::kMidpoint, least - kVerdictBand)))
+            plain.find_violating_pair(q + i / 5.0 * segment.half, Threshold(ClearanceRule::kMidpoint, least - kVerdictBand)))
             << "trial " << trial << " " << k << " " << i;
     }
   }

@@ -14,7 +14,7 @@ double EdgeRule::motion(const Config& q0, const Config& q1, int first, int last)
   return bound;
 }
 
-double EdgeRule::bend(const Config& dq) const {
+double EdgeRule::tangent_deviation(const Config& dq) const {
   double sum = 0, before = 0;             // of joints before j
   double followers_move = 0, in_all = 0;  // m, rad
   for (int j = 0; j < kDof; ++j) {
@@ -42,7 +42,7 @@ namespace {
 /// that stretch about q. No pair comes nearer by more than `bound`, m, on the whole motion, and no
 /// point's path bends by more than `bend`, m, on half of it. Throws Stopped.
 template <class Below>
-std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double bend,
+std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t leaves, double bound, double tangent_deviation,
                                const Budget& budget, const Below& below) {
   const double step = bound / static_cast<double>(leaves);
   const Config delta = q1 - q0;
@@ -54,7 +54,7 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
     const double share = static_cast<double>(size) / static_cast<double>(leaves);
     // The bounds hold up to the ends of the interval, half a leaf beyond its outermost midpoints.
     // This half leaf must cover FCL's error.
-    const Stretch stretch{share / 2 * delta, share * share * bend, step / 2};
+    const MotionSegment segment{share / 2 * delta, share * share * tangent_deviation, step / 2};
     next.clear();
     for (const std::int64_t first : open) {
       budget.poll();
@@ -64,7 +64,7 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
         if (const auto pair = below(q, ClearanceRule::kMidpoint, std::nullopt, nullptr)) return pair;
         continue;
       }
-      const auto likely = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &stretch);
+      const auto likely = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &segment);
       if (!likely) continue;
       if (const auto pair = below(q, ClearanceRule::kMotion, likely, nullptr)) return pair;
       next.push_back(first);
@@ -82,7 +82,7 @@ double distance_of(const Threshold& threshold, const EdgeRule::Near& pair) {
 
 bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                 const Budget& budget) {
-  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const Stretch*) {
+  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const MotionSegment*) {
     return query.pair_violates(q, near.pair, distance_of(threshold, near)) ? std::optional(near.pair) : std::nullopt;
   };
   const double bound = rule.motion(q0, q1, near.first_joint, near.last);
@@ -94,15 +94,17 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                      const Budget& budget, double* slack) {
   if (slack) *slack = std::numeric_limits<double>::infinity();
-  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& likely, const Stretch* stretch) {
-    const auto pair = stretch ? query.find_violating_pair_over_motion(*stretch, q, threshold)
+  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& likely,
+                       const MotionSegment* segment) {
+    const auto pair = segment ? query.find_violating_pair_over_motion(*segment, q, threshold)
                               : query.find_violating_pair_incremental(q, threshold, likely);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
     if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint) *slack = std::min(*slack, query.slack(threshold));
     return pair;
   };
-  if (const auto pair = bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.bend((q1 - q0) / 2), budget, any))
+  if (const auto pair =
+          bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), rule.tangent_deviation((q1 - q0) / 2), budget, any))
     return pair;
   for (const EdgeRule::Near& near : rule.near)
     if (blocked_by(near, query, rule, q0, q1, budget)) return near.pair;
@@ -114,7 +116,7 @@ bool edge_blocked_by(const BodyPair& pair, World::Query& query, const EdgeRule& 
                      const Budget& budget) {
   for (const EdgeRule::Near& near : rule.near)
     if (near.pair == pair) return blocked_by(near, query, rule, q0, q1, budget);
-  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const Stretch*) {
+  const auto this_one = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>&, const MotionSegment*) {
     return query.pair_violates(q, pair, threshold) ? std::optional(pair) : std::nullopt;
   };
   return bisect(q0, q1, rule.midpoints(q0, q1), rule.motion(q0, q1), 0, budget, this_one).has_value();

@@ -166,8 +166,8 @@ struct World::Impl {
   [[nodiscard]] RequiredClearance required_of_depth(double depth) const {
     if (forgiven > 0) return {-depth, -depth, kVerdictBand};
     const double tolerance = std::min(limits.edge_tolerance, std::max(depth / 32, kVerdictBand));
-    const double reserve = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
-    return {reserve - depth, -depth, tolerance};
+    const double margin = limits.edges == EdgeMode::kContinuous ? std::min(2 * tolerance, depth / 8) : 0;
+    return {margin - depth, -depth, tolerance};
   }
   /// Returns how deep, m, the bodies of a pair may be in each other; none if no depth bounds the
   /// pair.
@@ -366,7 +366,7 @@ struct World::Query::Impl {
   std::vector<TrianglePair> witness;  // by pair: where its last proof was found
   std::vector<std::size_t> open;      // pairs whose bound does not prove them free
   // For find_violating_pair_over_motion().
-  std::optional<Stretch> stretch;
+  std::optional<MotionSegment> segment;
   /// The displacement of a group of bodies by the joint steps of a stretch, to first order: a point
   /// x, base frame, moves by origin + turn x x.
   struct Twist {
@@ -418,8 +418,8 @@ struct World::Query::Impl {
     for (int i = 0; i < static_cast<int>(world->robot->bodies.size()); ++i) place_body(i);
   }
 
-  void begin(const Stretch& asked) {
-    stretch = asked;
+  void begin(const MotionSegment& asked) {
+    segment = asked;
     place_bodies();
     const Chain& chain = world->robot->chain;
     for (int j = 0; j < displaced; ++j) {
@@ -438,7 +438,7 @@ struct World::Query::Impl {
                                  : Twist{carried.turn + motion, carried.origin + (parent * follower.point).cross(motion)};
     }
   }
-  /// Returns how much nearer two bodies can come on the stretch, m, to first order: the sum of
+  /// Returns how much nearer two bodies can come on the segment, m, to first order: the sum of
   /// their speeds relative to the group of the chain that carries both. Without followers that
   /// group carries one of the two bodies, and only the other moves.
   [[nodiscard]] double comes_nearer(const BodyPair& p) const {
@@ -465,8 +465,9 @@ struct World::Query::Impl {
   /// replaced by how far the pair can come nearer, if that is less.
   [[nodiscard]] double required(std::size_t k, const Threshold& threshold) const {
     const double d = world->required(k, threshold);
-    if (!stretch || !(threshold.more > 0)) return d;
-    return std::min(d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) + stretch->bend + stretch->reserve);
+    if (!segment || !(threshold.more > 0)) return d;
+    return std::min(
+        d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) + segment->tangent_deviation + segment->margin);
   }
 
   std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep,
@@ -595,7 +596,7 @@ struct World::Query::Impl {
       found += !(lower_bound[k] - moved_together(world->pairs[k]) >= world->required(k, threshold) + kKeptSafety);  // NaN is open
     }
     open.resize(found);
-    if (stretch) {
+    if (segment) {
       std::erase_if(open, [&](std::size_t k) {
         return lower_bound[k] - moved_together(world->pairs[k]) >= required(k, threshold) + kKeptSafety;
       });
@@ -652,28 +653,28 @@ World::Query& World::Query::operator=(Query&&) noexcept = default;
 std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Threshold& threshold,
                                                           const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
-  impl_->stretch.reset();
+  impl_->segment.reset();
   return impl_->find_violating_pair(threshold, likely, false);
 }
 
 std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Threshold& threshold,
                                                                       const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
-  impl_->stretch.reset();
+  impl_->segment.reset();
   return impl_->find_violating_pair(threshold, likely, true);
 }
 
 std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
                                                                      const std::optional<BodyPair>& likely) {
   impl_->move_to(q);
-  impl_->stretch.reset();
+  impl_->segment.reset();
   return impl_->find_violating_pair(threshold, likely, true, false);
 }
 
-std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const Stretch& stretch, const Config& q,
+std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const MotionSegment& segment, const Config& q,
                                                                       const Threshold& threshold) {
   impl_->move_to(q);
-  impl_->begin(stretch);
+  impl_->begin(segment);
   return impl_->find_violating_pair(threshold, {}, true);
 }
 

@@ -70,13 +70,13 @@ struct Threshold {
   double more = 0;  ///< m; no pair is below a threshold less than zero, save those that may touch
 };
 
-/// A stretch of a motion that is straight in joint space, from q - half to q + half about its middle posture q. How much nearer a
+/// A segment of a motion that is straight in joint space, from q - half to q + half about its middle posture q. How much nearer a
 /// pair can come on it than at q: by the speed of its bodies there, and by how far a point's path can bend away from its tangent
 /// (docs/theory.md, Lemma 9).
-struct Stretch {
+struct MotionSegment {
   Config half = Config::Zero();  ///< rad
-  double bend = 0;               ///< m, of any point; EdgeRule::bend(half)
-  double reserve = 0;            ///< m, asked for besides
+  double tangent_deviation = 0;  ///< m, of any point; EdgeRule::tangent_deviation(half)
+  double margin = 0;             ///< m, asked for besides
 };
 
 /// What edge_blocked must prove of the whole motion from q0 to q1, straight in joint space (q0 + t (q1 - q0); the caller unwraps
@@ -98,7 +98,7 @@ struct EdgeRule {
   [[nodiscard]] double motion(const Config& q0, const Config& q1, int first = 0, int last = kDof) const;
   /// A bound on how far a point's place at q + dq is from where its velocity at q would bring it, m: sum |dq_i dq_j| R_max(i,j)
   /// / 2, and of points on followers as much as these add.
-  [[nodiscard]] double bend(const Config& dq) const;
+  [[nodiscard]] double tangent_deviation(const Config& dq) const;
   /// Number of midpoints N: the smallest power of two with B / (2 N) <= tolerance, B = motion of all joints.
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1, double tolerance) const;
   [[nodiscard]] std::int64_t midpoints(const Config& q0, const Config& q1) const { return midpoints(q0, q1, h); }
@@ -188,8 +188,8 @@ class World {
     /// The same of `likely` and the pairs with the scene alone.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
                                                                          const std::optional<BodyPair>& likely);
-    /// The same, where more than the threshold's rule is asked of a pair only as far as it can come nearer on the stretch about q.
-    [[nodiscard]] std::optional<BodyPair> find_violating_pair_over_motion(const Stretch& stretch, const Config& q,
+    /// The same, where more than the threshold's rule is asked of a pair only as far as it can come nearer on the segment about q.
+    [[nodiscard]] std::optional<BodyPair> find_violating_pair_over_motion(const MotionSegment& segment, const Config& q,
                                                                           const Threshold& threshold);
     /// At the posture of the last find_violating_pair_incremental or find_violating_pair_over_motion, which named no pair at this
     /// threshold: as FCL sees it, every pair's clearance is more than what was asked of it by this, m; less than 0 where that is
