@@ -110,8 +110,8 @@ TEST(PairTest, ProofsBelowHoldHoweverBodiesMove) {
     const Pose X_b = random.pose(k % 2 == 0 ? 0.1 : 0.3);
     const FclShape fa = make_fcl_shape(a, store), fb = make_fcl_shape(b, store);
     const double d = k % 3 == 0 ? random.uniform(0, 0.05) : -random.uniform(0, 0.06);
-    TrianglePair witness;
-    if (!proves_below({&fa, &X_a}, {&fb, &X_b}, d, witness)) {
+    TrianglePair warm_start;
+    if (!proves_below({&fa, &X_a}, {&fb, &X_b}, d, warm_start)) {
       missed += d >= 0 && test.below({&fa, &X_a}, {&fb, &X_b}, d);
       continue;
     }

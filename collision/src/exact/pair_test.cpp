@@ -50,7 +50,7 @@ bool PairTest::below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d)
   return near || one_inside_other(a, b);
 }
 
-double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* witness) {
+double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* warm_start) {
   constexpr double kUnbounded = std::numeric_limits<double>::max();
   double found = 0;
   if (is_round(a)) {
@@ -61,7 +61,7 @@ double PairTest::clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, Tri
     const bool some = meshes_ == Meshes::kNear && (a.shape->mesh || b.shape->mesh) && !one_inside_solid(a, b);
     constexpr double kFarAway = 1e6;  // m
     TrianglePair anywhere;
-    const double surfaces = some ? surface_distance(a, b, 0, kFarAway, witness ? *witness : anywhere) : 0;
+    const double surfaces = some ? surface_distance(a, b, 0, kFarAway, warm_start ? *warm_start : anywhere) : 0;
     found = surfaces > kTouching ? near_distance(a, b, surfaces + kVerdictBand, kUnbounded) : whole_distance(a, b, kUnbounded);
   }
   return found <= 0 || one_inside_other(a, b) ? 0 : found;

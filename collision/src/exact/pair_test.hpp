@@ -24,9 +24,9 @@ class PairTest {
   /// counted.
   bool below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
   /// Returns the clearance of a and b, m; 0 if they touch, if one is inside the other, or if FCL
-  /// fails. `witness` is a warm start for the search for near triangles: on entry the triangles at
+  /// fails. `warm_start` is a warm start for the search for near triangles: on entry the triangles at
   /// which it begins, on return those at which it ended. The answer does not depend on it.
-  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* witness = nullptr);
+  double clearance(const PlacedShapeRef& a, const PlacedShapeRef& b, TrianglePair* warm_start = nullptr);
   [[nodiscard]] const CollisionCounters& counters() const { return counters_; }
 
  private:

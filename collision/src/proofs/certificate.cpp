@@ -168,25 +168,25 @@ bool finds_nearer(double d, const PlacedShapeRef& solid, const PlacedShapeRef& b
 
 }  // namespace
 
-double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
+double surface_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& warm_start) {
   const Pose b_in_a = a.pose->inverse(Eigen::Isometry) * *b.pose;
-  return a.shape->triangles().distance(b.shape->triangles(), b_in_a, enough, limit, witness);
+  return a.shape->triangles().distance(b.shape->triangles(), b_in_a, enough, limit, warm_start);
 }
 
-double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& witness) {
+double distance_at(const PlacedShapeRef& a, const PlacedShapeRef& b, const TrianglePair& warm_start) {
   if (!a.shape->has_triangles() || !b.shape->has_triangles()) return std::numeric_limits<double>::infinity();
-  return a.shape->triangles().distance_at(b.shape->triangles(), a.pose->inverse(Eigen::Isometry) * *b.pose, witness);
+  return a.shape->triangles().distance_at(b.shape->triangles(), a.pose->inverse(Eigen::Isometry) * *b.pose, warm_start);
 }
 
 namespace {
 
-Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness,
+Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& warm_start,
                       Expected expected) {
   if (!a.shape->has_triangles() || !b.shape->has_triangles()) return {};
   const Range range(d, margin, 0, a.shape->beyond_triangles + b.shape->beyond_triangles);
-  if (expected == Expected::kAny && (finds_nearer(range.low, b, a, witness.a) || finds_nearer(range.low, a, b, witness.b)))
+  if (expected == Expected::kAny && (finds_nearer(range.low, b, a, warm_start.a) || finds_nearer(range.low, a, b, warm_start.b)))
     return kCollides;
-  const Proof surface = range.of(surface_distance(a, b, range.low, range.far, witness));
+  const Proof surface = range.of(surface_distance(a, b, range.low, range.far, warm_start));
   if (surface.certificate == Certificate::kColliding) return surface;
   const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
   const bool inside = one_inside_other(a, b) || (surfaces_apart && one_inside_solid(a, b));
@@ -195,48 +195,49 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
 
 }  // namespace
 
-Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& witness, Expected expected) {
-  if (is_round(a)) return prove_round(a, b, d, margin, witness.b);
-  if (is_round(b)) return prove_round(b, a, d, margin, witness.a);
+Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double margin, TrianglePair& warm_start,
+            Expected expected) {
+  if (is_round(a)) return prove_round(a, b, d, margin, warm_start.b);
+  if (is_round(b)) return prove_round(b, a, d, margin, warm_start.a);
   // The capsule around a rod often proves more than the prism with its long triangles does.
   if (is_rod(a))
-    if (const Proof proof = prove_round(a, b, d, margin, witness.b); proof.certificate == Certificate::kFree) return proof;
+    if (const Proof proof = prove_round(a, b, d, margin, warm_start.b); proof.certificate == Certificate::kFree) return proof;
   if (is_rod(b))
-    if (const Proof proof = prove_round(b, a, d, margin, witness.a); proof.certificate == Certificate::kFree) return proof;
-  return prove_triangles(a, b, d, margin, witness, expected);
+    if (const Proof proof = prove_round(b, a, d, margin, warm_start.a); proof.certificate == Certificate::kFree) return proof;
+  return prove_triangles(a, b, d, margin, warm_start, expected);
 }
 
 bool are_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b) {
   return a.shape->has_triangles() && b.shape->has_triangles() && a.shape->beyond_triangles == 0 && b.shape->beyond_triangles == 0;
 }
 
-double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& witness) {
-  const double surfaces = surface_distance(a, b, enough, limit, witness);
+double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double enough, double limit, TrianglePair& warm_start) {
+  const double surfaces = surface_distance(a, b, enough, limit, warm_start);
   return surfaces > 0 && (one_inside_other(a, b) || one_inside_solid(a, b)) ? 0 : surfaces;
 }
 
-bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness) {
-  if (!are_triangles(a, b)) return prove(a, b, d, 0, witness).certificate == Certificate::kFree;
+bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& warm_start) {
+  if (!are_triangles(a, b)) return prove(a, b, d, 0, warm_start).certificate == Certificate::kFree;
   const double far = d + kTriangleBand;
-  return triangle_distance(a, b, far, far, witness) >= far;
+  return triangle_distance(a, b, far, far, warm_start) >= far;
 }
 
-bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& witness) {
+bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& warm_start) {
   if (is_round(b) && !is_round(a)) {
-    TrianglePair swapped{witness.b, witness.a};
+    TrianglePair swapped{warm_start.b, warm_start.a};
     const bool proved = proves_below(b, a, d, swapped);
-    witness = {swapped.b, swapped.a};
+    warm_start = {swapped.b, swapped.a};
     return proved;
   }
   const double low = d - kVerdictBand - kRounding;
-  if (!is_round(a)) return finds_deeper(low, b, a, witness.a) || finds_deeper(low, a, b, witness.b);
+  if (!is_round(a)) return finds_deeper(low, b, a, warm_start.a) || finds_deeper(low, a, b, warm_start.b);
   if (b.shape->mesh) {
     const Segment core = in_frame(core_of(a), *b.pose);
     const double radius = radius_of(a);
     const auto gap = [&](const Vector3d& p) { return std::sqrt(squared_distance(core, Segment{p, Vector3d::Zero()})) - radius; };
     const auto nearer = [&](const Vector3d& p) { return gap(p) < low; };
     return b.shape->triangles().seek(
-        low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, witness.b);
+        low, gap, [&](const Triangle& t) { return any_point(nearer, t); }, warm_start.b);
   }
   // nothing but the distance of the core decides where b has no triangles of its own
   int unused = 0;

@@ -142,11 +142,11 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     if (asked - near.size() > kHalf) return kFar;
   }
   PairTest fcl(PairTest::Meshes::kNear);
-  TrianglePair witness;
+  TrianglePair warm_start;
   const auto exact = [&](const std::vector<Pose>& moved) {
     budget.poll();
     const PlacedPair placed(*this, pair, moved);
-    return fcl.clearance(placed.a(), placed.b(), &witness);
+    return fcl.clearance(placed.a(), placed.b(), &warm_start);
   };
   const auto middle_of = [&](std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(kHalf);
@@ -162,7 +162,7 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
     clearances = distances_about(near.size(), kHalf, kFarAway, 3 * kTriangleBand, [&](std::size_t k, double enough, double limit) {
       budget.poll();
       const PlacedPair placed(*this, pair, *near[k]);
-      return triangle_distance(placed.a(), placed.b(), enough, limit, witness);
+      return triangle_distance(placed.a(), placed.b(), enough, limit, warm_start);
     });
   else
     for (const auto* moved : near) clearances.push_back(exact(*moved));

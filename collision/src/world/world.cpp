@@ -361,10 +361,10 @@ struct World::Query::Impl {
   // lower bound of the distance.
   // by body, up to `moved_to`: in all, and from the posture before, m
   std::vector<double> moved, step;
-  std::vector<PlacedBound> moved_to;  // by body; empty before the first posture
-  std::vector<double> lower_bound;    // by pair, m
-  std::vector<TrianglePair> witness;  // by pair: where its last proof was found
-  std::vector<std::size_t> open;      // pairs whose bound does not prove them free
+  std::vector<PlacedBound> moved_to;     // by body; empty before the first posture
+  std::vector<double> lower_bound;       // by pair, m
+  std::vector<TrianglePair> warm_start;  // by pair: where its last proof was found
+  std::vector<std::size_t> open;         // pairs whose bound does not prove them free
   // For find_violating_pair_over_motion().
   std::optional<MotionSegment> segment;
   /// The displacement of a group of bodies by the joint steps of a stretch, to first order: a point
@@ -382,7 +382,7 @@ struct World::Query::Impl {
         moved(w.bodies.size()),
         step(w.bodies.size()),
         lower_bound(w.pairs.size(), std::numeric_limits<double>::lowest()),
-        witness(w.pairs.size()),
+        warm_start(w.pairs.size()),
         twists(kDof + 1 + w.robot->chain.followers.size()) {
     open.reserve(lower_bound.size());
     moved_to.reserve(moved.size());
@@ -485,7 +485,7 @@ struct World::Query::Impl {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
       const double d = required(k, threshold);
-      if (p != likely && world->is_asked(k, d) && is_below(p, d, witness[k])) return p;
+      if (p != likely && world->is_asked(k, d) && is_below(p, d, warm_start[k])) return p;
     }
     return std::nullopt;
   }
@@ -508,7 +508,7 @@ struct World::Query::Impl {
     place_body(p.b);
     TrianglePair none;
     const auto k = world->number_of(p);
-    return is_below(p, d, k ? witness[*k] : none);
+    return is_below(p, d, k ? warm_start[*k] : none);
   }
   bool proves_violation(const BodyPair& p, const Threshold& threshold) {
     if (certificates == Certificates::kOff) return false;
@@ -520,7 +520,7 @@ struct World::Query::Impl {
     if (d < 0 && world->may_touch[*k])
       last_certified = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
     else
-      last_certified = proves_below(placed(p.a), placed(p.b), d, witness[*k]);
+      last_certified = proves_below(placed(p.a), placed(p.b), d, warm_start[*k]);
     own.certified_colliding += last_certified;
     return last_certified;
   }
@@ -564,7 +564,7 @@ struct World::Query::Impl {
   [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return true;
-    return certificates == Certificates::kOn && proves_beyond(placed(p.a), placed(p.b), d, witness[k]);
+    return certificates == Certificates::kOn && proves_beyond(placed(p.a), placed(p.b), d, warm_start[k]);
   }
 
   void move_on() {
@@ -616,11 +616,11 @@ struct World::Query::Impl {
     // A margin that the next step uses up is not worth searching for: for bodies that are near by
     // design that search takes most of the time.
     const double last_step = step[p.a] + step[p.b];
-    const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), witness[k]) < d + last_step);
+    const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), warm_start[k]) < d + last_step);
     const double margin = lasts ? kMargin : kBoundSafety;
     if (bound_now >= d + margin) return Certificate::kFree;
     // Most pairs are free.
-    const Proof proof = prove(placed(p.a), placed(p.b), d, margin, witness[k], Expected::kFree);
+    const Proof proof = prove(placed(p.a), placed(p.b), d, margin, warm_start[k], Expected::kFree);
     lower_bound[k] = std::max(bound_now, proof.bound) + so_far;
     return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
   }
@@ -635,7 +635,7 @@ struct World::Query::Impl {
     if (!(found >= sought) && world->may_touch[k]) {
       found = std::max(found, -detail::depth(placed(p.a), placed(p.b), -sought).at_most);
     } else if (!(found >= sought) && certificates == Certificates::kOn) {
-      const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), witness[k]);
+      const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), warm_start[k]);
       if (proof.certificate == Certificate::kFree) found = std::max(found, proof.bound);
     }
     return found - kKeptSafety;
@@ -763,7 +763,7 @@ std::optional<World::Query::Clearance> World::Query::Impl::nearest(const Clearan
     // clearance.
     const double beyond = std::max(std::get<1>(least) + c.required, answer.least);
     if (std::get<0>(least) && beyond < std::numeric_limits<double>::max() && proved_beyond(c.pair, beyond)) continue;
-    const double found = test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &witness[c.pair]);
+    const double found = test.clearance(placed(pairs[c.pair].a), placed(pairs[c.pair].b), &warm_start[c.pair]);
     nearer = nearer || found < answer.least;
     answer.least = std::min(answer.least, found);
     if (const std::tuple mine{found > 0, found - c.required, c.pair}; mine < least) {
