@@ -32,8 +32,8 @@ BasinLattice::BasinLattice(const PreparedRobot& robot, const Problem& problem, c
       rules_(rules),
       world_(robot.world(), problem),
       rule_(world_.edge_rule(robot.radii())),
-      at_(world_, Certificates::kOn),
-      between_(world_, Certificates::kOn) {
+      at_(world_, DistanceProofs::kOn),
+      between_(world_, DistanceProofs::kOn) {
   const int n = lattice_->layers();
   points_.resize(at(n));
   for (int i = 0; i < n; ++i) {

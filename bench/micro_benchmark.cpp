@@ -11,7 +11,7 @@
 
 #include "context.hpp"
 #include "exact/pair_test.hpp"
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/isa.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -225,8 +225,8 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
     add("certificate" + end, [=](benchmark::State& state) {
       std::size_t undecided = 0;
       cycle(state, pairs->poses, [&](const Pose& pose) {
-        const Certificate answer = certify({&pairs->capsule, &pose}, {&pairs->other, &pairs->origin}, kAsked);
-        undecided += answer == Certificate::kNone;
+        const DistanceProof answer = prove_distance({&pairs->capsule, &pose}, {&pairs->other, &pairs->origin}, kAsked);
+        undecided += answer == DistanceProof::kNone;
         return answer;
       });
       state.counters["undecided"] = static_cast<double>(undecided) / static_cast<double>(state.iterations());
@@ -235,12 +235,12 @@ void add_collision(Fixture& c, const std::filesystem::path& problems) {
   PlanOptions options;
   options.planner = PlannerKind::kLazy;
   add("posture/kept", [&c, rows = plan(c.robot, c.problem, options).trajectory](benchmark::State& state) {
-    World::Query query(c.world, Certificates::kOn);
+    World::Query query(c.world, DistanceProofs::kOn);
     cycle(state, rows,
           [&](const TrajectoryRow& row) { return query.find_violating_pair_incremental(row.q, ClearanceRule::kNode); });
   });
-  for (const auto& [name, certificates] : {std::pair{"fcl", Certificates::kOff}, {"certificates", Certificates::kOn}}) {
-    const auto who = certificates;  // a structured binding cannot be captured
+  for (const auto& [name, distance_proofs] : {std::pair{"fcl", DistanceProofs::kOff}, {"certificates", DistanceProofs::kOn}}) {
+    const auto who = distance_proofs;  // a structured binding cannot be captured
     add(std::string("posture/") + name, [&c, who](benchmark::State& state) {
       World::Query query(c.world, who);
       cycle(state, c.nodes, [&](const Fixture::Node& x) { return query.find_violating_pair(x.q, ClearanceRule::kNode); });

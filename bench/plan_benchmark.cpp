@@ -189,7 +189,7 @@ void run(benchmark::State& state, const Scene& scene, const Case& what, const be
   for (const auto& [name, value] : {std::pair{"nodes_checked", work.nodes_checked},
                                     {"edges_checked", work.edges_checked},
                                     {"fcl_calls", work.fcl_calls},
-                                    {"certified", work.certified_free + work.certified_colliding},
+                                    {"certified", work.proved_free + work.proved_colliding},
                                     {"expansions", work.expansions},
                                     {"iterations", work.iterations},
                                     {"ik_nodes", work.ik_nodes},

@@ -143,7 +143,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   const Chain& chain = robot.arm().chain;
   const ToolPath path(waypoints_in_base(problem), problem.resolution, problem.source);
   const World world(robot.world(), problem);
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   const auto constraint = std::make_shared<OnPath>(chain, path);
   const auto valid = [&](const Eigen::VectorXd& x) {
     constexpr double kSlack = 1e-9;

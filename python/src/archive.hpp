@@ -192,8 +192,8 @@ void serialize(A& archive, TrajectoryRow& x) {
 }
 template <class A>
 void serialize(A& archive, Counters& x) {
-  auto& [ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, certified_free, certified_colliding, expansions, iterations] = x;
-  archive(ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, certified_free, certified_colliding, expansions, iterations);
+  auto& [ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding, expansions, iterations] = x;
+  archive(ik_nodes, edges, nodes_checked, edges_checked, fcl_calls, proved_free, proved_colliding, expansions, iterations);
 }
 template <class A>
 void serialize(A& archive, LatticeInfo::Grid& x) {

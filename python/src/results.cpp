@@ -155,8 +155,8 @@ py::dict counters_of(const Counters& c) {
   all["nodes_checked"] = c.nodes_checked;
   all["edges_checked"] = c.edges_checked;
   all["fcl_calls"] = c.fcl_calls;
-  all["certified_free"] = c.certified_free;
-  all["certified_colliding"] = c.certified_colliding;
+  all["certified_free"] = c.proved_free;
+  all["certified_colliding"] = c.proved_colliding;
   all["expansions"] = c.expansions;
   all["iterations"] = c.iterations;
   return all;

@@ -20,9 +20,9 @@ namespace {
 
 constexpr int kCells = 90;  // of a panel, where there is no grid
 
-/// What took FCL to find is told before what a certificate proves.
+/// What took FCL to find is told before what a distance proof proves.
 std::pair<NodeState, bool> importance(const LatticeMap::Node& node) {
-  return {node.state, !node.certified};
+  return {node.state, !node.proved};
 }
 
 /// Of one roll.
@@ -181,7 +181,7 @@ int map_cell(const LatticeMap& map, const Lattice& lattice, int layer, int slot)
 
 LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
   const Lattice& lattice = view.lattice;
-  World::Query query(view.world, Certificates::kOn);
+  World::Query query(view.world, DistanceProofs::kOn);
 
   LatticeMap map;
   map.layers = lattice.layers();
@@ -224,7 +224,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
       return fault.state == NodeState::kJointLimit ? fault : LatticeMap::Node{};
     }
     if (!lattice.manipulable(*row)) return LatticeMap::Node{NodeState::kSingular};
-    const auto decided = [](const CollisionCounters& c) { return c.certified_free + c.certified_colliding; };
+    const auto decided = [](const CollisionCounters& c) { return c.proved_free + c.proved_colliding; };
     const std::int64_t before = decided(query.counters());
     pair = query.find_violating_pair(*row, ClearanceRule::kNode);
     return LatticeMap::Node{pair ? NodeState::kBlocked : NodeState::kFree, 0, decided(query.counters()) > before};

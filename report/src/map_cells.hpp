@@ -40,8 +40,8 @@ class MapCells {
   }
 
  private:
-  /// What took FCL to find is told before what a certificate proves.
-  static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) { return {node.state, !node.certified}; }
+  /// What took FCL to find is told before what a distance proof proves.
+  static std::pair<NodeState, bool> importance(const LatticeMap::Node& node) { return {node.state, !node.proved}; }
 
   const LatticeMap& map_;
 
@@ -54,13 +54,13 @@ class MapLegend {
  public:
   explicit MapLegend(const LatticeMap& map) : map_(map) {}
   void see(const LatticeMap::Node& node) {
-    seen_.insert({-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.certified});
+    seen_.insert({-static_cast<int>(node.state), node.cause, node.state == NodeState::kFree && node.proved});
   }
   /// Most important first.
   [[nodiscard]] std::vector<std::pair<LatticeMap::Node, std::string>> entries() const {
     std::vector<std::pair<LatticeMap::Node, std::string>> result;
-    for (const auto& [state, cause, certified] : seen_) {
-      const LatticeMap::Node node{static_cast<NodeState>(-state), cause, certified};
+    for (const auto& [state, cause, proved] : seen_) {
+      const LatticeMap::Node node{static_cast<NodeState>(-state), cause, proved};
       result.emplace_back(node, meaning(node));
     }
     return result;
@@ -81,7 +81,7 @@ class MapLegend {
       case NodeState::kNotLookedAt:
         return "not looked at: its clearance did not matter";
       case NodeState::kFree:
-        return node.certified ? "free, proved by a certificate" : "free, found by FCL";
+        return node.proved ? "free, proved by a certificate" : "free, found by FCL";
       case NodeState::kBlocked:
         return "blocked by " + map_.blocker_name(node);
     }
@@ -89,7 +89,7 @@ class MapLegend {
   }
 
   const LatticeMap& map_;
-  std::set<std::tuple<int, std::uint8_t, bool>> seen_;  // minus the state, cause, certified (of free ones)
+  std::set<std::tuple<int, std::uint8_t, bool>> seen_;  // minus the state, cause, proved (of free ones)
 };
 
 }  // namespace swivel::detail

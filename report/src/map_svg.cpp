@@ -23,7 +23,7 @@ std::string colour_of(const LatticeMap::Node& node) {
     case NodeState::kNotLookedAt:
       return "#dcdcdc";
     case NodeState::kFree:
-      return node.certified ? "#7ed0b4" : "#00795a";
+      return node.proved ? "#7ed0b4" : "#00795a";
     case NodeState::kBlocked:
       return kBlockerColour[node.cause % kBlockerColour.size()];
   }

@@ -28,7 +28,7 @@ Look look_of(const LatticeMap::Node& node) {
     case NodeState::kNotLookedAt:
       return {'.', kGrey};
     case NodeState::kFree:
-      return node.certified ? Look{'+', kPaleGreen} : Look{'o', kGreen};
+      return node.proved ? Look{'+', kPaleGreen} : Look{'o', kGreen};
     case NodeState::kBlocked:
       return {static_cast<char>(node.cause < 26 ? 'a' + node.cause : '#'), kOrange};
   }

@@ -99,7 +99,7 @@ Json place_json(const Row& row) {
 }
 
 Json rows_json(const World& world, const Lattice& lattice, const std::vector<Row>& shown, const Budget& budget) {
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   const std::vector<double> errors = errors_mm(lattice, shown);
   Json rows = Json::array();
   for (std::size_t i = 0; i < shown.size(); ++i) {
@@ -189,7 +189,7 @@ struct Nearness {
 
 /// Of two bodies by name, which may have several shapes.
 Nearness nearness(const World& world, const std::array<std::string, 2>& names, const Config& q) {
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   // The largest depth that is proved, by bisection: of a point of one inside the other.
   constexpr double kDeepest = 0.5, kTelling = 1e-4;  // m
   double depth = 0;
@@ -319,7 +319,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
 /// Clearances of cells, in tenths of a millimetre and 16 bits; `kUnknown` where nothing is near or nobody asked.
 class Clearances {
  public:
-  Clearances(const World& world, std::size_t cells) : query_(world, Certificates::kOn), each_(cells / kMost + 1) {}
+  Clearances(const World& world, std::size_t cells) : query_(world, DistanceProofs::kOn), each_(cells / kMost + 1) {}
   void add(const Config& q, bool surely) {
     values.push_back(kUnknown);
     if (asked_++ % each_ != 0 && !surely) return;
@@ -415,7 +415,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
         const bool posed = shown[k].layer >= 0,
                    is_again = posed && row > 0 && shown[k].slot == shown[k - 1].slot && shown[k].layer == shown[k - 1].layer;
         states.push_back(static_cast<std::uint8_t>(static_cast<unsigned>(cell.state) | (is_again ? 32u : 0u) |
-                                                   (cell.certified ? 64u : 0u) | (posed ? 128u : 0u)));
+                                                   (cell.proved ? 64u : 0u) | (posed ? 128u : 0u)));
         causes.push_back(cell.cause);
         if (!posed || is_again) continue;
         budget.poll();

@@ -162,7 +162,7 @@ TEST(EdgeBlocked, NearPairsAgreeWithThePlainRuleAndAreProved) {
     EXPECT_EQ(wrist.first_joint, 5);
     EXPECT_EQ(wrist.last, 7);
     EXPECT_EQ(wrist.h < rule.h, gap < 0.001);
-    World::Query fast(world, Certificates::kOn), plain(world);
+    World::Query fast(world, DistanceProofs::kOn), plain(world);
     for (int k = 0; k < 60; ++k) {
       Config q0 = random.config(0.5);  // stretched, so that nothing else is near
       q0[5] = random.uniform(-2.5, 2.5);
@@ -234,8 +234,8 @@ TEST(MotionSegment, NoPairComesNearerThanSaid) {
   int proved = 0, by_speed_alone = 0, refused = 0;
   for (int w = 0; w < 60; ++w) {
     const World world(base, random_scene(random));
-    for (const Certificates certificates : {Certificates::kOn, Certificates::kOff}) {
-      World::Query query(world, certificates), plain(world);
+    for (const DistanceProofs distance_proofs : {DistanceProofs::kOn, DistanceProofs::kOff}) {
+      World::Query query(world, distance_proofs), plain(world);
       for (int k = 0; k < 40; ++k) {
         Config q = random.config(1.5);
         for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random.config(1.5);

@@ -60,7 +60,7 @@ TEST(LinkageWorld, BodiesStandWherePlainKinematicsHasThem) {
         beside.translation() = test::plain_pose(robot, static_cast<int>(link), positions) * robot.links[link].collision[0].pose *
                                Vector3d(0, 0, capsule.length / 2 + capsule.radius + gap + radius);
         const World world(bare, {{"ball", Sphere{radius}, beside, {}}});
-        World::Query query(world, random.coin() ? Certificates::kOn : Certificates::kOff);
+        World::Query query(world, random.coin() ? DistanceProofs::kOn : DistanceProofs::kOff);
         int body = -1;
         for (std::size_t i = 0; i < world.bodies().size() && body < 0; ++i)
           if (world.bodies()[i].link == static_cast<int>(link)) body = static_cast<int>(i);
@@ -75,8 +75,8 @@ TEST(LinkageWorld, BodiesStandWherePlainKinematicsHasThem) {
   EXPECT_GE(asked, test::at_least(1000));
 }
 
-/// A motion that is not blocked is free throughout, by FCL at many postures of it; and the rule by bisection, with certificates, is
-/// the plain one.
+/// A motion that is not blocked is free throughout, by FCL at many postures of it; and the rule by bisection, with distance proofs,
+/// is the plain one.
 TEST(LinkageWorld, MotionsAreProved) {
   const std::uint64_t base = test::seed("LinkageWorld.Motions");
   int free = 0, blocked = 0, by_linkages = 0, in_band = 0;
@@ -93,7 +93,7 @@ TEST(LinkageWorld, MotionsAreProved) {
     }
     const World bare(linked.robot, linked.arm, problem), world(bare, scene);
     const EdgeRule rule = world.edge_rule(motion_radii(linked.arm.chain, world.bodies()));
-    World::Query fast(world, Certificates::kOn), plain(world);
+    World::Query fast(world, DistanceProofs::kOn), plain(world);
     for (int k = 0; k < 12; ++k) {
       Config q0 = random_config(1.5, random);
       for (int again = 0; again < 20 && plain.find_violating_pair(q0, ClearanceRule::kNode); ++again)
@@ -137,7 +137,7 @@ TEST(LinkageWorld, StretchesAreProvedBySpeed) {
     const Chain& chain = linked.arm.chain;
     const World world(linked.robot, linked.arm, problem_for(linked.robot));
     const EdgeRule rule = world.edge_rule(motion_radii(chain, world.bodies()));
-    World::Query query(world, Certificates::kOn), plain(world);
+    World::Query query(world, DistanceProofs::kOn), plain(world);
     for (int k = 0; k < 10; ++k) {
       Config q = random_config(1.5, random);
       for (int again = 0; again < 20 && plain.find_violating_pair(q, 0.01); ++again) q = random_config(1.5, random);

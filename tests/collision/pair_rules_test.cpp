@@ -129,8 +129,8 @@ TEST(PairRules, APairThatIsNearByDesignStillMayNotMeet) {
     const RobotPair& wrist = find_pair(pairs, world, "l5", "l7");
     EXPECT_FALSE(wrist.dropped);
     EXPECT_NEAR(wrist.median, 0.002, 0.0004);
-    for (const Certificates certificates : {Certificates::kOff, Certificates::kOn}) {
-      World::Query query(world, certificates);
+    for (const DistanceProofs distance_proofs : {DistanceProofs::kOff, DistanceProofs::kOn}) {
+      World::Query query(world, distance_proofs);
       EXPECT_FALSE(query.find_violating_pair(apart, ClearanceRule::kNode)) << clearance;
       const auto pair = query.find_violating_pair(meeting, ClearanceRule::kNode);
       ASSERT_TRUE(pair) << clearance;

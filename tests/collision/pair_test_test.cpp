@@ -8,7 +8,7 @@
 #include <cmath>
 #include <map>
 
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 #include "reference.hpp"
 #include "seed.hpp"
 #include "shapes/bound.hpp"
@@ -41,7 +41,7 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
   PairTest test;
   MeshStore store;
   std::map<std::pair<int, int>, Tally> tally;
-  int verdicts = 0, certified = 0;
+  int verdicts = 0, proved = 0;
   double worst = 0;
   for (int ka = 0; ka < 7; ++ka)
     for (int kb = 0; kb < 7; ++kb)
@@ -76,17 +76,17 @@ TEST(PairTest, EveryPairOfKindsAgreesWithTheReference) {
           }
           const bool apart = proved_apart(fa.bound, place(fa.bound, X_a), fb.bound, place(fb.bound, X_b), d + 1e-6);
           ASSERT_FALSE(apart && below) << what;
-          const Certificate certificate = certify(pa, pb, d);
-          ASSERT_FALSE(certificate == Certificate::kFree && (truth < d || truth == 0)) << what << ", d " << d;
-          ASSERT_FALSE(certificate == Certificate::kColliding && truth >= d && truth > 0) << what << ", d " << d;
-          certified += certificate != Certificate::kNone;
+          const DistanceProof certificate = prove_distance(pa, pb, d);
+          ASSERT_FALSE(certificate == DistanceProof::kFree && (truth < d || truth == 0)) << what << ", d " << d;
+          ASSERT_FALSE(certificate == DistanceProof::kColliding && truth >= d && truth > 0) << what << ", d " << d;
+          proved += certificate != DistanceProof::kNone;
           ++verdicts;
         }
         ++(truth > 0 ? tally[{ka, kb}].apart : tally[{ka, kb}].touching);
       }
   EXPECT_EQ(test.counters().fcl_failures, 0);
   EXPECT_GT(verdicts, test::at_least(5500));
-  EXPECT_GT(certified, verdicts * 3 / 4);
+  EXPECT_GT(proved, verdicts * 3 / 4);
   for (const auto& [kinds, t] : tally) {
     const std::string what = kKinds[kinds.first] + " / " + kKinds[kinds.second];
     EXPECT_GE(t.apart, test::at_least(1)) << what;

@@ -63,7 +63,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
     scene.push_back({"panel", panel, test::random_pose(random, Vector3d(0, 0, 0.6), 0.8), {}});
     const bool special = s % 3 == 2;
     const World world(special ? without : with_srdf, scene);
-    World::Query kept(world, Certificates::kOn), plain(world, Certificates::kOn), fcl(world);
+    World::Query kept(world, DistanceProofs::kOn), plain(world, DistanceProofs::kOn), fcl(world);
     Walk walk(arm.chain, random);
     bool was_free = false;
     for (int k = 0; k < 500; ++k) {
@@ -77,7 +77,7 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
                  found = kept.find_violating_pair_incremental(q, threshold, likely);
       ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
                                  << d;
-      if (found && kept.certified()) {
+      if (found && kept.violation_is_proved()) {
         const double required = special ? world.required_clearance(*found).node + threshold.more : d;
         ASSERT_TRUE(required <= kVerdictBand || plain.pair_violates(q, *found, required - kVerdictBand));
         reduced += special && world.required_clearance(*found).node < 0.04;
@@ -148,7 +148,7 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
     const Pose near = arm.chain.tool(start) * test::random_pose(random, Vector3d(0, 0, 0.15), 0.1);
     problem.scene = {{"fine", fine, near, {}}, {"coarse", coarse, near, {}}};
     const World world(*robot.model, arm, problem);
-    World::Query query(world, Certificates::kOn), fcl(world);
+    World::Query query(world, DistanceProofs::kOn), fcl(world);
     for (int k = 0; k < 50; ++k) {
       Config q = start;
       for (int j = 0; j < kDof; ++j) q[j] += random.uniform(-0.2, 0.2);
@@ -156,7 +156,8 @@ TEST(Query, ProvesSoonThatAMeshIsTooNearToABox) {
       for (const BodyPair& pair : world.pairs()) {
         const bool too_near = fcl.pair_violates(q, pair, d), certain = query.proves_violation(q, pair, d);
         if (certain) {
-          ASSERT_TRUE(too_near && query.certified()) << "SWIVEL_TEST_SEED=" << base << " scene " << scene << " posture " << k;
+          ASSERT_TRUE(too_near && query.violation_is_proved())
+              << "SWIVEL_TEST_SEED=" << base << " scene " << scene << " posture " << k;
         }
         if (!query.violation_proof_is_cheap(pair)) continue;
         ASSERT_EQ(world.names(pair)[1], "fine");

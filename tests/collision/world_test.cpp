@@ -100,7 +100,7 @@ TEST(World, TheLikelyPairIsAskedFirst) {
   Problem problem = problem_for(robot);
   problem.scene = mixed_scene();
   const World world(robot, arm_of(robot), problem);
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   Random random(34);
   int named = 0, others = 0, none = 0;
   for (int k = 0; k < 3000; ++k) {
@@ -212,7 +212,7 @@ TEST(World, ThreadsAndHistoryChangeNothing) {
   std::vector<std::thread> threads;
   for (std::size_t t = 0; t < 4; ++t)
     threads.emplace_back([&, t] {
-      World::Query own(fresh, t < 2 ? Certificates::kOff : Certificates::kOn);
+      World::Query own(fresh, t < 2 ? DistanceProofs::kOff : DistanceProofs::kOn);
       const std::size_t n = questions.size();
       for (std::size_t k = 0; k < n; ++k) {
         const std::size_t i = t % 2 ? n - 1 - k : (k + t * n / 4) % n;

@@ -237,8 +237,8 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
   const ToolPath path(waypoints_in_base(lazy.problem), lazy.problem.resolution, "test");
   const SrsLattice lattice(robot.arm().chain, robot.srs(), path, lazy.problem);
   const World world(robot.world(), lazy.problem.scene);
-  World::Query query(world), quick(world, Certificates::kOn);
-  int certified = 0;
+  World::Query query(world), quick(world, DistanceProofs::kOn);
+  int proved = 0;
   ASSERT_EQ(lazy.map.nodes.size(), static_cast<std::size_t>(lattice.nodes()));
   std::map<NodeState, int> count;
   std::size_t k = 0;
@@ -262,10 +262,10 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
       }
       const std::int64_t asked = quick.counters().fcl_calls;
       (void)quick.find_violating_pair(*q, lazy.problem.limits.clearance);
-      ASSERT_EQ(known.certified, quick.counters().fcl_calls == asked);  // it took no FCL
-      certified += known.certified;
+      ASSERT_EQ(known.proved, quick.counters().fcl_calls == asked);  // it took no FCL
+      proved += known.proved;
       if (seen.state != NodeState::kNotLookedAt) {
-        ASSERT_EQ(seen.certified, known.certified);
+        ASSERT_EQ(seen.proved, known.proved);
       }
       const auto pair = query.find_violating_pair(*q, lazy.problem.limits.clearance);
       ASSERT_EQ(known.state, pair ? NodeState::kBlocked : NodeState::kFree);
@@ -282,8 +282,8 @@ TEST_P(Maps, StateOfEveryNodeIsThatOfPlainQuestions) {
   EXPECT_GT(count[NodeState::kJointLimit], 0);
   const int exist = static_cast<int>(
       std::count_if(full.map.nodes.begin(), full.map.nodes.end(), [](const auto& node) { return node.state >= NodeState::kFree; }));
-  std::printf("%d of %d nodes certified\n", certified, exist);
-  EXPECT_GT(certified, exist / 2);
+  std::printf("%d of %d nodes certified\n", proved, exist);
+  EXPECT_GT(proved, exist / 2);
   for (std::size_t i = 0; i < lazy.map.path.size(); ++i)
     EXPECT_EQ(lazy.map.nodes[i * static_cast<std::size_t>(lattice.width()) + static_cast<std::size_t>(lazy.map.path[i])].state,
               NodeState::kFree);

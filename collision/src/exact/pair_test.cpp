@@ -11,7 +11,7 @@
 #include <exception>
 #include <limits>
 
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 #include "swivel/core/base/timeline.hpp"
 
 namespace swivel::detail {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "exact/pair_test.hpp"
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 #include "proofs/distances_about.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "world/pair_rules.hpp"
@@ -53,15 +53,15 @@ struct PlacedPair {
   static Pose pose(const RobotBody& body, const std::vector<Pose>& moved) { return moved[body.group] * body.pose; }
   [[nodiscard]] PlacedShapeRef a() const { return {shape_a, &pose_a}; }
   [[nodiscard]] PlacedShapeRef b() const { return {shape_b, &pose_b}; }
-  [[nodiscard]] Certificate certificate(double d) const {
+  [[nodiscard]] DistanceProof prove(double d) const {
     if (proved_apart(shape_a->bound, place(shape_a->bound, pose_a), shape_b->bound, place(shape_b->bound, pose_b),
                      d + kVerdictBand))
-      return Certificate::kFree;
-    return certify(a(), b(), d);
+      return DistanceProof::kFree;
+    return prove_distance(a(), b(), d);
   }
   [[nodiscard]] bool touching(PairTest& fcl) const {
-    const Certificate proof = certificate(0);
-    return proof == Certificate::kNone ? fcl.below(a(), b(), 0) : proof == Certificate::kColliding;
+    const DistanceProof proof = prove(0);
+    return proof == DistanceProof::kNone ? fcl.below(a(), b(), 0) : proof == DistanceProof::kColliding;
   }
   const FclShape *shape_a, *shape_b;
   Pose pose_a, pose_b;
@@ -137,7 +137,7 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   near.reserve(samples.size());
   for (const auto& moved : samples) {
     budget.poll();
-    if (far == kFar || PlacedPair(*this, pair, moved).certificate(far) != Certificate::kFree) near.push_back(&moved);
+    if (far == kFar || PlacedPair(*this, pair, moved).proved(far) != DistanceProof::kFree) near.push_back(&moved);
     const std::size_t asked = static_cast<std::size_t>(&moved - samples.data()) + 1;
     if (asked - near.size() > kHalf) return kFar;
   }

@@ -8,7 +8,7 @@
 #include "exact/depth.hpp"
 #include "exact/nearest_points.hpp"
 #include "exact/pair_test.hpp"
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "world/robot_part.hpp"
@@ -346,11 +346,11 @@ const std::vector<std::string>& World::warnings() const {
 
 struct World::Query::Impl {
   const World::Impl* world;
-  Certificates certificates;
+  DistanceProofs distance_proofs;
   PairTest test;
-  CollisionCounters own;        // all but what the test counts
-  bool all_certified = false;   // no verdict of this query needed FCL
-  bool last_certified = false;  // the last verdict was a certificate's
+  CollisionCounters own;     // all but what the test counts
+  bool all_proved = false;   // no verdict of this query needed FCL
+  bool last_proved = false;  // the last verdict was a distance proof's
   std::vector<Pose> poses;
   std::vector<PlacedBound> bounds;
   Config q = Config::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -374,10 +374,10 @@ struct World::Query::Impl {
   };
   std::vector<Twist> twists;  // by group
 
-  Impl(const World::Impl& w, Certificates c)
+  Impl(const World::Impl& w, DistanceProofs c)
       : world(&w),
-        certificates(c),
-        test(c == Certificates::kOn ? PairTest::Meshes::kNear : PairTest::Meshes::kWhole),
+        distance_proofs(c),
+        test(c == DistanceProofs::kOn ? PairTest::Meshes::kNear : PairTest::Meshes::kWhole),
         in_place(w.bodies.size()),
         moved(w.bodies.size()),
         step(w.bodies.size()),
@@ -472,9 +472,9 @@ struct World::Query::Impl {
 
   std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep,
                                               bool own_too = true) {
-    all_certified = certificates != Certificates::kOff;
-    const auto found = first(threshold, likely, keep && all_certified, own_too);
-    (found ? own.certified_colliding : own.certified_free) += all_certified;
+    all_proved = distance_proofs != DistanceProofs::kOff;
+    const auto found = first(threshold, likely, keep && all_proved, own_too);
+    (found ? own.proved_colliding : own.proved_free) += all_proved;
     return found;
   }
   std::optional<BodyPair> first(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep, bool own_too) {
@@ -511,32 +511,32 @@ struct World::Query::Impl {
     return is_below(p, d, k ? warm_start[*k] : none);
   }
   bool proves_violation(const BodyPair& p, const Threshold& threshold) {
-    if (certificates == Certificates::kOff) return false;
+    if (distance_proofs == DistanceProofs::kOff) return false;
     const auto k = world->number_of(p);
     if (!k) return false;
     place_body(p.a);
     place_body(p.b);
     const double d = world->required(p, threshold);
     if (d < 0 && world->may_touch[*k])
-      last_certified = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
+      last_proved = detail::depth(placed(p.a), placed(p.b), -d, -d + kTelling).at_least > -d + kVerdictBand;
     else
-      last_certified = proves_below(placed(p.a), placed(p.b), d, warm_start[*k]);
-    own.certified_colliding += last_certified;
-    return last_certified;
+      last_proved = proves_below(placed(p.a), placed(p.b), d, warm_start[*k]);
+    own.proved_colliding += last_proved;
+    return last_proved;
   }
   bool is_below(const BodyPair& p, double d, TrianglePair& from) {
-    return d < 0 ? is_deeper(p, -d) : is_below(p, d, certify_pair(p, d, from));
+    return d < 0 ? is_deeper(p, -d) : is_below(p, d, prove_pair(p, d, from));
   }
   /// Returns true if the bodies of a pair are not proved to be at most d, m, deep in each other; a
   /// depth that the search leaves open counts as more. FCL is not called.
   bool is_deeper(const BodyPair& p, double d) {
-    last_certified = true;
+    last_proved = true;
     if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), kBoundSafety - d)) return false;
     return is_deeper(detail::depth(placed(p.a), placed(p.b), d, d + kTelling), d);
   }
   bool is_deeper(const Depth& found, double d) {
     const bool deeper = found.at_most > d;
-    last_certified = !deeper || found.at_least > d + kVerdictBand;
+    last_proved = !deeper || found.at_least > d + kVerdictBand;
     return deeper;
   }
   /// Returns what is_deeper() does for pair k, and renews the pair's lower bound.
@@ -544,27 +544,27 @@ struct World::Query::Impl {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
     lower_bound[k] = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b)) + so_far;
-    last_certified = true;
+    last_proved = true;
     if (lower_bound[k] - so_far >= kBoundSafety - d) return false;
     const Depth found = detail::depth(placed(p.a), placed(p.b), d, d + kTelling);
     lower_bound[k] = std::max(lower_bound[k], so_far - found.at_most);
     return is_deeper(found, d);
   }
-  bool is_below(const BodyPair& p, double d, Certificate certificate) {
-    last_certified = certificate != Certificate::kNone;
-    all_certified &= last_certified;
-    return last_certified ? certificate == Certificate::kColliding : test.below(placed(p.a), placed(p.b), d);
+  bool is_below(const BodyPair& p, double d, DistanceProof proved) {
+    last_proved = proved != DistanceProof::kNone;
+    all_proved &= last_proved;
+    return last_proved ? proved == DistanceProof::kColliding : test.below(placed(p.a), placed(p.b), d);
   }
-  [[nodiscard]] Certificate certify_pair(const BodyPair& p, double d, TrianglePair& from) const {
-    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return Certificate::kFree;
-    return certificates == Certificates::kOff ? Certificate::kNone : prove(placed(p.a), placed(p.b), d, 0, from).certificate;
+  [[nodiscard]] DistanceProof prove_pair(const BodyPair& p, double d, TrianglePair& from) const {
+    if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return DistanceProof::kFree;
+    return distance_proofs == DistanceProofs::kOff ? DistanceProof::kNone : prove(placed(p.a), placed(p.b), d, 0, from).proved;
   }
 
   /// Returns true if the clearance of pair k is proved to exceed d, m, without FCL.
   [[nodiscard]] bool proved_beyond(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     if (proved_apart(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b), d + kBoundSafety)) return true;
-    return certificates == Certificates::kOn && proves_beyond(placed(p.a), placed(p.b), d, warm_start[k]);
+    return distance_proofs == DistanceProofs::kOn && proves_beyond(placed(p.a), placed(p.b), d, warm_start[k]);
   }
 
   void move_on() {
@@ -604,25 +604,25 @@ struct World::Query::Impl {
     }
     own.pairs_kept += static_cast<std::int64_t>(lower_bound.size() - found);
   }
-  /// Compares the clearance of pair k with d, m, as certify_pair() does, and renews the pair's
+  /// Compares the clearance of pair k with d, m, as prove_pair() does, and renews the pair's
   /// lower bound.
-  Certificate renewed(std::size_t k, double d) {
+  DistanceProof renewed(std::size_t k, double d) {
     const BodyPair& p = world->pairs[k];
     const double so_far = moved_together(p);
     double bound_now = ball_distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     if (bound_now < d + kMargin) bound_now = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     lower_bound[k] = bound_now + so_far;
-    if (bound_now >= d + kMargin) return Certificate::kFree;
+    if (bound_now >= d + kMargin) return DistanceProof::kFree;
     // A margin that the next step uses up is not worth searching for: for bodies that are near by
     // design that search takes most of the time.
     const double last_step = step[p.a] + step[p.b];
     const bool lasts = last_step < kMargin && !(distance_at(placed(p.a), placed(p.b), warm_start[k]) < d + last_step);
     const double margin = lasts ? kMargin : kBoundSafety;
-    if (bound_now >= d + margin) return Certificate::kFree;
+    if (bound_now >= d + margin) return DistanceProof::kFree;
     // Most pairs are free.
     const Proof proof = prove(placed(p.a), placed(p.b), d, margin, warm_start[k], Expected::kFree);
     lower_bound[k] = std::max(bound_now, proof.bound) + so_far;
-    return bound_now >= d + kBoundSafety ? Certificate::kFree : proof.certificate;
+    return bound_now >= d + kBoundSafety ? DistanceProof::kFree : proof.proved;
   }
   std::optional<Clearance> nearest(const Clearance& so_far);
   double clearance_lower_bound(std::size_t k, double least, double enough) {
@@ -634,9 +634,9 @@ struct World::Query::Impl {
     if (!(found >= sought)) found = distance_bound(bound(p.a), placed_bound(p.a), bound(p.b), placed_bound(p.b));
     if (!(found >= sought) && world->may_touch[k]) {
       found = std::max(found, -detail::depth(placed(p.a), placed(p.b), -sought).at_most);
-    } else if (!(found >= sought) && certificates == Certificates::kOn) {
+    } else if (!(found >= sought) && distance_proofs == DistanceProofs::kOn) {
       const Proof proof = prove(placed(p.a), placed(p.b), least, std::max(kBoundSafety, sought - least), warm_start[k]);
-      if (proof.certificate == Certificate::kFree) found = std::max(found, proof.bound);
+      if (proof.proved == DistanceProof::kFree) found = std::max(found, proof.bound);
     }
     return found - kKeptSafety;
   }
@@ -645,7 +645,8 @@ struct World::Query::Impl {
   [[nodiscard]] const PlacedBound& placed_bound(int i) const { return bounds[i]; }
 };
 
-World::Query::Query(const World& world, Certificates certificates) : impl_(std::make_unique<Impl>(*world.impl_, certificates)) {}
+World::Query::Query(const World& world, DistanceProofs distance_proofs)
+    : impl_(std::make_unique<Impl>(*world.impl_, distance_proofs)) {}
 World::Query::~Query() = default;
 World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
@@ -694,8 +695,8 @@ std::span<const double> World::Query::accumulated_displacement(const Config& q) 
   return impl_->moved;
 }
 
-bool World::Query::certified() const {
-  return impl_->last_certified;
+bool World::Query::violation_is_proved() const {
+  return impl_->last_proved;
 }
 
 bool World::Query::pair_violates(const Config& q, const BodyPair& pair, const Threshold& threshold) {
@@ -716,7 +717,7 @@ bool World::Query::violation_proof_is_cheap(const BodyPair& pair) const {
     const auto* mesh = std::get_if<MeshPtr>(&body.shape);
     return mesh && (*mesh)->triangles.size() >= kHeavy && solid.kind == FclShape::Kind::kSolid;
   };
-  return impl_->certificates != Certificates::kOff && (held_against(a, b) || held_against(b, a));
+  return impl_->distance_proofs != DistanceProofs::kOff && (held_against(a, b) || held_against(b, a));
 }
 
 std::optional<World::Query::Clearance> World::Query::clearance(const Config& q) {

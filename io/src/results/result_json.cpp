@@ -42,8 +42,8 @@ Json counters_json(const Counters& counters) {
           {"nodes_checked", counters.nodes_checked},
           {"edges_checked", counters.edges_checked},
           {"fcl_calls", counters.fcl_calls},
-          {"certified_free", counters.certified_free},
-          {"certified_colliding", counters.certified_colliding},
+          {"certified_free", counters.proved_free},
+          {"certified_colliding", counters.proved_colliding},
           {"expansions", counters.expansions},
           {"iterations", counters.iterations}};
 }

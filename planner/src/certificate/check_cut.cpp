@@ -37,7 +37,7 @@ class Verifier {
         started_(started),
         result_(result),
         budget_(budget),
-        witnesses_(lattice, world, rule, Certificates::kOff, check, budget) {}
+        witnesses_(lattice, world, rule, DistanceProofs::kOff, check, budget) {}
 
   void run() {
     for (std::size_t k = 0; k < cut_.witnesses.size(); ++k)

@@ -37,7 +37,7 @@ class Finder {
         verdicts_(verdicts),
         budget_(budget),
         started_(view.problem.start.has_value()),
-        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()), Certificates::kOn, check, budget) {}
+        witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()), DistanceProofs::kOn, check, budget) {}
 
   Cut find() {
     Cut cut;
@@ -235,7 +235,7 @@ Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<S
     own->sweep(view.lattice.layers() - 1);
     Executor executor(1);
     CollisionValidity validity(view.lattice, view.world, view.world.edge_rule(view.robot.radii()), view.problem.limits.edges,
-                               Certificates::kOn, executor, 1, budget);
+                               DistanceProofs::kOn, executor, 1, budget);
     HookedValidity hooked(view.lattice, validity, {check, nullptr}, budget);
     SearchCounters counters;
     static_cast<void>(path_first(*own, hooked, {}, counters));

@@ -16,9 +16,9 @@ bool beyond(const std::array<double, 3>& deviation, double most) {
 
 }  // namespace
 
-Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
+Witnesses::Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, DistanceProofs distance_proofs,
                      const std::shared_ptr<StateCheck>& check, const Budget& budget)
-    : lattice_(lattice), world_(world), rule_(rule), check_(check, budget), query_(world, certificates), budget_(budget) {}
+    : lattice_(lattice), world_(world), rule_(rule), check_(check, budget), query_(world, distance_proofs), budget_(budget) {}
 
 std::optional<Witnesses::About> Witnesses::about(const Cause& cause) const {
   About about;

@@ -20,7 +20,7 @@ class Witnesses {
  public:
   /// Creates an empty list of witnesses for a lattice in a world, whose collision queries use
   /// `certificates`. `lattice`, `world` and `budget` must outlive it; `check` may be null.
-  Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, Certificates certificates,
+  Witnesses(const Lattice& lattice, const World& world, const EdgeRule& rule, DistanceProofs distance_proofs,
             const std::shared_ptr<StateCheck>& check, const Budget& budget);
 
   /// Returns the witnesses in the order of their numbers, without values.

@@ -38,7 +38,7 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
       rule_(rule),
       budget_(budget),
       check_(check, budget),
-      query_(world, Certificates::kOn),
+      query_(world, DistanceProofs::kOn),
       question_us_(world.has_meshes() ? 300 : 3),
       node_us_(lattice.has_own_rows() ? 5 : 1),
       number_of_(world.bodies().size() * world.body_names().size(), kUnmet) {
@@ -48,7 +48,7 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
 double Constraints::spent_us() const {
   const CollisionCounters c = query_.counters();
   return question_us_ *
-             (static_cast<double>(c.certified_free + c.certified_colliding + c.fcl_calls) + 0.1 * static_cast<double>(pairs_)) +
+             (static_cast<double>(c.proved_free + c.proved_colliding + c.fcl_calls) + 0.1 * static_cast<double>(pairs_)) +
          node_us_ * static_cast<double>(nodes_) + 0.1 * static_cast<double>(moves_) + 10 * static_cast<double>(checked_);
 }
 

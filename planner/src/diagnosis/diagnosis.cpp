@@ -461,7 +461,7 @@ SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule
                       const Hooks& hooks) {
   const TraceSpan span("furthest path");
   Executor executor(1);
-  CollisionValidity validity(lattice, world, rule, lattice.limits().edges, Certificates::kOn, executor, 1, budget);
+  CollisionValidity validity(lattice, world, rule, lattice.limits().edges, DistanceProofs::kOn, executor, 1, budget);
   HookedValidity hooked(lattice, validity, hooks, budget);
   const auto cost_to_go = make_cost_to_go(lattice, Extent::kWhole, budget);
   cost_to_go->sweep(layer);

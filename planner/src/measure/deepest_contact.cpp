@@ -17,7 +17,7 @@ constexpr double kShortest = 1. / 1024;  // of a move
 class Search {
  public:
   Search(const World& world, const EdgeRule& rule, const std::vector<Config>& rows, const Budget& budget)
-      : world_(world), rule_(rule), rows_(rows), budget_(budget), query_(world, Certificates::kOn) {}
+      : world_(world), rule_(rule), rows_(rows), budget_(budget), query_(world, DistanceProofs::kOn) {}
 
   std::optional<DeepestContact> run() {
     double at_most = 0;

@@ -235,7 +235,7 @@ class OpenParts {
 std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
                                       const std::vector<Config>& rows, const Budget& budget) {
   if (rows.empty()) return std::nullopt;
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   const OpenParts open(world, query, rule, limits, rows, budget);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     budget.poll();

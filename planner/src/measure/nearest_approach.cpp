@@ -12,7 +12,7 @@ std::optional<NearestApproach> nearest_approach(const World& world, const std::v
   // Rows far apart come first, so that one of them is near the nearest.
   constexpr int kStride = 8;
   const int count = static_cast<int>(rows.size());
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   std::optional<NearestApproach> nearest = so_far;
   const auto is_further = [&](int row, const Config& q) {
     if (!(nearest->clearance.distance > 0)) return false;

@@ -40,9 +40,9 @@ bool is_eager(const PlanOptions& options) {
   return options.planner == PlannerKind::kEager || options.planner == PlannerKind::kEagerDp;
 }
 
-/// The eager planners are the baseline: FCL used well, without certificates. The verdicts are the same.
-Certificates certificates_of(const PlanOptions& options) {
-  return is_eager(options) || options.fcl_alone ? Certificates::kOff : Certificates::kOn;
+/// The eager planners are the baseline: FCL used well, without distance proofs. The verdicts are the same.
+DistanceProofs distance_proofs_of(const PlanOptions& options) {
+  return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
 }
 
 /// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of
@@ -93,8 +93,8 @@ void add_counters(const Counters& more, Counters& sum) {
   sum.nodes_checked += more.nodes_checked;
   sum.edges_checked += more.edges_checked;
   sum.fcl_calls += more.fcl_calls;
-  sum.certified_free += more.certified_free;
-  sum.certified_colliding += more.certified_colliding;
+  sum.proved_free += more.proved_free;
+  sum.proved_colliding += more.proved_colliding;
   sum.expansions += more.expansions;
   sum.iterations += more.iterations;
 }
@@ -336,13 +336,13 @@ struct Planner::Impl {
       counters.edges_checked = validity.edges_checked();
       const CollisionCounters collision = validity.counters();
       counters.fcl_calls = collision.fcl_calls;
-      counters.certified_free = collision.certified_free;
-      counters.certified_colliding = collision.certified_colliding;
+      counters.proved_free = collision.proved_free;
+      counters.proved_colliding = collision.proved_colliding;
       add_counters(counters, result.counters);
     };
     if (was_eager) {
       if (options.planner == PlannerKind::kEager) refuse_if_too_large(lattice, problem.source);
-      CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads, 0, budget);
+      CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads, 0, budget);
       HookedValidity hooked(lattice, validity, options.hooks, budget);
       found = search_eagerly(lattice, hooked, options, budget, counters);
       count(validity);
@@ -363,7 +363,7 @@ struct Planner::Impl {
       memory.begin(++plans, met, *world, problem.scene);
       if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     }
-    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, certificates_of(options), threads,
+    CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads,
                                lanes_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
     const std::vector<Suspect> asked_before = remembered ? std::exchange(suspects, {}) : std::vector<Suspect>();

@@ -94,8 +94,8 @@ class Judge {
         check_(options.check, budget),
         world_(robot.world(), problem, budget),
         rule_(world_.edge_rule(robot.radii())),
-        at_(world_, Certificates::kOn),
-        between_(world_, Certificates::kOn),
+        at_(world_, DistanceProofs::kOn),
+        between_(world_, DistanceProofs::kOn),
         budget_(budget) {}
 
   /// Returns true if the node is valid with the margins of refinement. `given` holds the joints of

@@ -19,7 +19,7 @@ constexpr FailureId kManipulability = -2;
 }  // namespace
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
-                                     Certificates certificates, Executor& executor, int partitions, const Budget& budget,
+                                     DistanceProofs distance_proofs, Executor& executor, int partitions, const Budget& budget,
                                      ClearanceMemory* memory, const World* changed)
     : lattice_(&lattice),
       world_(&world),
@@ -27,7 +27,7 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
       rule_(rule),
       changed_rule_(changed ? changed->edge_rule(rule.radii) : EdgeRule{rule.radii, rule.h, {}}),
       edge_mode_(edge_mode),
-      certificates_(certificates),
+      distance_proofs_(distance_proofs),
       executor_(&executor),
       budget_(budget),
       memory_(memory),
@@ -52,8 +52,8 @@ std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& 
 }
 
 CollisionValidity::Queries CollisionValidity::make_queries() const {
-  Queries queries{World::Query(*world_, certificates_), std::nullopt};
-  if (changed_) queries.changed.emplace(*changed_, certificates_);
+  Queries queries{World::Query(*world_, distance_proofs_), std::nullopt};
+  if (changed_) queries.changed.emplace(*changed_, distance_proofs_);
   return queries;
 }
 
@@ -180,7 +180,7 @@ bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_
   if (!lattice.shares_body_poses(groups_of(world, pair))) return false;
   const double apart = row_margin.between_rows(layer, node, pair);
   if (apart > 0) return std::isfinite(apart) && query.proves_violation(row, pair, Threshold(ClearanceRule::kNode, -apart));
-  return query.certified() || query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
+  return query.violation_is_proved() || query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
 }
 
 void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

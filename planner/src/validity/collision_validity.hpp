@@ -23,9 +23,9 @@ class CollisionValidity final : public Validity {
   /// by itself, with a cache for each worker. `memory`, or null, holds what earlier plans found
   /// about the same lattice, robot and limits; `changed` is then the world of only those pairs
   /// whose objects have moved since (null: none has). References and pointers must outlive it.
-  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode, Certificates certificates,
-                    Executor& executor, int partitions, const Budget& budget, ClearanceMemory* memory = nullptr,
-                    const World* changed = nullptr);
+  CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
+                    DistanceProofs distance_proofs, Executor& executor, int partitions, const Budget& budget,
+                    ClearanceMemory* memory = nullptr, const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
   void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
@@ -77,7 +77,7 @@ class CollisionValidity final : public Validity {
   EdgeRule rule_;
   EdgeRule changed_rule_;  // for the pairs with changed objects, none of them a robot pair
   EdgeMode edge_mode_;
-  Certificates certificates_;
+  DistanceProofs distance_proofs_;
   Executor* executor_;
   Budget budget_;
   ClearanceMemory* memory_;

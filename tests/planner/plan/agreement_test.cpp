@@ -64,7 +64,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   const std::vector<TestRobot> bare{near_wrist_robot(), without_srdf(data_robot("sda5f")), without_srdf(data_robot("iiwa14"))};
   int reduced = 0, near_motions = 0;
   int solved = 0, infeasible = 0, continuous = 0, started = 0, obstacles = 0, label_changes = 0, detours = 0, chosen = 0;
-  std::int64_t certified = 0, lazy_fcl_calls = 0;
+  std::int64_t proved = 0, lazy_fcl_calls = 0;
   const int count = trials(320);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -82,7 +82,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
       options.evidence = Evidence::all();
       results.push_back(plan(problem, options));
     }
-    certified += results[2].counters.certified_free + results[2].counters.certified_colliding;
+    proved += results[2].counters.proved_free + results[2].counters.proved_colliding;
     lazy_fcl_calls += results[2].counters.fcl_calls;
     ASSERT_EQ(results[0].status == PlanStatus::kSolved, truth.solved) << what;
     for (std::size_t k = 1; k < results.size(); ++k) {
@@ -127,7 +127,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   std::printf(
       "%d problems: %d solved (%d after failures, %d sheet changes), %d infeasible, %d continuous, %d with a start, %d with "
       "obstacles; lazy: %lld questions certified, %lld FCL calls\n",
-      count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(certified),
+      count, solved, detours, label_changes, infeasible, continuous, started, obstacles, static_cast<long long>(proved),
       static_cast<long long>(lazy_fcl_calls));
   std::printf("%d problems with reduced pairs, of which %d solved with motions; %d starts chosen among equal costs\n", reduced,
               near_motions, chosen);
@@ -135,7 +135,7 @@ TEST(Agreement, FourPlannersAndBruteForceOnRandomProblems) {
   EXPECT_GE(reduced, at_least(count / 24));
   EXPECT_GE(near_motions, at_least(3));
   EXPECT_GE(solved, at_least(count / 4));
-  EXPECT_GT(certified, 10 * lazy_fcl_calls);
+  EXPECT_GT(proved, 10 * lazy_fcl_calls);
   EXPECT_GE(infeasible, at_least(count / 20));
   EXPECT_GE(continuous, at_least(count / 5));
   EXPECT_GE(started, at_least(count / 10));
@@ -147,7 +147,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
   const std::uint64_t base = seed("Agreement.FclAlone");
   const auto robots = all_robots();
   int solved = 0, infeasible = 0, asked = 0, moves = 0;
-  std::int64_t alone_calls = 0, calls = 0, certified = 0;
+  std::int64_t alone_calls = 0, calls = 0, proved = 0;
   const int count = trials(100);
   for (int trial = 0; trial < count; ++trial) {
     Random random(base + static_cast<std::uint64_t>(trial));
@@ -165,8 +165,8 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
         const PlanResult with_proofs = planner.plan(options), by_fcl = alone.plan(alone_options);
         expect_same(with_proofs, by_fcl, what + " " + by_fcl.planner + when);
         ++(with_proofs.status == PlanStatus::kSolved ? solved : infeasible);
-        EXPECT_EQ(by_fcl.counters.certified_free + by_fcl.counters.certified_colliding, 0) << what << when;
-        certified += with_proofs.counters.certified_free + with_proofs.counters.certified_colliding;
+        EXPECT_EQ(by_fcl.counters.proved_free + by_fcl.counters.proved_colliding, 0) << what << when;
+        proved += with_proofs.counters.proved_free + with_proofs.counters.proved_colliding;
         calls += with_proofs.counters.fcl_calls;
         alone_calls += by_fcl.counters.fcl_calls;
         asked += by_fcl.counters.fcl_calls > 0;
@@ -185,7 +185,7 @@ TEST(Agreement, FclAloneGivesTheSameAnswers) {
   }
   std::printf("%d plans solved, %d infeasible, %d after a move; FCL alone: %lld calls, in %d plans; else %lld, %lld certified\n",
               solved, infeasible, moves, static_cast<long long>(alone_calls), asked, static_cast<long long>(calls),
-              static_cast<long long>(certified));
+              static_cast<long long>(proved));
   EXPECT_GE(solved, at_least(count));
   EXPECT_GE(infeasible, at_least(count / 5));
   EXPECT_GE(moves, at_least(count));

@@ -69,7 +69,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
   const EdgeRule rule = world.edge_rule(robot.radii());
   Executor executor(2);
   const auto validity = [&] {
-    return CollisionValidity(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, 4, spent);
+    return CollisionValidity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, 4, spent);
   };
   const auto long_path = [&] {
     Resolution fine = problem.resolution;
@@ -115,7 +115,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
        }},
       {"one edge",
        [&] {
-         World::Query query(world, Certificates::kOn);
+         World::Query query(world, DistanceProofs::kOn);
          static_cast<void>(edge_blocked(query, rule, q, away, spent));
        }},
       {"eager",

@@ -110,19 +110,19 @@ TEST(ExplicitLattice, EverySearchAgreesWithBruteForce) {
       }
     };
     {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
       EagerOutcome found;
       eager_search(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
       EagerOutcome found;
       eager_dp(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager_dp");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity validity(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, batch == 1 ? 1 : 4,
+      CollisionValidity validity(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, batch == 1 ? 1 : 4,
                                  never);
       const auto cost_to_go = make_cost_to_go(lattice);
       cost_to_go->sweep(lattice.layers() - 1);

@@ -345,14 +345,14 @@ TEST(Hooks, SearchesOfListsAgreeWithBruteForce) {
       ASSERT_TRUE(truth.solved || deepest == truth.deepest) << what << ' ' << planner;
     };
     for (const bool stored : {true, false}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOff, executor, 0, never);
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOff, executor, 0, never);
       HookedValidity validity(lattice, collision, hooks, never);
       EagerOutcome found;
       (stored ? eager_search : eager_dp)(lattice, validity, never, found);
       expect_truth(found.path, found.cost, found.deepest.value_or(-1), "eager");
     }
     for (const int batch : {1, 32}) {
-      CollisionValidity collision(lattice, world, rule, problem.limits.edges, Certificates::kOn, executor, batch == 1 ? 1 : 4,
+      CollisionValidity collision(lattice, world, rule, problem.limits.edges, DistanceProofs::kOn, executor, batch == 1 ? 1 : 4,
                                   never);
       HookedValidity validity(lattice, collision, hooks, never);
       const auto cost_to_go = make_cost_to_go(lattice);

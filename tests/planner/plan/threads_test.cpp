@@ -32,8 +32,8 @@ void expect_same(const PlanResult& result, const PlanResult& first) {
   EXPECT_EQ(result.counters.ik_nodes, first.counters.ik_nodes);
   EXPECT_EQ(result.counters.edges, first.counters.edges);
   EXPECT_EQ(result.counters.fcl_calls, first.counters.fcl_calls);
-  EXPECT_EQ(result.counters.certified_free, first.counters.certified_free);
-  EXPECT_EQ(result.counters.certified_colliding, first.counters.certified_colliding);
+  EXPECT_EQ(result.counters.proved_free, first.counters.proved_free);
+  EXPECT_EQ(result.counters.proved_colliding, first.counters.proved_colliding);
   EXPECT_EQ(result.counters.nodes_checked, first.counters.nodes_checked);
   EXPECT_EQ(result.counters.edges_checked, first.counters.edges_checked);
   EXPECT_EQ(words(result.diagnosis.cause), words(first.diagnosis.cause));

@@ -53,7 +53,7 @@ struct Work {
   const char* problem;
   PlannerKind planner;
   EdgeMode edges;
-  std::int64_t nodes_checked, edges_checked, fcl_calls, certified, expansions, iterations, ik_nodes, edges_compared;
+  std::int64_t nodes_checked, edges_checked, fcl_calls, proved, expansions, iterations, ik_nodes, edges_compared;
   std::int64_t most_allocations;  ///< operator new in a second plan on the same robot, rounded up
 };
 using enum PlannerKind;
@@ -90,7 +90,7 @@ std::string row(const Work& w) {
                                                     : "kParallel")
                     .c_str(),
                 w.edges == kNodes ? "kNodes" : "kContinuous", static_cast<long long>(w.nodes_checked),
-                static_cast<long long>(w.edges_checked), static_cast<long long>(w.fcl_calls), static_cast<long long>(w.certified),
+                static_cast<long long>(w.edges_checked), static_cast<long long>(w.fcl_calls), static_cast<long long>(w.proved),
                 static_cast<long long>(w.expansions), static_cast<long long>(w.iterations), static_cast<long long>(w.ik_nodes),
                 static_cast<long long>(w.edges_compared), static_cast<long long>(w.most_allocations));
   return text;
@@ -115,7 +115,7 @@ Work measured(const Work& expected) {
           c.nodes_checked,
           c.edges_checked,
           c.fcl_calls,
-          c.certified_free + c.certified_colliding,
+          c.proved_free + c.proved_colliding,
           c.expansions,
           c.iterations,
           c.ik_nodes,
@@ -137,13 +137,13 @@ TEST(Work, IsWhatTheTableSays) {
   }
 }
 
-/// The inner loop of every search: asking about a posture or a motion that certificates decide.
+/// The inner loop of every search: asking about a posture or a motion that distance proofs decide.
 TEST(Work, AskingAboutAPostureAllocatesNothing) {
   const Problem problem = io::load_problem(test::data_dir() / "problems/experiment_c.yaml");
   const PreparedRobot robot(problem);
   const World& world = robot.world();
   world.make_ready([] { return false; });
-  World::Query query(world, Certificates::kOn);
+  World::Query query(world, DistanceProofs::kOn);
   test::Random random(test::seed("Work"));
   std::vector<Config> postures;
   for (int k = 0; k < 2000; ++k) postures.push_back(test::random_config(robot.arm().chain, random));

@@ -32,7 +32,7 @@ struct LatticeMap {
   struct Node {
     NodeState state = NodeState::kNoIk;
     std::uint8_t cause = 0;
-    bool certified = false;  ///< of free and blocked nodes: a certificate alone proves it, FCL need not be asked
+    bool proved = false;  ///< of free and blocked nodes: a distance proof alone proves it, FCL need not be asked
     bool operator==(const Node&) const = default;
   };
   enum class Coordinate : std::uint8_t {

@@ -24,16 +24,16 @@ struct Depth {
 
 /// Work counters of one query object. Add them up over threads.
 struct CollisionCounters {
-  std::int64_t fcl_calls = 0;            ///< fcl::collide and fcl::distance
-  std::int64_t fcl_failures = 0;         ///< calls that threw; the bodies then count as touching
-  std::int64_t certified_free = 0;       ///< answers "no pair" that needed no FCL
-  std::int64_t certified_colliding = 0;  ///< pairs found without FCL
-  std::int64_t pairs_kept = 0;           ///< pairs proved free by a clearance kept from before
+  std::int64_t fcl_calls = 0;         ///< fcl::collide and fcl::distance
+  std::int64_t fcl_failures = 0;      ///< calls that threw; the bodies then count as touching
+  std::int64_t proved_free = 0;       ///< answers "no pair" that needed no FCL
+  std::int64_t proved_colliding = 0;  ///< pairs found without FCL
+  std::int64_t pairs_kept = 0;        ///< pairs proved free by a clearance kept from before
   CollisionCounters& operator+=(const CollisionCounters& o) {
     fcl_calls += o.fcl_calls;
     fcl_failures += o.fcl_failures;
-    certified_free += o.certified_free;
-    certified_colliding += o.certified_colliding;
+    proved_free += o.proved_free;
+    proved_colliding += o.proved_colliding;
     pairs_kept += o.pairs_kept;
     return *this;
   }

@@ -105,14 +105,14 @@ struct EdgeRule {
 };
 
 /// How a Query decides. Its answers are the same.
-enum class Certificates {
+enum class DistanceProofs {
   kOff,  ///< FCL, behind bounding volumes
   kOn,   ///< closed forms, where they prove the clearance outside the band; within it triangle trees or FCL
 };
 
-/// The robot's bodies among the scene's, with FCL as the authority on every pair that neither a certificate nor our own distance of
-/// triangles settles. Immutable after construction; const calls are safe from many threads, each with its own Query. Verdicts are
-/// those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or capsule the
+/// The robot's bodies among the scene's, with FCL as the authority on every pair that neither a distance proof nor our own distance
+/// of triangles settles. Immutable after construction; const calls are safe from many threads, each with its own Query. Verdicts
+/// are those of docs/model.md: fcl::distance (LIBCCD, tolerance 1e-10, fresh result, a before b) >= d; for a sphere or capsule the
 /// equivalent boolean on the inflated body; closed meshes are solids.
 class World {
  public:
@@ -171,7 +171,7 @@ class World {
   /// The world must outlive it, and may be moved meanwhile.
   class Query {
    public:
-    explicit Query(const World& world, Certificates certificates = Certificates::kOff);
+    explicit Query(const World& world, DistanceProofs distance_proofs = DistanceProofs::kOff);
     ~Query();
     Query(Query&&) noexcept;
     Query& operator=(Query&&) noexcept;
@@ -181,8 +181,8 @@ class World {
     [[nodiscard]] std::optional<BodyPair> find_violating_pair(const Config& q, const Threshold& threshold,
                                                               const std::optional<BodyPair>& likely = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
-    /// clearance is kept, less what the two bodies have moved. FCL calls and what is certified depend on such questions before.
-    /// With Certificates::kOff nothing is kept.
+    /// clearance is kept, less what the two bodies have moved. FCL calls and what is proved depend on such questions before.
+    /// With Distance proofs::kOff nothing is kept.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_incremental(const Config& q, const Threshold& threshold,
                                                                           const std::optional<BodyPair>& likely = {});
     /// The same of `likely` and the pairs with the scene alone.
@@ -196,14 +196,14 @@ class World {
     /// not known.
     [[nodiscard]] double slack(const Threshold& threshold) const;
     /// Without FCL: a number that the clearance of a pair, by its place in pairs(), is not below as FCL sees it, m. Looked for
-    /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Certificates::kOff by bounds alone.
+    /// between `least`, >= 0, and `enough`; what is below `least` may be anything. With Distance proofs::kOff by bounds alone.
     [[nodiscard]] double clearance_lower_bound(const Config& q, std::size_t pair, double least, double enough);
     /// By body: how far no point of it has moved in all, m, on the chords from each posture asked about here or in
     /// find_violating_pair_incremental() to the next. Valid until the next question.
     [[nodiscard]] std::span<const double> accumulated_displacement(const Config& q);
     /// Of the pair that one of these has just named, or proves_violation(): its clearance is proved below its threshold by more
     /// than FCL may err.
-    [[nodiscard]] bool certified() const;
+    [[nodiscard]] bool violation_is_proved() const;
     /// Whether one pair's clearance is below its threshold.
     [[nodiscard]] bool pair_violates(const Config& q, const BodyPair& pair, const Threshold& threshold);
     /// Without FCL, proves that one pair's clearance is below its threshold, which may be below zero here: then that one body holds

@@ -46,8 +46,8 @@ struct Counters {
   std::int64_t edges_checked = 0;  ///< edges whose tool-path error or clearance was asked
   std::int64_t fcl_calls = 0;      ///< fcl::collide + fcl::distance
   /// Questions about a configuration's clearance answered without FCL: it is free, or too near.
-  std::int64_t certified_free = 0;
-  std::int64_t certified_colliding = 0;
+  std::int64_t proved_free = 0;
+  std::int64_t proved_colliding = 0;
   std::int64_t expansions = 0;  ///< vertices that the graph search expanded
   std::int64_t iterations = 0;  ///< candidate paths tried
 };

@@ -5,7 +5,7 @@
 namespace swivel::detail {
 
 /// What a distance proof, which needs no FCL, shows about one pair of bodies.
-enum class Certificate { kFree, kColliding, kNone };
+enum class DistanceProof { kFree, kColliding, kNone };
 
 /// Compares the clearance of two bodies with d >= 0, m, without FCL. Returns kFree if the clearance
 /// is proved to be at least d + kVerdictBand; kColliding if it is proved to be below d -
@@ -17,18 +17,18 @@ enum class Certificate { kFree, kColliding, kNone };
 /// cylinders. Boxes, cylinders and meshes among each other are compared as triangles; a cylinder is
 /// a prism inside it plus a bound of what the prism lacks.
 /// The result depends on the arguments alone. Safe to call from many threads.
-[[nodiscard]] Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
+[[nodiscard]] DistanceProof prove_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double d);
 
 /// The result of a distance proof: the verdict and, if it is kFree, a lower bound of the clearance,
 /// m.
 struct Proof {
-  Certificate certificate = Certificate::kNone;
+  DistanceProof proved = DistanceProof::kNone;
   double bound = 0;
 };
 /// What the caller expects of a pair. kFree omits the search for a triangle well inside the other
 /// body, which only saves time when bodies collide. The verdict is the same.
 enum class Expected { kAny, kFree };
-/// Compares the clearance of two bodies with d >= 0, m, as certify() does, and for kFree also
+/// Compares the clearance of two bodies with d >= 0, m, as prove_distance() does, and for kFree also
 /// returns a lower bound of the clearance, which is sought up to `margin`, m, beyond d. `warm_start`
 /// is a warm start: the triangles of a and of b, where they have any, at which the search begins
 /// and, on return, ended. For bodies that have moved little since, one look there often proves the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates against FCL: a verdict that a certificate gives must be FCL's. docs/model.md "Clearance".
-#include "proofs/certificate.hpp"
+// Distance proofs against FCL: a verdict that a distance proof gives must be FCL's. docs/model.md "Clearance".
+#include "proofs/distance_proof.hpp"
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
   std::int64_t questions = 0, pairs = 0, at_threshold = 0, clearances = 0, touching = 0;
   for (int s = 0; s < scenes; ++s) {
     const World world(empty, random_scene(random, pool));
-    World::Query asked(world, Certificates::kOn), fast(world, Certificates::kOn), off(world, Certificates::kOff);
+    World::Query asked(world, DistanceProofs::kOn), fast(world, DistanceProofs::kOn), off(world, DistanceProofs::kOff);
     for (int k = 0; k < configurations; ++k) {
       const Config q = test::random_config(arm.chain, random);
       const auto ask = [&](double d) {
@@ -148,26 +148,25 @@ TEST_P(Lanes, CapsuleRobotsAsFclSeesThem) {
     sum += asked.counters();
     by_fcl += off.counters();
   }
-  const std::int64_t undecided = questions - sum.certified_free - sum.certified_colliding;
+  const std::int64_t undecided = questions - sum.proved_free - sum.proved_colliding;
   std::printf(
       "%s: %d configurations, %lld questions, %lld of them within 3 tau of the clearance: %lld certified free, %lld certified "
       "colliding, %lld undecided; %lld pairs asked of both, %lld FCL calls for %lld\n",
       robot.name.c_str(), scenes * configurations, static_cast<long long>(questions), static_cast<long long>(at_threshold),
-      static_cast<long long>(sum.certified_free), static_cast<long long>(sum.certified_colliding),
-      static_cast<long long>(undecided), static_cast<long long>(pairs), static_cast<long long>(sum.fcl_calls),
-      static_cast<long long>(by_fcl.fcl_calls));
+      static_cast<long long>(sum.proved_free), static_cast<long long>(sum.proved_colliding), static_cast<long long>(undecided),
+      static_cast<long long>(pairs), static_cast<long long>(sum.fcl_calls), static_cast<long long>(by_fcl.fcl_calls));
   EXPECT_GT(clearances - touching, clearances / 10);
   EXPECT_EQ(sum.fcl_failures, 0);
   EXPECT_GT(at_threshold, scenes * 10);
-  EXPECT_GT(sum.certified_free, questions / 50);
-  EXPECT_GT(sum.certified_colliding, questions / 50);
+  EXPECT_GT(sum.proved_free, questions / 50);
+  EXPECT_GT(sum.proved_colliding, questions / 50);
   EXPECT_LT(undecided, questions / 50 + at_threshold);
 }
 INSTANTIATE_TEST_SUITE_P(Eight, Lanes, ::testing::Range(0, 8));
 
 struct Verdicts {
   int free = 0, colliding = 0, none = 0;
-  void add(Certificate c) { ++(c == Certificate::kFree ? free : c == Certificate::kColliding ? colliding : none); }
+  void add(DistanceProof c) { ++(c == DistanceProof::kFree ? free : c == DistanceProof::kColliding ? colliding : none); }
   [[nodiscard]] int all() const { return free + colliding + none; }
 };
 
@@ -219,22 +218,22 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
     for (const double d : {0.0, 0.005, clearance - 3 * kTau, clearance - 1.1 * kTau, clearance + 1.1 * kTau, clearance + 3 * kTau,
                            clearance + random.uniform(-0.02, 0.02)}) {
       if (d < 0) continue;
-      const Certificate certificate = certify(a, b, d);
+      const DistanceProof certificate = prove_distance(a, b, d);
       const std::string what =
           where + " kind " + std::to_string(kind) + " clearance " + std::to_string(clearance) + " d " + std::to_string(d);
-      ASSERT_FALSE(certificate == Certificate::kFree && (clearance < d || clearance == 0)) << what;
-      ASSERT_FALSE(certificate == Certificate::kColliding && clearance >= d && clearance > 0) << what;
+      ASSERT_FALSE(certificate == DistanceProof::kFree && (clearance < d || clearance == 0)) << what;
+      ASSERT_FALSE(certificate == DistanceProof::kColliding && clearance >= d && clearance > 0) << what;
       // And none is held back: by more than the band, what FCL errs, and what the prism lacks, all is decided.
       if (clearance > d + 2.5 * kTau + beyond) {
-        ASSERT_EQ(certificate, Certificate::kFree) << what;
+        ASSERT_EQ(certificate, DistanceProof::kFree) << what;
       }
       if (clearance < d - 2.5 * kTau - beyond) {
-        ASSERT_EQ(certificate, Certificate::kColliding) << what;
+        ASSERT_EQ(certificate, DistanceProof::kColliding) << what;
       }
       tally.add(certificate);
       TrianglePair nowhere;
       const Proof ahead = prove(a, b, d, 0.01, nowhere);
-      ASSERT_EQ(ahead.certificate, certificate) << what;
+      ASSERT_EQ(ahead.proved, certificate) << what;
       ASSERT_LE(ahead.bound, clearance + kTau) << what;
     }
   }
@@ -253,7 +252,7 @@ TEST_P(MeshLanes, MeshesAgainstFclDistances) {
 INSTANTIATE_TEST_SUITE_P(Four, MeshLanes, ::testing::Range(0, 4));
 
 /// A proof begins where the last one of the same bodies ended. That must not change what it says.
-TEST(Certificates, DoNotDependOnWhereTheLastOneEnded) {
+TEST(DistanceProofs, DoNotDependOnWhereTheLastOneEnded) {
   const std::uint64_t base = test::seed("Witnesses");
   Random random(base);
   const auto pool = meshes();
@@ -280,12 +279,11 @@ TEST(Certificates, DoNotDependOnWhereTheLastOneEnded) {
       const double d = random.coin(0.2) ? 0 : random.uniform(0, 0.03), ahead = random.coin() ? 0 : 0.01;
       TrianglePair nowhere;
       const Proof fresh = prove(a, b, d, ahead, nowhere), proof = prove(a, b, d, ahead, kept);
-      ASSERT_EQ(proof.certificate, fresh.certificate)
-          << "SWIVEL_TEST_SEED=" << base << " case " << k << " step " << step << " d " << d;
-      if (fresh.certificate == Certificate::kFree) {
+      ASSERT_EQ(proof.proved, fresh.proved) << "SWIVEL_TEST_SEED=" << base << " case " << k << " step " << step << " d " << d;
+      if (fresh.proved == DistanceProof::kFree) {
         ASSERT_NEAR(proof.bound, fresh.bound, 1e-12);
       }
-      all.add(proof.certificate);
+      all.add(proof.proved);
       pose.translation() += 0.02 * random_size(random, -1, 1);
       pose.linear() = (Quaterniond(pose.linear()) * Quaterniond(1, random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), 0))
                           .normalized()
@@ -298,7 +296,7 @@ TEST(Certificates, DoNotDependOnWhereTheLastOneEnded) {
   EXPECT_GT(all.colliding, all.all() / 4);
 }
 
-TEST(Certificates, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
+TEST(DistanceProofs, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
   MeshStore store;
   const Pose origin = Pose::Identity();
   for (const bool closed : {true, false}) {
@@ -308,15 +306,15 @@ TEST(Certificates, ABodyInsideAClosedMeshCollidesAtAnyDistance) {
     for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1},
                                                  testing::as_mesh(testing::sphere_mesh(0.1, 4), "ball")}) {
       const FclShape inner = make_fcl_shape(shape, store);
-      const Certificate expected = closed ? Certificate::kColliding : Certificate::kFree;
-      EXPECT_EQ(certify({&outer, &origin}, {&inner, &origin}, 0.005), expected) << shape.index();
-      EXPECT_EQ(certify({&inner, &origin}, {&outer, &origin}, 0), expected) << shape.index();
+      const DistanceProof expected = closed ? DistanceProof::kColliding : DistanceProof::kFree;
+      EXPECT_EQ(prove_distance({&outer, &origin}, {&inner, &origin}, 0.005), expected) << shape.index();
+      EXPECT_EQ(prove_distance({&inner, &origin}, {&outer, &origin}, 0), expected) << shape.index();
     }
   }
   const FclShape speck = make_fcl_shape(testing::as_mesh(testing::sphere_mesh(0.01, 4), "speck"), store);
   for (const Shape& shape : std::vector<Shape>{Sphere{0.1}, Capsule{0.05, 0.2}, Box{Vector3d(0.1, 0.2, 0.1)}, Cylinder{0.1, 0.1}}) {
     const FclShape outer = make_fcl_shape(shape, store);
-    EXPECT_EQ(certify({&speck, &origin}, {&outer, &origin}, 0), Certificate::kColliding) << shape.index();
+    EXPECT_EQ(prove_distance({&speck, &origin}, {&outer, &origin}, 0), DistanceProof::kColliding) << shape.index();
   }
 }
 

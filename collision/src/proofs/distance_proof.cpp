@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "proofs/certificate.hpp"
+#include "proofs/distance_proof.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // far above what these distances lose, far below the band
 
-constexpr Proof kCollides{Certificate::kColliding};
+constexpr Proof kCollides{DistanceProof::kColliding};
 
 /// Turns a distance into a verdict. The distance exceeds the clearance by at most `growth`. A
 /// distance below `low` is a collision, one of at least `high` is free, and distances beyond `far`
@@ -27,7 +27,7 @@ struct Range {
         far(high + margin) {}
   [[nodiscard]] Proof of(double distance) const {
     if (distance < low) return kCollides;
-    return {distance >= high ? Certificate::kFree : Certificate::kNone, distance - growth - kRounding};
+    return {distance >= high ? DistanceProof::kFree : DistanceProof::kNone, distance - growth - kRounding};
   }
 };
 
@@ -98,8 +98,7 @@ Proof bracket(const Segment& s, const Solid& solid, const Range& range) {
     if (left.slope >= 0) return range.of(left.distance);
     if (right.slope <= 0) return range.of(right.distance);
     const double to_crossing = (right.distance - left.distance - right.slope * (right.t - left.t)) / (left.slope - right.slope);
-    if (const Proof proof = range.of(left.distance + left.slope * to_crossing); proof.certificate == Certificate::kFree)
-      return proof;
+    if (const Proof proof = range.of(left.distance + left.slope * to_crossing); proof.proved == DistanceProof::kFree) return proof;
     const Place middle = at(left.t + to_crossing);
     (middle.slope < 0 ? left : right) = middle;
   }
@@ -115,7 +114,7 @@ Proof prove_round(const PlacedShapeRef& round, const PlacedShapeRef& other, doub
   if (const auto* box = std::get_if<Box>(&other.shape->shape)) return bracket(there, *box, range);
   if (const auto* cylinder = std::get_if<Cylinder>(&other.shape->shape)) return bracket(there, *cylinder, range);
   const Proof surface = range.of(other.shape->triangles().distance(there, range.low, range.far, triangle));
-  return surface.certificate != Certificate::kColliding && one_inside_other(round, other) ? kCollides : surface;
+  return surface.proved != DistanceProof::kColliding && one_inside_other(round, other) ? kCollides : surface;
 }
 
 /// Returns the distance of a point from a solid, m; if the point is inside, minus its depth.
@@ -187,8 +186,8 @@ Proof prove_triangles(const PlacedShapeRef& a, const PlacedShapeRef& b, double d
   if (expected == Expected::kAny && (finds_nearer(range.low, b, a, warm_start.a) || finds_nearer(range.low, a, b, warm_start.b)))
     return kCollides;
   const Proof surface = range.of(surface_distance(a, b, range.low, range.far, warm_start));
-  if (surface.certificate == Certificate::kColliding) return surface;
-  const bool surfaces_apart = surface.certificate == Certificate::kFree || range.low > 0;
+  if (surface.proved == DistanceProof::kColliding) return surface;
+  const bool surfaces_apart = surface.proved == DistanceProof::kFree || range.low > 0;
   const bool inside = one_inside_other(a, b) || (surfaces_apart && one_inside_solid(a, b));
   return inside ? kCollides : surface;
 }
@@ -201,9 +200,9 @@ Proof prove(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, double m
   if (is_round(b)) return prove_round(b, a, d, margin, warm_start.a);
   // The capsule around a rod often proves more than the prism with its long triangles does.
   if (is_rod(a))
-    if (const Proof proof = prove_round(a, b, d, margin, warm_start.b); proof.certificate == Certificate::kFree) return proof;
+    if (const Proof proof = prove_round(a, b, d, margin, warm_start.b); proof.proved == DistanceProof::kFree) return proof;
   if (is_rod(b))
-    if (const Proof proof = prove_round(b, a, d, margin, warm_start.a); proof.certificate == Certificate::kFree) return proof;
+    if (const Proof proof = prove_round(b, a, d, margin, warm_start.a); proof.proved == DistanceProof::kFree) return proof;
   return prove_triangles(a, b, d, margin, warm_start, expected);
 }
 
@@ -217,7 +216,7 @@ double triangle_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, doubl
 }
 
 bool proves_beyond(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, TrianglePair& warm_start) {
-  if (!are_triangles(a, b)) return prove(a, b, d, 0, warm_start).certificate == Certificate::kFree;
+  if (!are_triangles(a, b)) return prove(a, b, d, 0, warm_start).proved == DistanceProof::kFree;
   const double far = d + kTriangleBand;
   return triangle_distance(a, b, far, far, warm_start) >= far;
 }
@@ -241,12 +240,12 @@ bool proves_below(const PlacedShapeRef& a, const PlacedShapeRef& b, double d, Tr
   }
   // nothing but the distance of the core decides where b has no triangles of its own
   int unused = 0;
-  return prove_round(a, b, d, 0, unused).certificate == Certificate::kColliding;
+  return prove_round(a, b, d, 0, unused).proved == DistanceProof::kColliding;
 }
 
-Certificate certify(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
+DistanceProof prove_distance(const PlacedShapeRef& a, const PlacedShapeRef& b, double d) {
   TrianglePair none;
-  return prove(a, b, d, 0, none).certificate;
+  return prove(a, b, d, 0, none).proved;
 }
 
 }  // namespace swivel::detail
