@@ -17,7 +17,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/core/answer/advice.hpp
   swivel/core/answer/answer_text.hpp
   swivel/core/answer/cause.hpp
-  swivel/core/answer/cut.hpp
+  swivel/core/answer/infeasibility_certificate.hpp
   swivel/core/answer/plan.hpp
   swivel/core/answer/refined.hpp
   swivel/core/answer/stated.hpp
@@ -36,7 +36,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/graph/lattice_graph/implicit_lattice.hpp
   swivel/graph/verdicts/shared_work.hpp
   swivel/graph/verdicts/verdicts.hpp
-  swivel/planner/certificate/cut.hpp
+  swivel/planner/certificate/infeasibility_certificate.hpp
   swivel/planner/measure/measure.hpp
   swivel/planner/plan/plan_options.hpp
   swivel/planner/plan/plan_view.hpp

@@ -15,7 +15,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/io/motions/motion.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 #include "swivel/planner/verify/check.hpp"
@@ -98,15 +98,15 @@ void print_margins(const Problem& problem, const Chain& chain, const CheckResult
 }
 
 int run_on_certificate(const Problem& problem, const std::string& file) {
-  const Cut cut = io::load_cut(file);
+  const InfeasibilityCertificate certificate = io::load_certificate(file);
   catch_interrupts();
-  CutCheck result;
+  CertificateCheck result;
   std::vector<HeldJoint> held;
   try {
     const Budget budget(std::nullopt, &interrupted);
     const PreparedRobot robot(problem, budget);
     held = robot.arm().held;
-    result = check_cut(robot, problem, cut, budget);
+    result = verify_certificate(robot, problem, certificate, budget);
   } catch (const Stopped&) {
     say("stopped\n");
     return kStopped;
@@ -118,7 +118,7 @@ int run_on_certificate(const Problem& problem, const std::string& file) {
   }
   say("passed: no path at this resolution%s%s: nothing leads from s = %.4f to %.4f m: %s; %lld nodes and %lld edges asked\n",
       with_held(held).c_str(), result.complete ? "" : ", among the solutions that were found", result.s[0], result.s[1],
-      removed_text(cut).c_str(), static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
+      removed_text(certificate).c_str(), static_cast<long long>(result.nodes), static_cast<long long>(result.edges));
   return kOk;
 }
 

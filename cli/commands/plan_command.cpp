@@ -21,7 +21,7 @@
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/study/campaign.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
 #include "swivel/planner/study/advise.hpp"
@@ -141,23 +141,23 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     }
     advice = advise(planner, result, trials);
   }
-  std::optional<Cut> cut;
+  std::optional<InfeasibilityCertificate> proof;
   std::string certificate;
   if (outputs->wants("--certificate") && result.status == PlanStatus::kInfeasible) {
-    const auto start_of_cut = std::chrono::steady_clock::now();
+    const auto start_of_proof = std::chrono::steady_clock::now();
     try {
-      cut = find_cut(planner.view(), budget);
-      certificate = io::to_json(*cut);
+      proof = prove_infeasible(planner.view(), budget);
+      certificate = io::to_json(*proof);
     } catch (const Stopped&) {
       result.warnings.push_back("stopped before the certificate was found: there is none");
     }
-    result.time_ms["certificate"] = milliseconds_since(start_of_cut);
+    result.time_ms["certificate"] = milliseconds_since(start_of_proof);
   }
   const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr,
                                 plan.motion ? &*plan.motion : nullptr,
                                 timing.value_or(TimingOptions{}),
                                 advice ? &*advice : nullptr,
-                                cut ? &*cut : nullptr,
+                                proof ? &*proof : nullptr,
                                 certificate.size()};
   std::optional<LatticeMap> map;
   std::string page;
@@ -188,7 +188,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   } else {
     outputs->remove("--out");
   }
-  if (cut)
+  if (proof)
     outputs->write("--certificate", std::move(certificate));
   else
     outputs->remove("--certificate");
@@ -209,7 +209,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     if (!arguments.quiet && !outputs->takes_standard_output()) {
       print_summary(result);
       print_aftermath(aftermath, result.joint_names);
-      if (cut) say_text(cut_text(*cut, aftermath.cut_bytes));
+      if (proof) say_text(certificate_text(*proof, aftermath.certificate_bytes));
       if (advice) say_text(advice_text(*advice));
     }
     if (!arguments.quiet && timeline) print_self_times(*timeline);

@@ -269,26 +269,26 @@ std::vector<Reader> readers(const TempFolder& folder) {
                   shard("place", 1) + io::to_csv(std::vector{cell})},
                  {",", "\"", "\n", "1,solved,", "{", "}", "# swivel place ", "1/2", "18446744073709551615"},
                  at("shard.csv", [](const fs::path& file) { (void)io::join_shards({io::load_shard(file)}); })});
-  Cut cut;
-  cut.layers = 99;
-  cut.first_layer = 3;
-  cut.windings = {{false, true}};
-  cut.witnesses.resize(2);
-  cut.witnesses[0].kind = Cause::Kind::kLimit;
-  cut.witnesses[0].joint = "a";
-  cut.witnesses[0].side = Cause::Side::kLower;
-  cut.witnesses[1].kind = Cause::Kind::kPair;
-  cut.witnesses[1].bodies = {"b", "c"};
-  cut.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}}, {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
+  InfeasibilityCertificate certificate;
+  certificate.layers = 99;
+  certificate.first_layer = 3;
+  certificate.windings = {{false, true}};
+  certificate.witnesses.resize(2);
+  certificate.witnesses[0].kind = Cause::Kind::kLimit;
+  certificate.witnesses[0].joint = "a";
+  certificate.witnesses[0].side = Cause::Side::kLower;
+  certificate.witnesses[1].kind = Cause::Kind::kPair;
+  certificate.witnesses[1].bodies = {"b", "c"};
+  certificate.band = {{8, {{0, 3}}, {{{4, 7}, 0}}, {}}, {8, {}, {{{0, 5}, 1}}, {{{0, 3}, {6, 7}, 1, 8}}}};
   for (int k = 0; k < 60; ++k)
-    cut.band.insert(cut.band.begin() + 1,
-                    {1008, {{k, k + 20}, {700, 900}}, {{{100, 200 + k}, k % 2}}, {{{5, 7}, {300, 310 + k}, 1, k}}});
-  std::string noted = io::to_json(cut);  // what is changed in a key that nobody reads is read as before
+    certificate.band.insert(certificate.band.begin() + 1,
+                            {1008, {{k, k + 20}, {700, 900}}, {{{100, 200 + k}, k % 2}}, {{{5, 7}, {300, 310 + k}, 1, k}}});
+  std::string noted = io::to_json(certificate);  // what is changed in a key that nobody reads is read as before
   noted.insert(1, "\"note\":\"" + std::string(2 * noted.size(), 'x') + "\",");
   all.push_back({"certificate",
-                 {io::to_json(cut), noted},
+                 {io::to_json(certificate), noted},
                  {"0", "1", "[", "]", "null", "-1", "1e999", "\"limit\"", "[0,1,2],", "\"layers\":["},
-                 at("certificate.json", [](const fs::path& file) { (void)io::load_cut(file); })});
+                 at("certificate.json", [](const fs::path& file) { (void)io::load_certificate(file); })});
   all.push_back({"stl",
                  {io::test::box_stl(), binary_stl(), "solid a\nendsolid a\n" + io::test::box_stl()},
                  {"solid x\n", "facet normal 0 0 0\n", "outer loop\n", "vertex 1 2 3\n", "endloop\n", "endfacet\n", "endsolid\n"},

@@ -139,7 +139,9 @@ TEST(Bounds, LinesOfTablesEnd) {
 
 TEST(Bounds, CertificatesOfManyObjectsAreReadSoon) {
   const TempFolder folder;
-  const auto message = [&](const std::string& text) { return input_error([&] { (void)load_cut(folder.write("a.json", text)); }); };
+  const auto message = [&](const std::string& text) {
+    return input_error([&] { (void)load_certificate(folder.write("a.json", text)); });
+  };
   const std::string head = R"({"format":"swivel certificate 1","x":[0)";
   std::string objects = head, keys = head + "]";
   for (int k = 0; k < 500'000; ++k) objects += ",{}";

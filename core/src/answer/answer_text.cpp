@@ -128,15 +128,15 @@ std::string advice_text(const std::vector<Advice>& advice) {
   return lines + (unknown.empty() ? "" : "  not tried in the time: " + unknown + '\n');
 }
 
-std::string removed_text(const Cut& cut) {
-  const CutCounts counts = count(cut);
-  std::map<std::string, CutCounts::Removed> by_words;
-  for (std::size_t k = 0; k < cut.witnesses.size(); ++k) {
-    CutCounts::Removed& sum = by_words[words(cut.witnesses[k])];
+std::string removed_text(const InfeasibilityCertificate& certificate) {
+  const CertificateCounts counts = count(certificate);
+  std::map<std::string, CertificateCounts::Removed> by_words;
+  for (std::size_t k = 0; k < certificate.witnesses.size(); ++k) {
+    CertificateCounts::Removed& sum = by_words[words(certificate.witnesses[k])];
     sum.nodes += counts.by_witness[k].nodes;
     sum.edges += counts.by_witness[k].edges;
   }
-  std::vector<std::pair<std::string, CutCounts::Removed>> most(by_words.begin(), by_words.end());
+  std::vector<std::pair<std::string, CertificateCounts::Removed>> most(by_words.begin(), by_words.end());
   std::stable_sort(most.begin(), most.end(),
                    [](const auto& x, const auto& y) { return x.second.nodes + x.second.edges > y.second.nodes + y.second.edges; });
   constexpr std::size_t kShown = 5;
@@ -148,14 +148,15 @@ std::string removed_text(const Cut& cut) {
             (sum.edges > 0 ? formatted(" %lld edges", static_cast<long long>(sum.edges)) : "");
   }
   if (most.size() > kShown) list += formatted(" and %zu more", most.size() - kShown);
-  const int last = cut.first_layer + static_cast<int>(cut.band.size()) - 1;
-  return (cut.first_layer == last ? formatted("layer %d", last) : formatted("layers %d to %d", cut.first_layer, last)) +
+  const int last = certificate.first_layer + static_cast<int>(certificate.band.size()) - 1;
+  return (certificate.first_layer == last ? formatted("layer %d", last)
+                                          : formatted("layers %d to %d", certificate.first_layer, last)) +
          formatted(", %lld nodes reached; removed by ", static_cast<long long>(counts.reached)) +
          (list.empty() ? "nothing else" : list);
 }
 
-std::string cut_text(const Cut& cut, std::size_t bytes) {
-  return "certificate: " + removed_text(cut) + formatted("; %zu bytes\n", bytes);
+std::string certificate_text(const InfeasibilityCertificate& certificate, std::size_t bytes) {
+  return "certificate: " + removed_text(certificate) + formatted("; %zu bytes\n", bytes);
 }
 
 }  // namespace swivel

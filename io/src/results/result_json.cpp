@@ -202,15 +202,15 @@ Json advice_json(const std::vector<Advice>& advice) {
 }
 
 /// What the certificate holds; the whole is a file of its own.
-Json certificate_json(const Cut& cut, std::size_t bytes) {
-  const CutCounts counts = count(cut);
+Json certificate_json(const InfeasibilityCertificate& certificate, std::size_t bytes) {
+  const CertificateCounts counts = count(certificate);
   Json removed = Json::array();
-  for (std::size_t k = 0; k < cut.witnesses.size(); ++k)
-    removed.push_back({{"reason", words(cut.witnesses[k])},
-                       {"cause", cause_json(cut.witnesses[k])},
+  for (std::size_t k = 0; k < certificate.witnesses.size(); ++k)
+    removed.push_back({{"reason", words(certificate.witnesses[k])},
+                       {"cause", cause_json(certificate.witnesses[k])},
                        {"nodes", counts.by_witness[k].nodes},
                        {"edges", counts.by_witness[k].edges}});
-  return {{"layers", {cut.first_layer, cut.first_layer + static_cast<int>(cut.band.size()) - 1}},
+  return {{"layers", {certificate.first_layer, certificate.first_layer + static_cast<int>(certificate.band.size()) - 1}},
           {"reached", counts.reached},
           {"removed", std::move(removed)},
           {"bytes", bytes}};
@@ -324,7 +324,8 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   json["motion"] = aftermath.motion ? motion_json(*aftermath.motion, aftermath.timing, result.joint_names) : Json(nullptr);
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
   json["advice"] = aftermath.advice ? advice_json(*aftermath.advice) : Json(nullptr);
-  json["certificate"] = aftermath.cut ? certificate_json(*aftermath.cut, aftermath.cut_bytes) : Json(nullptr);
+  json["certificate"] =
+      aftermath.certificate ? certificate_json(*aftermath.certificate, aftermath.certificate_bytes) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};

@@ -19,7 +19,7 @@
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
 #include "swivel/graph/search/path_first.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
@@ -339,7 +339,7 @@ TEST(RollLattice, RepairsAreSweeps) {
     const auto repaired = make_cost_to_go(*lattice);
     repaired->sweep(lattice->layers() - 1);
     std::vector<std::pair<int, int>> nodes;
-    std::vector<std::array<int, 3>> cut;
+    std::vector<std::array<int, 3>> certificate;
     for (int round = 0; round < 5; ++round) {
       const bool at_once = round % 2 == 1;
       for (int k = 0; k < (at_once ? 2 : 20); ++k) {
@@ -355,15 +355,15 @@ TEST(RollLattice, RepairsAreSweeps) {
       for (int layer = 0; layer + 1 < static_cast<int>(best.size()); layer += 3) {
         const int a = best[static_cast<std::size_t>(layer)], b = best[static_cast<std::size_t>(layer) + 1];
         repaired->remove_edge(layer, a, b);
-        cut.push_back({layer, a, b});
+        certificate.push_back({layer, a, b});
       }
       repaired->repair();
       many += at_once;
     }
-    edges += static_cast<int>(cut.size());
+    edges += static_cast<int>(certificate.size());
     const auto swept = make_cost_to_go(*lattice);
     for (const auto& [layer, slot] : nodes) swept->verdicts().remove_node(layer, slot);
-    for (const auto& [layer, a, b] : cut) swept->remove_edge(layer, a, b);
+    for (const auto& [layer, a, b] : certificate) swept->remove_edge(layer, a, b);
     swept->sweep(lattice->layers() - 1);
     for (int layer = 0; layer < lattice->layers(); ++layer)
       for (int slot = 0; slot < lattice->slots(layer); ++slot, ++compared)
@@ -452,17 +452,18 @@ TEST(RollLattice, CutsAreVerified) {
     if (planner.plan().status != PlanStatus::kInfeasible) continue;
     ++cuts;
     const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial);
-    const Cut cut = find_cut(planner.view());
-    const CutCheck check = check_cut(planner.prepare(), planner.problem(), cut);
+    const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
+    const CertificateCheck check = verify_certificate(planner.prepare(), planner.problem(), certificate);
     ASSERT_TRUE(check.passed) << what << ": " << check.failure;
-    edges += std::any_of(cut.band.begin(), cut.band.end(), [](const Cut::Layer& layer) { return !layer.edges.empty(); });
-    Cut wrong = cut;
-    const auto with_removed =
-        std::find_if(wrong.band.begin(), wrong.band.end(), [](const Cut::Layer& layer) { return !layer.removed.empty(); });
+    edges += std::any_of(certificate.band.begin(), certificate.band.end(),
+                         [](const InfeasibilityCertificate::Layer& layer) { return !layer.edges.empty(); });
+    InfeasibilityCertificate wrong = certificate;
+    const auto with_removed = std::find_if(wrong.band.begin(), wrong.band.end(),
+                                           [](const InfeasibilityCertificate::Layer& layer) { return !layer.removed.empty(); });
     if (with_removed == wrong.band.end()) continue;
     with_removed->removed.pop_back();
     ++forged;
-    ASSERT_FALSE(check_cut(planner.prepare(), planner.problem(), wrong).passed) << what;
+    ASSERT_FALSE(verify_certificate(planner.prepare(), planner.problem(), wrong).passed) << what;
   }
   std::printf("%d cuts, %d with edges, %d forged\n", cuts, edges, forged);
   EXPECT_GE(cuts, at_least(20));

@@ -10,7 +10,7 @@
 #include "swivel/core/answer/answer_text.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/io/io.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/refine/motion.hpp"
@@ -107,14 +107,14 @@ TEST(Contact, ThatIsTooDeepHasACertificate) {
   Planner planner(problem);
   const PlanResult result = planner.plan();
   ASSERT_EQ(result.status, PlanStatus::kInfeasible);
-  const Cut cut = find_cut(planner.view());
-  EXPECT_TRUE(std::any_of(cut.witnesses.begin(), cut.witnesses.end(), [](const Cause& witness) {
+  const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
+  EXPECT_TRUE(std::any_of(certificate.witnesses.begin(), certificate.witnesses.end(), [](const Cause& witness) {
     return witness.bodies == std::array<std::string, 2>{"disc", "plate"};
   }));
-  const CutCheck check = check_cut(PreparedRobot(problem), problem, cut);
+  const CertificateCheck check = verify_certificate(PreparedRobot(problem), problem, certificate);
   EXPECT_TRUE(check.passed) << check.failure;
   // For the same problem with a disc that may be so deep, the certificate proves nothing.
-  EXPECT_FALSE(check_cut(PreparedRobot(problem), polishing(0.004, 0.006), cut).passed);
+  EXPECT_FALSE(verify_certificate(PreparedRobot(problem), polishing(0.004, 0.006), certificate).passed);
 }
 
 TEST(Contact, BetweenLayersIsBoundedAsWell) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/answer/cut.hpp"
+#include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/answer/plan.hpp"
 
 namespace swivel {
@@ -20,9 +20,9 @@ namespace swivel {
 
 /// Returns what an infeasibility certificate of a size in bytes holds: its layers, and which causes
 /// remove how many nodes and edges.
-[[nodiscard]] std::string cut_text(const Cut& cut, std::size_t bytes);
+[[nodiscard]] std::string certificate_text(const InfeasibilityCertificate& certificate, std::size_t bytes);
 /// Returns what an infeasibility certificate holds, without its size: its layers, and which causes
 /// remove how many nodes and edges.
-[[nodiscard]] std::string removed_text(const Cut& cut);
+[[nodiscard]] std::string removed_text(const InfeasibilityCertificate& certificate);
 
 }  // namespace swivel

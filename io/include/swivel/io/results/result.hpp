@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "swivel/core/answer/advice.hpp"
-#include "swivel/core/answer/cut.hpp"
+#include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/answer/refined.hpp"
 #include "swivel/core/base/timeline.hpp"
@@ -18,10 +18,10 @@ namespace swivel::io {
 /// unless the problem is solved.
 [[nodiscard]] std::string to_json(const PlanResult& result);
 /// Returns CERTIFICATE.json as text, docs/formats.md, with a line for each layer.
-[[nodiscard]] std::string to_json(const Cut& cut);
-/// Loads CERTIFICATE.json. Throws InputError for a file that is none. check_cut() verifies what it
+[[nodiscard]] std::string to_json(const InfeasibilityCertificate& certificate);
+/// Loads CERTIFICATE.json. Throws InputError for a file that is none. verify_certificate() verifies what it
 /// says.
-[[nodiscard]] Cut load_cut(const std::filesystem::path& json);
+[[nodiscard]] InfeasibilityCertificate load_certificate(const std::filesystem::path& json);
 /// Returns RESULT.json for an internal error: its status is "error".
 [[nodiscard]] std::string error_json(const std::string& message);
 /// Returns the timeline in Chrome's trace event format, which Perfetto and speedscope open.
@@ -31,10 +31,10 @@ namespace swivel::io {
 struct Aftermath {
   const Refined* refinement = nullptr;
   const TimingResult* motion = nullptr;
-  TimingOptions timing;                         ///< the options that the motion was timed with
-  const std::vector<Advice>* advice = nullptr;  ///< for a problem that has no path
-  const Cut* cut = nullptr;                     ///< the certificate that there is no path
-  std::size_t cut_bytes = 0;                    ///< size of the certificate's file
+  TimingOptions timing;                                   ///< the options that the motion was timed with
+  const std::vector<Advice>* advice = nullptr;            ///< for a problem that has no path
+  const InfeasibilityCertificate* certificate = nullptr;  ///< the certificate that there is no path
+  std::size_t certificate_bytes = 0;                      ///< size of the certificate's file
 };
 /// Returns RESULT.json as text, as to_json(result) does, with the keys `refinement`, `motion`,
 /// `advice` and `certificate` filled in. docs/formats.md "Result".

@@ -11,13 +11,13 @@ namespace swivel {
 
 /// An infeasibility certificate: it proves that a problem has no path at its resolution. It lists
 /// nodes and edges of some neighbouring layers, each removed by a cause, without which nothing
-/// leads through these layers. check_cut() verifies it from the problem alone; docs/theory.md says
+/// leads through these layers. verify_certificate() verifies it from the problem alone; docs/theory.md says
 /// why that is a proof.
 ///
 /// In each layer some nodes are marked as *reached*. In the first layer every node is reached or
 /// removed. Every edge from a reached node leads to a reached node, or is removed, or its head is.
 /// In the last layer no node is reached.
-struct Cut {
+struct InfeasibilityCertificate {
   /// The slots first ... last.
   struct Range {
     int first = 0, last = 0;
@@ -57,11 +57,11 @@ struct Cut {
   std::vector<Layer> band;  ///< layers from `first_layer` on
   /// The causes: kind, joint and side, bodies, name of a check; without values.
   std::vector<Cause> witnesses;
-  bool operator==(const Cut&) const = default;
+  bool operator==(const InfeasibilityCertificate&) const = default;
 };
 
 /// How many nodes and edges a certificate removes by each cause, and how many nodes it reaches.
-struct CutCounts {
+struct CertificateCounts {
   struct Removed {
     std::int64_t nodes = 0, edges = 0;
   };
@@ -69,6 +69,6 @@ struct CutCounts {
   std::int64_t reached = 0;  ///< reached nodes
 };
 /// Counts the nodes and edges of a certificate.
-[[nodiscard]] CutCounts count(const Cut& cut);
+[[nodiscard]] CertificateCounts count(const InfeasibilityCertificate& certificate);
 
 }  // namespace swivel

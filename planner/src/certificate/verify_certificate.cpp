@@ -8,7 +8,7 @@
 #include "swivel/core/lattice/scale.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
 
 namespace swivel {
@@ -30,33 +30,35 @@ std::string number(int k) {
 
 class Verifier {
  public:
-  Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule, bool started, const Cut& cut, CutCheck& result,
-           const std::shared_ptr<StateCheck>& check, const Budget& budget)
+  Verifier(const Lattice& lattice, const World& world, const EdgeRule& rule, bool started,
+           const InfeasibilityCertificate& certificate, CertificateCheck& result, const std::shared_ptr<StateCheck>& check,
+           const Budget& budget)
       : lattice_(lattice),
-        cut_(cut),
+        certificate_(certificate),
         started_(started),
         result_(result),
         budget_(budget),
         witnesses_(lattice, world, rule, DistanceProofs::kOff, check, budget) {}
 
   void run() {
-    for (std::size_t k = 0; k < cut_.witnesses.size(); ++k)
-      if (!witnesses_.add(cut_.witnesses[k]))
-        throw Refused{"witness " + std::to_string(k) + ": " + words(cut_.witnesses[k]) + ": is nothing that this problem has"};
-    const int count = static_cast<int>(cut_.band.size());
-    if (count == 0 || cut_.first_layer < 0 || cut_.first_layer > lattice_.layers() - count)
-      throw Refused{"it has layers " + number(cut_.first_layer) + " to " + number(cut_.first_layer + count - 1) +
+    for (std::size_t k = 0; k < certificate_.witnesses.size(); ++k)
+      if (!witnesses_.add(certificate_.witnesses[k]))
+        throw Refused{"witness " + std::to_string(k) + ": " + words(certificate_.witnesses[k]) +
+                      ": is nothing that this problem has"};
+    const int count = static_cast<int>(certificate_.band.size());
+    if (count == 0 || certificate_.first_layer < 0 || certificate_.first_layer > lattice_.layers() - count)
+      throw Refused{"it has layers " + number(certificate_.first_layer) + " to " + number(certificate_.first_layer + count - 1) +
                     ": the problem has 0 to " + number(lattice_.layers() - 1)};
     for (int k = 0; k < count; ++k) {
-      here_ = read(cut_.first_layer + k, cut_.band[index(k)]);
+      here_ = read(certificate_.first_layer + k, certificate_.band[index(k)]);
       if (k == 0)
         every_node_is_told(here_);
       else
-        nothing_leads_on(before_, here_, cut_.band[index(k)].edges);
+        nothing_leads_on(before_, here_, certificate_.band[index(k)].edges);
       std::swap(before_, here_);
     }
-    if (!cut_.band.back().reached.empty())
-      throw Refused{"layer " + number(before_.layer) + ", the last: slot " + number(cut_.band.back().reached[0].first) +
+    if (!certificate_.band.back().reached.empty())
+      throw Refused{"layer " + number(before_.layer) + ", the last: slot " + number(certificate_.band.back().reached[0].first) +
                     " is reached"};
   }
 
@@ -75,7 +77,7 @@ class Verifier {
 
   /// Builds the nodes of a layer with the state that the certificate gives them. Refuses a node
   /// whose witness does not remove it.
-  Layer read(int number_of, const Cut::Layer& said) {
+  Layer read(int number_of, const InfeasibilityCertificate::Layer& said) {
     budget_.poll();
     Layer layer;
     layer.layer = number_of;
@@ -86,7 +88,7 @@ class Verifier {
     layer.at.assign(index(slots), nullptr);
     for (const Lattice::Node& node : layer.nodes) layer.at[index(node.slot)] = &node;
     layer.state.assign(index(slots), State::kUntold);
-    const auto tell = [&](const Cut::Range& range, State state) {
+    const auto tell = [&](const InfeasibilityCertificate::Range& range, State state) {
       if (range.first < 0 || range.last < range.first || range.last >= slots)
         refuse(number_of, range.first, "a range to " + number(range.last) + ": allowed are slots up to " + number(slots - 1));
       for (int slot = range.first; slot <= range.last; ++slot) {
@@ -94,12 +96,12 @@ class Verifier {
         layer.state[index(slot)] = state;
       }
     };
-    for (const Cut::Range& range : said.reached) {
+    for (const InfeasibilityCertificate::Range& range : said.reached) {
       tell(range, State::kReached);
       for (int slot = range.first; slot <= range.last; ++slot)
         if (layer.at[index(slot)] == nullptr) refuse(number_of, slot, "is said to be reached, and has no node");
     }
-    for (const Cut::Nodes& removed : said.removed) {
+    for (const InfeasibilityCertificate::Nodes& removed : said.removed) {
       tell(removed.slots, State::kRemoved);
       const Cause& cause = witness(removed.witness, number_of);
       for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot, ++result_.nodes)
@@ -110,9 +112,9 @@ class Verifier {
   }
 
   const Cause& witness(int k, int layer) const {
-    if (k < 0 || k >= static_cast<int>(cut_.witnesses.size()))
+    if (k < 0 || k >= static_cast<int>(certificate_.witnesses.size()))
       throw Refused{"layer " + number(layer) + ": witness " + number(k) + " is not listed"};
-    return cut_.witnesses[index(k)];
+    return certificate_.witnesses[index(k)];
   }
 
   void every_node_is_told(const Layer& layer) const {
@@ -123,8 +125,8 @@ class Verifier {
 
   /// Refuses unless every edge from a reached node of `from` leads to a reached node of `to` or is
   /// removed, or its head is removed.
-  void nothing_leads_on(const Layer& from, const Layer& to, const std::vector<Cut::Edges>& removed) {
-    for (const Cut::Edges& edges : removed) {
+  void nothing_leads_on(const Layer& from, const Layer& to, const std::vector<InfeasibilityCertificate::Edges>& removed) {
+    for (const InfeasibilityCertificate::Edges& edges : removed) {
       witness(edges.witness, to.layer);
       for (const int slot : {edges.tails.first, edges.tails.last})
         if (slot < 0 || slot >= static_cast<int>(from.state.size()) || from.state[index(slot)] != State::kReached)
@@ -156,69 +158,71 @@ class Verifier {
                    std::to_string(removed[k].count));
   }
 
-  void edge_is_removed(int layer, int a, int b, const std::vector<Cut::Edges>& removed, std::vector<std::int64_t>& asked) {
+  void edge_is_removed(int layer, int a, int b, const std::vector<InfeasibilityCertificate::Edges>& removed,
+                       std::vector<std::int64_t>& asked) {
     bool told = false;
     for (std::size_t k = 0; k < removed.size(); ++k) {
-      const Cut::Edges& edges = removed[k];
+      const InfeasibilityCertificate::Edges& edges = removed[k];
       if (b < edges.heads.first || b > edges.heads.last || a < edges.tails.first || a > edges.tails.last) continue;
       told = true;
       ++asked[k];
       ++result_.edges;
       if (!witnesses_.removes_edge(edges.witness, layer, a, b))
         refuse(layer, a,
-               "its edge to slot " + number(b) + " is not removed by its witness, " + words(cut_.witnesses[index(edges.witness)]));
+               "its edge to slot " + number(b) + " is not removed by its witness, " +
+                   words(certificate_.witnesses[index(edges.witness)]));
     }
     if (!told) refuse(layer, a, "its edge to slot " + number(b) + " is neither removed nor leads to a reached node");
   }
 
   const Lattice& lattice_;
-  const Cut& cut_;
+  const InfeasibilityCertificate& certificate_;
   bool started_;
-  CutCheck& result_;
+  CertificateCheck& result_;
   const Budget& budget_;
   Witnesses witnesses_;
   Layer before_, here_;
 };
 
 /// Throws InputError if the certificate is for another lattice than the problem's.
-void require_same_layout(const Problem& problem, const Cut& cut, int layers) {
+void require_same_layout(const Problem& problem, const InfeasibilityCertificate& certificate, int layers) {
   const auto require = [&](bool holds, const char* what) {
     if (!holds)
       throw InputError(problem.source,
                        std::string(what) + " is another than the certificate's: allowed is what it was planned with");
   };
-  const Resolution &own = problem.resolution, &other = cut.resolution;
+  const Resolution &own = problem.resolution, &other = certificate.resolution;
   require(own.ds == other.ds, "resolution.ds (--ds)");
   require(own.dphi == other.dphi, "resolution.dphi (--dphi)");
   require(own.dalpha == other.dalpha, "resolution.dalpha");
   require(own.arc == other.arc, "resolution.arc");
   require(own.arcs == other.arcs, "resolution.arcs (--arcs, --no-arcs)");
-  require(problem.limits.edges == cut.edges, "limits.edges (--edges)");
-  require(layers == cut.layers, "the number of layers");
+  require(problem.limits.edges == certificate.edges, "limits.edges (--edges)");
+  require(layers == certificate.layers, "the number of layers");
 }
 
 }  // namespace
 
-CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut& cut, const Budget& budget,
-                   const std::shared_ptr<StateCheck>& check) {
+CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem, const InfeasibilityCertificate& certificate,
+                                    const Budget& budget, const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("check of a cut");
   validate(problem);
   robot.require_prepared_for(problem);
   const Chain& chain = robot.arm().chain;
   const ToolPath path = path_within_scale(problem, chain, budget);
   std::unique_ptr<Lattice> lattice = make_lattice(chain, robot.arm_class(), path, problem, budget);
-  require_same_layout(problem, cut, lattice->layers());
-  CutCheck result;
+  require_same_layout(problem, certificate, lattice->layers());
+  CertificateCheck result;
   result.complete = robot.arm_class().complete();
   try {
-    for (const auto& joints : cut.windings) {
+    for (const auto& joints : certificate.windings) {
       lattice = lattice->with_windings(joints);
       if (!lattice) throw Refused{"windings: are of arms that are planned on arcs"};
     }
     const World world(robot.world(), problem, budget);
-    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), cut, result, check, budget).run();
-    result.s = {lattice->path().layer(cut.first_layer).s,
-                lattice->path().layer(cut.first_layer + static_cast<int>(cut.band.size()) - 1).s};
+    Verifier(*lattice, world, world.edge_rule(robot.radii()), problem.start.has_value(), certificate, result, check, budget).run();
+    result.s = {lattice->path().layer(certificate.first_layer).s,
+                lattice->path().layer(certificate.first_layer + static_cast<int>(certificate.band.size()) - 1).s};
     result.passed = true;
   } catch (const Refused& refused) {
     result.failure = refused.why;

@@ -8,7 +8,7 @@
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/messages/invalid_argument.hpp"
 #include "swivel/graph/search/path_first.hpp"
-#include "swivel/planner/certificate/cut.hpp"
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/planner/plan/plan_view.hpp"
 #include "swivel/planner/plan/planner.hpp"
 #include "swivel/planner/robot/prepared_robot.hpp"
@@ -23,7 +23,7 @@ constexpr std::size_t index(int k) {
   return static_cast<std::size_t>(k);
 }
 
-void add(std::vector<Cut::Range>& ranges, int slot) {
+void add(std::vector<InfeasibilityCertificate::Range>& ranges, int slot) {
   if (!ranges.empty() && ranges.back().last + 1 == slot)
     ranges.back().last = slot;
   else
@@ -39,21 +39,22 @@ class Finder {
         started_(view.problem.start.has_value()),
         witnesses_(lattice_, view.world, view.world.edge_rule(view.robot.radii()), DistanceProofs::kOn, check, budget) {}
 
-  Cut find() {
-    Cut cut;
-    cut.layers = lattice_.layers();
-    cut.first_layer = last_without_way_on();
-    Nodes nodes = nodes_of(cut.first_layer);
+  InfeasibilityCertificate find() {
+    InfeasibilityCertificate certificate;
+    certificate.layers = lattice_.layers();
+    certificate.first_layer = last_without_way_on();
+    Nodes nodes = nodes_of(certificate.first_layer);
     std::vector<char> all(nodes.at.size(), 1);
-    if (started_ && cut.first_layer == 0)  // the other slots have no node
+    if (started_ && certificate.first_layer == 0)  // the other slots have no node
       for (std::size_t slot = 0; slot < all.size(); ++slot) all[slot] = nodes.at[slot] != nullptr;
     std::vector<char> reached(nodes.at.size(), 0);
     for (int slot = 0; slot < static_cast<int>(reached.size()); ++slot)
-      reached[index(slot)] = has_row(cut.first_layer, slot, nodes);
-    cut.band.push_back(layer_of(cut.first_layer, nodes, reached, all));
-    for (int layer = cut.first_layer; !cut.band.back().reached.empty(); ++layer) cut.band.push_back(next(layer, nodes, reached));
-    cut.witnesses = witnesses_.all();
-    return cut;
+      reached[index(slot)] = has_row(certificate.first_layer, slot, nodes);
+    certificate.band.push_back(layer_of(certificate.first_layer, nodes, reached, all));
+    for (int layer = certificate.first_layer; !certificate.band.back().reached.empty(); ++layer)
+      certificate.band.push_back(next(layer, nodes, reached));
+    certificate.witnesses = witnesses_.all();
+    return certificate;
   }
 
  private:
@@ -136,9 +137,9 @@ class Finder {
 
   /// Returns a layer of the certificate: its reached slots, and a witness for each slot that is
   /// asked for and not reached.
-  [[nodiscard]] Cut::Layer layer_of(int layer, const Nodes& nodes, const std::vector<char>& reached,
-                                    const std::vector<char>& asked) {
-    Cut::Layer found;
+  [[nodiscard]] InfeasibilityCertificate::Layer layer_of(int layer, const Nodes& nodes, const std::vector<char>& reached,
+                                                         const std::vector<char>& asked) {
+    InfeasibilityCertificate::Layer found;
     found.slots = static_cast<int>(nodes.at.size());
     int witness = -1;
     for (int slot = 0; slot < found.slots; ++slot) {
@@ -158,7 +159,7 @@ class Finder {
 
   /// Returns the certificate's layer after `layer`. On entry `nodes` and `reached` are those of
   /// `layer`, on return those of the next layer.
-  [[nodiscard]] Cut::Layer next(int layer, Nodes& nodes, std::vector<char>& reached) {
+  [[nodiscard]] InfeasibilityCertificate::Layer next(int layer, Nodes& nodes, std::vector<char>& reached) {
     Nodes ahead = nodes_of(layer + 1);
     std::vector<char> reached_ahead(ahead.at.size(), 0), met(ahead.at.size(), 0);
     std::map<int, std::vector<int>> removed;  // removed edges: tails by head
@@ -181,12 +182,12 @@ class Finder {
             reached_ahead[index(b)] = 1;
         }
     }
-    Cut::Layer found = layer_of(layer + 1, ahead, reached_ahead, met);
-    std::vector<Cut::Edges> last;  // of the head before
+    InfeasibilityCertificate::Layer found = layer_of(layer + 1, ahead, reached_ahead, met);
+    std::vector<InfeasibilityCertificate::Edges> last;  // of the head before
     int witness = -1;
     for (const auto& [b, tails] : removed) {
       if (reached_ahead[index(b)]) continue;
-      std::vector<Cut::Edges> here;
+      std::vector<InfeasibilityCertificate::Edges> here;
       for (const int a : tails) {
         witness = witnesses_.of_edge(layer, a, b, witness);
         require(witness >= 0, layer, "an edge");
@@ -194,21 +195,22 @@ class Finder {
         here.back().tails.last = a;
         ++here.back().count;
       }
-      for (Cut::Edges& edges : here) {
-        const auto same = std::find_if(last.begin(), last.end(), [&](const Cut::Edges& other) {
+      for (InfeasibilityCertificate::Edges& edges : here) {
+        const auto same = std::find_if(last.begin(), last.end(), [&](const InfeasibilityCertificate::Edges& other) {
           return other.tails == edges.tails && other.witness == edges.witness;
         });
         if (same == last.end()) continue;
         edges.heads.first = same->heads.first;
         edges.count += same->count;
-        std::erase(found.edges, Cut::Edges(*same));
+        std::erase(found.edges, InfeasibilityCertificate::Edges(*same));
       }
       found.edges.insert(found.edges.end(), here.begin(), here.end());
       last.swap(here);
     }
-    std::sort(found.edges.begin(), found.edges.end(), [](const Cut::Edges& x, const Cut::Edges& y) {
-      return std::tuple(x.heads.first, x.tails.first) < std::tuple(y.heads.first, y.tails.first);
-    });
+    std::sort(found.edges.begin(), found.edges.end(),
+              [](const InfeasibilityCertificate::Edges& x, const InfeasibilityCertificate::Edges& y) {
+                return std::tuple(x.heads.first, x.tails.first) < std::tuple(y.heads.first, y.tails.first);
+              });
     nodes = std::move(ahead);
     reached.swap(reached_ahead);
     return found;
@@ -227,7 +229,7 @@ class Finder {
 
 }  // namespace
 
-Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<StateCheck>& check) {
+InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget, const std::shared_ptr<StateCheck>& check) {
   const TraceSpan span("cut");
   std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
@@ -240,11 +242,11 @@ Cut find_cut(const PlanView& view, const Budget& budget, const std::shared_ptr<S
     SearchCounters counters;
     static_cast<void>(path_first(*own, hooked, {}, counters));
   }
-  Cut cut = Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
-  cut.resolution = view.problem.resolution;
-  cut.edges = view.problem.limits.edges;
-  cut.windings = view.lattice.joints_with_windings();
-  return cut;
+  InfeasibilityCertificate certificate = Finder(view, own ? own->verdicts() : *view.verdicts, check, budget).find();
+  certificate.resolution = view.problem.resolution;
+  certificate.edges = view.problem.limits.edges;
+  certificate.windings = view.lattice.joints_with_windings();
+  return certificate;
 }
 
 }  // namespace swivel

@@ -26,11 +26,12 @@ Json witness_json(const Cause& cause) {
   return json;
 }
 
-Json layer_json(int number, const Cut::Layer& layer) {
+Json layer_json(int number, const InfeasibilityCertificate::Layer& layer) {
   Json reached = Json::array(), nodes = Json::array(), edges = Json::array();
-  for (const Cut::Range& range : layer.reached) reached.push_back({range.first, range.last});
-  for (const Cut::Nodes& removed : layer.removed) nodes.push_back({removed.slots.first, removed.slots.last, removed.witness});
-  for (const Cut::Edges& removed : layer.edges)
+  for (const InfeasibilityCertificate::Range& range : layer.reached) reached.push_back({range.first, range.last});
+  for (const InfeasibilityCertificate::Nodes& removed : layer.removed)
+    nodes.push_back({removed.slots.first, removed.slots.last, removed.witness});
+  for (const InfeasibilityCertificate::Edges& removed : layer.edges)
     edges.push_back(
         {removed.tails.first, removed.tails.last, removed.heads.first, removed.heads.last, removed.witness, removed.count});
   return {{"layer", number}, {"slots", layer.slots}, {"reached", reached}, {"nodes", nodes}, {"edges", edges}};
@@ -116,8 +117,8 @@ Cause witness_of(const Reader& read, const Parsed& json, const std::string& key)
   return cause;
 }
 
-Cut::Layer layer_of(const Reader& read, const Parsed& json, const std::string& key) {
-  Cut::Layer layer;
+InfeasibilityCertificate::Layer layer_of(const Reader& read, const Parsed& json, const std::string& key) {
+  InfeasibilityCertificate::Layer layer;
   layer.slots = read.small(read.at(json, "slots", key), key + "slots");
   const auto each = [&](const char* name, std::size_t size, const auto& take) {
     const std::string where = key + name;
@@ -134,16 +135,16 @@ Cut::Layer layer_of(const Reader& read, const Parsed& json, const std::string& k
 
 }  // namespace
 
-std::string to_json(const Cut& cut) {
+std::string to_json(const InfeasibilityCertificate& certificate) {
   Json windings = Json::array(), witnesses = Json::array();
-  for (const auto& joints : cut.windings) {
+  for (const auto& joints : certificate.windings) {
     Json told = Json::array();
     for (std::size_t j = 0; j < kDof; ++j)
       if (joints[j]) told.push_back(j);
     windings.push_back(std::move(told));
   }
-  for (const Cause& cause : cut.witnesses) witnesses.push_back(witness_json(cause));
-  const Resolution& resolution = cut.resolution;
+  for (const Cause& cause : certificate.witnesses) witnesses.push_back(witness_json(cause));
+  const Resolution& resolution = certificate.resolution;
   const Json head = {{"format", kFormat},
                      {"resolution",
                       {{"ds", resolution.ds},
@@ -151,20 +152,20 @@ std::string to_json(const Cut& cut) {
                        {"dalpha", resolution.dalpha},
                        {"arc", resolution.arc},
                        {"arcs", resolution.arcs}}},
-                     {"edges", cut.edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
+                     {"edges", certificate.edges == EdgeMode::kContinuous ? "continuous" : "nodes"},
                      {"windings", std::move(windings)},
-                     {"path_layers", cut.layers},
+                     {"path_layers", certificate.layers},
                      {"witnesses", std::move(witnesses)}};
   const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
   std::string text = line(head);
   text.back() = ',';
   text += "\n\"layers\":[";
-  for (std::size_t k = 0; k < cut.band.size(); ++k)
-    text += (k == 0 ? "\n" : ",\n") + line(layer_json(cut.first_layer + static_cast<int>(k), cut.band[k]));
+  for (std::size_t k = 0; k < certificate.band.size(); ++k)
+    text += (k == 0 ? "\n" : ",\n") + line(layer_json(certificate.first_layer + static_cast<int>(k), certificate.band[k]));
   return text + "\n]}\n";
 }
 
-Cut load_cut(const std::filesystem::path& file) {
+InfeasibilityCertificate load_certificate(const std::filesystem::path& file) {
   const std::string text = read_file(file, "certificate (JSON)", kMostCertificateBytes);
   const Reader read(file.string());
   constexpr int kMostDepth = 8;
@@ -178,34 +179,34 @@ Cut load_cut(const std::filesystem::path& file) {
   }
   if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     read.fail("format", "is another", std::string("'") + kFormat + "'");
-  Cut cut;
+  InfeasibilityCertificate certificate;
   const Parsed& resolution = read.at(json, "resolution", "");
-  cut.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
-  cut.resolution.dphi = read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
-  cut.resolution.dalpha = read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
-  cut.resolution.arc = read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
-  cut.resolution.arcs = read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
+  certificate.resolution.ds = read.real(read.at(resolution, "ds", "resolution."), "resolution.ds");
+  certificate.resolution.dphi = read.real(read.at(resolution, "dphi", "resolution."), "resolution.dphi");
+  certificate.resolution.dalpha = read.real(read.at(resolution, "dalpha", "resolution."), "resolution.dalpha");
+  certificate.resolution.arc = read.real(read.at(resolution, "arc", "resolution."), "resolution.arc");
+  certificate.resolution.arcs = read.truth(read.at(resolution, "arcs", "resolution."), "resolution.arcs");
   const std::string edges = read.text(read.at(json, "edges", ""), "edges");
   if (edges != "continuous" && edges != "nodes") read.fail("edges", "'" + edges + "' is unknown", "continuous or nodes");
-  cut.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
+  certificate.edges = edges == "nodes" ? EdgeMode::kNodes : EdgeMode::kContinuous;
   for (const Parsed& told : read.list(read.at(json, "windings", ""), "windings")) {
-    auto& joints = cut.windings.emplace_back();
+    auto& joints = certificate.windings.emplace_back();
     for (const Parsed& joint : read.list(told, "windings"))
       joints[static_cast<std::size_t>(read.whole(joint, "windings", kDof - 1))] = true;
-    if (cut.windings.size() > kDof) read.fail("windings", "has too many lists", "at most 7");
+    if (certificate.windings.size() > kDof) read.fail("windings", "has too many lists", "at most 7");
   }
-  cut.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
+  certificate.layers = read.small(read.at(json, "path_layers", ""), "path_layers");
   for (const Parsed& witness : read.list(read.at(json, "witnesses", ""), "witnesses"))
-    cut.witnesses.push_back(witness_of(read, witness, "witnesses[" + std::to_string(cut.witnesses.size()) + "]."));
+    certificate.witnesses.push_back(witness_of(read, witness, "witnesses[" + std::to_string(certificate.witnesses.size()) + "]."));
   for (const Parsed& layer : read.list(read.at(json, "layers", ""), "layers")) {
-    const std::string key = "layers[" + std::to_string(cut.band.size()) + "].";
+    const std::string key = "layers[" + std::to_string(certificate.band.size()) + "].";
     const int number = read.small(read.at(layer, "layer", key), key + "layer");
-    if (cut.band.empty()) cut.first_layer = number;
-    if (number != cut.first_layer + static_cast<int>(cut.band.size()))
+    if (certificate.band.empty()) certificate.first_layer = number;
+    if (number != certificate.first_layer + static_cast<int>(certificate.band.size()))
       read.fail(key + "layer", "is " + std::to_string(number), "layers one after the other");
-    cut.band.push_back(layer_of(read, layer, key));
+    certificate.band.push_back(layer_of(read, layer, key));
   }
-  return cut;
+  return certificate;
 }
 
 }  // namespace swivel::io

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Certificates that a problem has no path: verified by check_cut() and by plain loops; forged ones are refused.
-#include "swivel/planner/certificate/cut.hpp"
+// Certificates that a problem has no path: verified by verify_certificate() and by plain loops; forged ones are refused.
+#include "swivel/planner/certificate/infeasibility_certificate.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
 
 #include <gtest/gtest.h>
@@ -30,13 +30,13 @@ using namespace test;
 /// Nodes and edges by their definition, one by one.
 class Plain {
  public:
-  Plain(const Problem& problem, const PreparedRobot& robot, const Cut& cut)
+  Plain(const Problem& problem, const PreparedRobot& robot, const InfeasibilityCertificate& certificate)
       : path_(problem_path(problem, robot.arm().chain)),
         lattice_(make_lattice(robot.arm().chain, robot.arm_class(), path_, problem)),
         world_(robot.world(), problem),
         rule_(world_.edge_rule(robot.radii())),
         query_(world_) {
-    for (const auto& joints : cut.windings) lattice_ = lattice_->with_windings(joints);
+    for (const auto& joints : certificate.windings) lattice_ = lattice_->with_windings(joints);
   }
   [[nodiscard]] const Lattice& lattice() const { return *lattice_; }
 
@@ -68,20 +68,20 @@ class Plain {
 
   /// What is wrong with a certificate, "" where nothing is. Every valid node of its first layer is reached, every valid edge from a
   /// reached node leads to a reached one, none of its last layer is; no node that it takes out is valid.
-  [[nodiscard]] std::string fault(const Cut& cut) {
+  [[nodiscard]] std::string fault(const InfeasibilityCertificate& certificate) {
     std::vector<char> before;
-    for (std::size_t k = 0; k < cut.band.size(); ++k) {
-      const int layer = cut.first_layer + static_cast<int>(k), slots = lattice_->slots(layer);
+    for (std::size_t k = 0; k < certificate.band.size(); ++k) {
+      const int layer = certificate.first_layer + static_cast<int>(k), slots = lattice_->slots(layer);
       const std::string where = "layer " + std::to_string(layer) + " slot ";
       std::vector<char> reached(static_cast<std::size_t>(slots), 0);
-      for (const Cut::Range& range : cut.band[k].reached)
+      for (const InfeasibilityCertificate::Range& range : certificate.band[k].reached)
         for (int slot = range.first; slot <= range.last; ++slot) reached[static_cast<std::size_t>(slot)] = 1;
-      for (const Cut::Nodes& removed : cut.band[k].removed)
+      for (const InfeasibilityCertificate::Nodes& removed : certificate.band[k].removed)
         for (int slot = removed.slots.first; slot <= removed.slots.last; ++slot)
           if (valid(layer, slot)) return where + std::to_string(slot) + " is removed and valid";
       for (int b = 0; b < slots; ++b) {
         if (reached[static_cast<std::size_t>(b)]) {
-          if (k + 1 == cut.band.size()) return where + std::to_string(b) + " is reached in the last layer";
+          if (k + 1 == certificate.band.size()) return where + std::to_string(b) + " is reached in the last layer";
           continue;
         }
         if (!valid(layer, b)) continue;
@@ -92,7 +92,7 @@ class Plain {
       }
       before.swap(reached);
     }
-    return cut.band.empty() ? "empty" : "";
+    return certificate.band.empty() ? "empty" : "";
   }
 
  private:
@@ -105,7 +105,7 @@ class Plain {
 };
 
 /// One change that leaves no proof; none where there is nothing to change in this way.
-using Forgery = std::function<bool(Cut&, Random&)>;
+using Forgery = std::function<bool(InfeasibilityCertificate&, Random&)>;
 
 template <class Items>
 auto some(Items& items, Random& random) {
@@ -114,29 +114,31 @@ auto some(Items& items, Random& random) {
 
 /// A layer of those that have what is asked for; null where none has.
 template <class Has>
-Cut::Layer* some_layer(Cut& cut, Random& random, const Has& has) {
-  std::vector<Cut::Layer*> found;
-  for (Cut::Layer& layer : cut.band)
+InfeasibilityCertificate::Layer* some_layer(InfeasibilityCertificate& certificate, Random& random, const Has& has) {
+  std::vector<InfeasibilityCertificate::Layer*> found;
+  for (InfeasibilityCertificate::Layer& layer : certificate.band)
     if (has(layer)) found.push_back(&layer);
   return found.empty() ? nullptr : *some(found, random);
 }
 
 const std::vector<std::pair<std::string, Forgery>>& forgeries() {
-  const auto has_removed = [](const Cut::Layer& layer) { return !layer.removed.empty(); };
-  const auto has_edges = [](const Cut::Layer& layer) { return !layer.edges.empty(); };
-  const auto has_reached = [](const Cut::Layer& layer) { return !layer.reached.empty(); };
+  const auto has_removed = [](const InfeasibilityCertificate::Layer& layer) { return !layer.removed.empty(); };
+  const auto has_edges = [](const InfeasibilityCertificate::Layer& layer) { return !layer.edges.empty(); };
+  const auto has_reached = [](const InfeasibilityCertificate::Layer& layer) { return !layer.reached.empty(); };
   static const std::vector<std::pair<std::string, Forgery>> all = {
       {"witness of nodes taken out",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_removed);
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_removed);
          if (layer) layer->removed.erase(some(layer->removed, random));
          return layer != nullptr;
        }},
       {"range of nodes shorter",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, [](const Cut::Layer& l) {
-           return std::any_of(l.removed.begin(), l.removed.end(), [](const Cut::Nodes& n) { return n.slots.first < n.slots.last; });
-         });
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer =
+             some_layer(certificate, random, [](const InfeasibilityCertificate::Layer& l) {
+               return std::any_of(l.removed.begin(), l.removed.end(),
+                                  [](const InfeasibilityCertificate::Nodes& n) { return n.slots.first < n.slots.last; });
+             });
          if (!layer) return false;
          auto range = some(layer->removed, random);
          while (range->slots.first == range->slots.last) range = some(layer->removed, random);
@@ -144,23 +146,24 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return true;
        }},
       {"range of nodes wider, into one reached",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, [&](const Cut::Layer& l) { return has_removed(l) && has_reached(l); });
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(
+             certificate, random, [&](const InfeasibilityCertificate::Layer& l) { return has_removed(l) && has_reached(l); });
          if (layer) layer->removed.back().slots.last = std::max(layer->reached.back().last, layer->removed.back().slots.last + 1);
          return layer != nullptr;
        }},
       {"reached nodes become removed ones",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_reached);
-         if (!layer || cut.witnesses.empty()) return false;
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_reached);
+         if (!layer || certificate.witnesses.empty()) return false;
          const auto range = some(layer->reached, random);
-         layer->removed.push_back({*range, random.below(static_cast<int>(cut.witnesses.size()))});
+         layer->removed.push_back({*range, random.below(static_cast<int>(certificate.witnesses.size()))});
          layer->reached.erase(range);
          return true;
        }},
       {"reached node taken out",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_reached);
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_reached);
          if (!layer) return false;
          const auto range = some(layer->reached, random);
          if (range->first == range->last)
@@ -170,39 +173,39 @@ const std::vector<std::pair<std::string, Forgery>>& forgeries() {
          return true;
        }},
       {"witness of edges taken out",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_edges);
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_edges);
          if (layer) layer->edges.erase(some(layer->edges, random));
          return layer != nullptr;
        }},
       {"count of edges",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_edges);
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_edges);
          if (layer) some(layer->edges, random)->count += random.coin() ? 1 : -1;
          return layer != nullptr;
        }},
       {"last layer taken out",
-       [](Cut& cut, Random&) {
-         cut.band.pop_back();
+       [](InfeasibilityCertificate& certificate, Random&) {
+         certificate.band.pop_back();
          return true;
        }},
       {"shifted along the path",
-       [](Cut& cut, Random&) {
-         cut.first_layer = cut.layers - static_cast<int>(cut.band.size()) + 1;
+       [](InfeasibilityCertificate& certificate, Random&) {
+         certificate.first_layer = certificate.layers - static_cast<int>(certificate.band.size()) + 1;
          return true;
        }},
       {"witness that the problem does not have",
-       [](Cut& cut, Random& random) {
-         if (cut.witnesses.empty()) return false;
-         Cause& cause = *some(cut.witnesses, random);
+       [](InfeasibilityCertificate& certificate, Random& random) {
+         if (certificate.witnesses.empty()) return false;
+         Cause& cause = *some(certificate.witnesses, random);
          cause.kind = Cause::Kind::kPair;
          cause.bodies = {"nothing", "nowhere"};
          return true;
        }},
       {"witness that is not listed",
-       [=](Cut& cut, Random& random) {
-         Cut::Layer* const layer = some_layer(cut, random, has_removed);
-         if (layer) layer->removed[0].witness = random.coin() ? -1 : static_cast<int>(cut.witnesses.size());
+       [=](InfeasibilityCertificate& certificate, Random& random) {
+         InfeasibilityCertificate::Layer* const layer = some_layer(certificate, random, has_removed);
+         if (layer) layer->removed[0].witness = random.coin() ? -1 : static_cast<int>(certificate.witnesses.size());
          return layer != nullptr;
        }},
   };
@@ -262,7 +265,7 @@ Problem beyond_a_turn(const TestRobot& robot, Random& random) {
   return problem;
 }
 
-TEST(Cut, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
+TEST(InfeasibilityCertificate, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
   const std::uint64_t base = seed("Cut");
   std::vector<TestRobot> robots = all_robots();
   Random of_robots(base);
@@ -288,39 +291,39 @@ TEST(Cut, IsVerifiedByTheCheckAndByBruteForceAndForgedOnesAreRefused) {
     const PlanResult result = planner.plan(options);
     if (result.status == PlanStatus::kSolved) {
       if (trial % 10 == 0) {
-        EXPECT_THROW(static_cast<void>(find_cut(planner.view())), InvalidArgument) << what;
+        EXPECT_THROW(static_cast<void>(prove_infeasible(planner.view())), InvalidArgument) << what;
       }
       continue;
     }
     ++infeasible;
-    const Cut cut = find_cut(planner.view());
-    Plain plain(problem, *robot, cut);
-    ASSERT_EQ(plain.fault(cut), "") << what;
-    const CutCheck check = check_cut(*robot, problem, cut);
+    const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
+    Plain plain(problem, *robot, certificate);
+    ASSERT_EQ(plain.fault(certificate), "") << what;
+    const CertificateCheck check = verify_certificate(*robot, problem, certificate);
     ASSERT_TRUE(check.passed) << what << ": " << check.failure;
-    const std::string text = io::to_json(cut);
+    const std::string text = io::to_json(certificate);
     io::write_file(file, text);
-    ASSERT_EQ(io::load_cut(file), cut) << what;
+    ASSERT_EQ(io::load_certificate(file), certificate) << what;
 
-    const CutCounts counts = count(cut);
+    const CertificateCounts counts = count(certificate);
     bool nodes = false, edges = false;
-    for (std::size_t k = 0; k < cut.witnesses.size(); ++k) {
+    for (std::size_t k = 0; k < certificate.witnesses.size(); ++k) {
       nodes |= counts.by_witness[k].nodes > 0;
       edges |= counts.by_witness[k].edges > 0;
-      ++kinds[to_string(cut.witnesses[k].kind)];
+      ++kinds[to_string(certificate.witnesses[k].kind)];
     }
     started += problem.start.has_value();
     continuous += problem.limits.edges == EdgeMode::kContinuous;
     by_nodes += nodes;
     by_edges += edges;
     arcs += number >= grids;
-    windings += !cut.windings.empty();
+    windings += !certificate.windings.empty();
     bytes = std::max(bytes, static_cast<int>(text.size()));
 
     for (const auto& [name, forge] : forgeries()) {
-      Cut bad = cut;
+      InfeasibilityCertificate bad = certificate;
       if (!forge(bad, random)) continue;
-      if (check_cut(*robot, problem, bad).passed) {  // by chance it may be a proof as well
+      if (verify_certificate(*robot, problem, bad).passed) {  // by chance it may be a proof as well
         ASSERT_EQ(plain.fault(bad), "") << what << ": " << name;
         ++still_proofs;
       } else {
@@ -358,7 +361,7 @@ class RefusesHalf final : public StateCheck {
   double most = 0;
 };
 
-TEST(Cut, ACallersCheckIsAWitness) {
+TEST(InfeasibilityCertificate, ACallersCheckIsAWitness) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_a.yaml");
   Problem coarse = problem;
   coarse.resolution = {.ds = 0.02, .dphi = 0.2};
@@ -372,35 +375,35 @@ TEST(Cut, ACallersCheckIsAWitness) {
   options.planner = PlannerKind::kLazy;
   options.hooks.check = half;
   ASSERT_EQ(planner.plan(options).status, PlanStatus::kInfeasible);
-  const Cut cut = find_cut(planner.view(), {}, half);
-  EXPECT_TRUE(std::any_of(cut.witnesses.begin(), cut.witnesses.end(),
+  const InfeasibilityCertificate certificate = prove_infeasible(planner.view(), {}, half);
+  EXPECT_TRUE(std::any_of(certificate.witnesses.begin(), certificate.witnesses.end(),
                           [](const Cause& c) { return c.kind == Cause::Kind::kCheck && c.check == "half"; }));
-  EXPECT_TRUE(check_cut(*robot, coarse, cut, {}, half).passed);
-  const CutCheck without = check_cut(*robot, coarse, cut);
+  EXPECT_TRUE(verify_certificate(*robot, coarse, certificate, {}, half).passed);
+  const CertificateCheck without = verify_certificate(*robot, coarse, certificate);
   EXPECT_FALSE(without.passed);
   EXPECT_NE(without.failure.find("half"), std::string::npos) << without.failure;
   half->most = 1e3;
-  EXPECT_FALSE(check_cut(*robot, coarse, cut, {}, half).passed);
+  EXPECT_FALSE(verify_certificate(*robot, coarse, certificate, {}, half).passed);
 }
 
 /// A certificate says nothing about a lattice that is laid out otherwise.
-TEST(Cut, OfAnotherLayoutIsBadInput) {
+TEST(InfeasibilityCertificate, OfAnotherLayoutIsBadInput) {
   const Problem problem = io::load_problem(data_dir() / "problems/experiment_a_start.yaml");
   const auto robot = std::make_shared<const PreparedRobot>(problem);
   Planner planner(robot, problem);
   ASSERT_EQ(planner.plan().status, PlanStatus::kInfeasible);
-  const Cut cut = find_cut(planner.view());
-  EXPECT_TRUE(check_cut(*robot, problem, cut).passed);
+  const InfeasibilityCertificate certificate = prove_infeasible(planner.view());
+  EXPECT_TRUE(verify_certificate(*robot, problem, certificate).passed);
   Problem other = problem;
   other.resolution.ds *= 2;
-  EXPECT_THROW(static_cast<void>(check_cut(*robot, other, cut)), InputError);
+  EXPECT_THROW(static_cast<void>(verify_certificate(*robot, other, certificate)), InputError);
   other = problem;
   other.limits.edges = EdgeMode::kNodes;
-  EXPECT_THROW(static_cast<void>(check_cut(*robot, other, cut)), InputError);
+  EXPECT_THROW(static_cast<void>(verify_certificate(*robot, other, certificate)), InputError);
   // Of the same layout, but with a path: it proves nothing there.
   other = problem;
   other.start.reset();
-  EXPECT_FALSE(check_cut(*robot, other, cut).passed);
+  EXPECT_FALSE(verify_certificate(*robot, other, certificate).passed);
 }
 
 }  // namespace

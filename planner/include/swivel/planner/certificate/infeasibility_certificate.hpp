@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "swivel/core/answer/cut.hpp"
+#include "swivel/core/answer/infeasibility_certificate.hpp"
 #include "swivel/core/base/budget.hpp"
 #include "swivel/core/problem/hooks.hpp"
 
@@ -14,14 +14,15 @@ class PreparedRobot;
 struct Problem;
 struct PlanView;
 
-/// Returns a certificate that the last plan's problem has no path, which check_cut() verifies: a
+/// Returns a certificate that the last plan's problem has no path, which verify_certificate() verifies: a
 /// band of layers that no path crosses, as near to the path's end as possible. `check` must be the
 /// StateCheck that the plan used, or null. Throws InvalidArgument if the last plan found a path,
 /// and Stopped.
-[[nodiscard]] Cut find_cut(const PlanView& view, const Budget& budget = {}, const std::shared_ptr<StateCheck>& check = nullptr);
+[[nodiscard]] InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& budget = {},
+                                                        const std::shared_ptr<StateCheck>& check = nullptr);
 
 /// The verdict on a certificate of infeasibility: what it proves, or what is wrong with it.
-struct CutCheck {
+struct CertificateCheck {
   bool passed = false;
   /// one line: the first fault, with layer and slot; empty if passed
   std::string failure;
@@ -37,7 +38,8 @@ struct CutCheck {
 /// Uses no planner. `check` must be the StateCheck that was planned with, or null. Throws
 /// InputError if the problem's lattice differs from the certificate's (resolution, edges, layers),
 /// InvalidArgument as check_trajectory() does, and Stopped.
-[[nodiscard]] CutCheck check_cut(const PreparedRobot& robot, const Problem& problem, const Cut& cut, const Budget& budget = {},
-                                 const std::shared_ptr<StateCheck>& check = nullptr);
+[[nodiscard]] CertificateCheck verify_certificate(const PreparedRobot& robot, const Problem& problem,
+                                                  const InfeasibilityCertificate& certificate, const Budget& budget = {},
+                                                  const std::shared_ptr<StateCheck>& check = nullptr);
 
 }  // namespace swivel
