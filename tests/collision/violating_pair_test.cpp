@@ -69,12 +69,12 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
     for (int k = 0; k < 500; ++k) {
       const Config& q = walk.next();
       const double d = random.coin(0.8) ? 0.005 : random.uniform(0, 0.05);
-      std::optional<BodyPair> likely;
-      if (random.coin(0.2)) likely = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
+      std::optional<BodyPair> suspected;
+      if (random.coin(0.2)) suspected = world.pairs()[random.below(static_cast<int>(world.pairs().size()))];
       const Threshold threshold =
           special ? Threshold(ClearanceRule::kNode, random.coin() ? 0 : random.uniform(-0.01, 0.01)) : Threshold(d);
-      const auto expected = plain.find_violating_pair(q, threshold, likely),
-                 found = kept.find_violating_pair_incremental(q, threshold, likely);
+      const auto expected = plain.find_violating_pair(q, threshold, suspected),
+                 found = kept.find_violating_pair_incremental(q, threshold, suspected);
       ASSERT_EQ(found, expected) << "SWIVEL_TEST_SEED=" << base << " " << robot.name << " scene " << s << " posture " << k << " d "
                                  << d;
       if (found && kept.violation_is_proved()) {
@@ -84,12 +84,12 @@ TEST_P(Kept, ClearancesChangeNoAnswer) {
       }
       if (random.coin(0.2)) {
         const auto of_scene = [&]() -> std::optional<BodyPair> {
-          if (likely && plain.pair_violates(q, *likely, threshold)) return likely;
+          if (suspected && plain.pair_violates(q, *suspected, threshold)) return suspected;
           for (const BodyPair& pair : world.pairs())
             if (pair.b >= static_cast<int>(world.bodies().size()) && plain.pair_violates(q, pair, threshold)) return pair;
           return std::nullopt;
         }();
-        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, likely), of_scene) << "SWIVEL_TEST_SEED=" << base;
+        ASSERT_EQ(kept.find_violating_pair_with_scene(q, threshold, suspected), of_scene) << "SWIVEL_TEST_SEED=" << base;
         ++scene_questions;
         only_own += found && !of_scene;
       }

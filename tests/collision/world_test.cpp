@@ -105,14 +105,14 @@ TEST(World, TheLikelyPairIsAskedFirst) {
   int named = 0, others = 0, none = 0;
   for (int k = 0; k < 3000; ++k) {
     const Config q = random.config(2.5);
-    const BodyPair likely = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
-    const bool guilty = query.pair_violates(q, likely, 0.005);
-    const auto plain = query.find_violating_pair(q, 0.005), found = query.find_violating_pair(q, 0.005, likely);
+    const BodyPair suspected = world.pairs()[random.index(static_cast<int>(world.pairs().size()))];
+    const bool guilty = query.pair_violates(q, suspected, 0.005);
+    const auto plain = query.find_violating_pair(q, 0.005), found = query.find_violating_pair(q, 0.005, suspected);
     ASSERT_EQ(plain.has_value(), found.has_value());
     if (!found) {
       ++none;
     } else if (guilty) {
-      ASSERT_EQ(*found, likely);
+      ASSERT_EQ(*found, suspected);
       ++named;
     } else {
       ASSERT_EQ(*found, *plain);

@@ -64,9 +64,9 @@ std::optional<BodyPair> bisect(const Config& q0, const Config& q1, std::int64_t 
         if (const auto pair = below(q, ClearanceRule::kMidpoint, std::nullopt, nullptr)) return pair;
         continue;
       }
-      const auto likely = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &segment);
-      if (!likely) continue;
-      if (const auto pair = below(q, ClearanceRule::kMotion, likely, nullptr)) return pair;
+      const auto suspected = below(q, Threshold(ClearanceRule::kMidpoint, half_bound), std::nullopt, &segment);
+      if (!suspected) continue;
+      if (const auto pair = below(q, ClearanceRule::kMotion, suspected, nullptr)) return pair;
       next.push_back(first);
       next.push_back(first + size / 2);
     }
@@ -94,10 +94,10 @@ bool blocked_by(const EdgeRule::Near& near, World::Query& query, const EdgeRule&
 std::optional<BodyPair> edge_blocked(World::Query& query, const EdgeRule& rule, const Config& q0, const Config& q1,
                                      const Budget& budget, double* slack) {
   if (slack) *slack = std::numeric_limits<double>::infinity();
-  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& likely,
+  const auto any = [&](const Config& q, const Threshold& threshold, const std::optional<BodyPair>& suspected,
                        const MotionSegment* segment) {
     const auto pair = segment ? query.find_violating_pair_over_motion(*segment, q, threshold)
-                              : query.find_violating_pair_incremental(q, threshold, likely);
+                              : query.find_violating_pair_incremental(q, threshold, suspected);
     // The test at Keep::kMotion only decides whether to bisect further; it proves nothing about the
     // slack.
     if (slack && !pair && threshold.rule == ClearanceRule::kMidpoint) *slack = std::min(*slack, query.slack(threshold));

@@ -470,33 +470,33 @@ struct World::Query::Impl {
         d, world->required(k, threshold.rule) + comes_nearer(world->pairs[k]) + segment->tangent_deviation + segment->margin);
   }
 
-  std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep,
+  std::optional<BodyPair> find_violating_pair(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool keep,
                                               bool own_too = true) {
     all_proved = distance_proofs != DistanceProofs::kOff;
-    const auto found = first(threshold, likely, keep && all_proved, own_too);
+    const auto found = first(threshold, suspected, keep && all_proved, own_too);
     (found ? own.proved_colliding : own.proved_free) += all_proved;
     return found;
   }
-  std::optional<BodyPair> first(const Threshold& threshold, const std::optional<BodyPair>& likely, bool keep, bool own_too) {
-    if (likely && below(*likely, threshold)) return likely;
+  std::optional<BodyPair> first(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool keep, bool own_too) {
+    if (suspected && below(*suspected, threshold)) return suspected;
     place_bodies();
-    if (keep) return first_open(threshold, likely, own_too);
+    if (keep) return first_open(threshold, suspected, own_too);
     for (std::size_t k = 0; k < world->pairs.size(); ++k) {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
       const double d = required(k, threshold);
-      if (p != likely && world->is_asked(k, d) && is_below(p, d, warm_start[k])) return p;
+      if (p != suspected && world->is_asked(k, d) && is_below(p, d, warm_start[k])) return p;
     }
     return std::nullopt;
   }
-  std::optional<BodyPair> first_open(const Threshold& threshold, const std::optional<BodyPair>& likely, bool own_too) {
+  std::optional<BodyPair> first_open(const Threshold& threshold, const std::optional<BodyPair>& suspected, bool own_too) {
     move_on();
     find_open(threshold);
     for (const std::size_t k : open) {
       const BodyPair& p = world->pairs[k];
       if (!own_too && world->is_own(p)) break;
       const double d = required(k, threshold);
-      if (p == likely || !world->is_asked(k, d)) continue;
+      if (p == suspected || !world->is_asked(k, d)) continue;
       if (d < 0 ? is_deeper_now(k, -d) : is_below(p, d, renewed(k, d))) return p;
     }
     return std::nullopt;
@@ -652,24 +652,24 @@ World::Query::Query(Query&&) noexcept = default;
 World::Query& World::Query::operator=(Query&&) noexcept = default;
 
 std::optional<BodyPair> World::Query::find_violating_pair(const Config& q, const Threshold& threshold,
-                                                          const std::optional<BodyPair>& likely) {
+                                                          const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
-  return impl_->find_violating_pair(threshold, likely, false);
+  return impl_->find_violating_pair(threshold, suspected, false);
 }
 
 std::optional<BodyPair> World::Query::find_violating_pair_incremental(const Config& q, const Threshold& threshold,
-                                                                      const std::optional<BodyPair>& likely) {
+                                                                      const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
-  return impl_->find_violating_pair(threshold, likely, true);
+  return impl_->find_violating_pair(threshold, suspected, true);
 }
 
 std::optional<BodyPair> World::Query::find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
-                                                                     const std::optional<BodyPair>& likely) {
+                                                                     const std::optional<BodyPair>& suspected) {
   impl_->move_to(q);
   impl_->segment.reset();
-  return impl_->find_violating_pair(threshold, likely, true, false);
+  return impl_->find_violating_pair(threshold, suspected, true, false);
 }
 
 std::optional<BodyPair> World::Query::find_violating_pair_over_motion(const MotionSegment& segment, const Config& q,

@@ -51,7 +51,7 @@ class Search {
         options_(options),
         fail_first_(lattice_.layers()) {}
 
-  SearchOutcome run(SearchCounters& counters, const AskedFirst& first) {
+  SearchOutcome run(SearchCounters& counters, const PriorFailures& first) {
     ask(std::span<const NodeQuestion>(first.nodes));
     ask(std::span<const EdgeQuestion>(first.edges));
     if (verdicts_.removed() > 0 && !verdicts_.pending.empty()) cost_to_go_.repair();
@@ -79,15 +79,15 @@ class Search {
 
   /// Removes the suspects that fail, before the first sweep. Ends where fewer than half of some
   /// fail.
-  void ask_suspects(std::span<const Suspect> suspects) {
+  void check_failure_hints(std::span<const FailureHint> failure_hints) {
     constexpr std::size_t kAtOnce = 64;
     std::vector<NodeQuestion> questions;
-    for (std::size_t first = 0; first < suspects.size(); first += kAtOnce) {
+    for (std::size_t first = 0; first < failure_hints.size(); first += kAtOnce) {
       cost_to_go_.budget().poll();
       questions.clear();
-      for (const Suspect& x : suspects.subspan(first, std::min(kAtOnce, suspects.size() - first)))
+      for (const FailureHint& x : failure_hints.subspan(first, std::min(kAtOnce, failure_hints.size() - first)))
         if (x.layer < lattice_.layers() && x.slot < lattice_.slots(x.layer) && verdicts_.node(x.layer, x.slot) == Verdict::kUnknown)
-          if (const auto q = cost_to_go_.node(x.layer, x.slot)) questions.push_back({x.layer, x.slot, *q, x.likely});
+          if (const auto q = cost_to_go_.node(x.layer, x.slot)) questions.push_back({x.layer, x.slot, *q, x.suspected});
       if (2 * ask(std::span<const NodeQuestion>(questions)).size() < questions.size()) return;
     }
   }
@@ -390,7 +390,7 @@ class Search {
       const NodeQuestion& x = questions[k];
       if (answers[k].valid) {
         if (x.only_scene)
-          clear_of_scene_[key(x.layer, x.slot)] = x.likely;
+          clear_of_scene_[key(x.layer, x.slot)] = x.suspected;
         else
           verdicts_.keep_node(x.layer, x.slot);
       } else {
@@ -457,12 +457,12 @@ class Search {
 }  // namespace
 
 SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters,
-                         const AskedFirst& first) {
+                         const PriorFailures& first) {
   return Search(cost_to_go, validity, options).run(counters, first);
 }
 
-void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects) {
-  if (!suspects.empty()) Search(cost_to_go, validity, {}).ask_suspects(suspects);
+void check_failure_hints(CostToGo& cost_to_go, Validity& validity, std::span<const FailureHint> failure_hints) {
+  if (!failure_hints.empty()) Search(cost_to_go, validity, {}).check_failure_hints(failure_hints);
 }
 
 int deepest_valid_layer(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options, SearchCounters& counters) {

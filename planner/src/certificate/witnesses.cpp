@@ -123,19 +123,19 @@ bool Witnesses::removes_node(int witness, int layer, int slot) {
          });
 }
 
-int Witnesses::of_node(int layer, int slot, int likely) {
+int Witnesses::of_node(int layer, int slot, int suspected) {
   budget_.poll();
-  const auto is = [&](Cause::Kind kind) { return likely >= 0 && causes_[static_cast<std::size_t>(likely)].kind == kind; };
+  const auto is = [&](Cause::Kind kind) { return suspected >= 0 && causes_[static_cast<std::size_t>(suspected)].kind == kind; };
   const auto q = lattice_.row(layer, slot);
   if (!q) {
-    if (is(Cause::Kind::kLimit) && removes_node(likely, layer, slot)) return likely;
+    if (is(Cause::Kind::kLimit) && removes_node(suspected, layer, slot)) return suspected;
     const auto cause = of_missing(layer, slot);
     return cause ? number(*cause) : -1;
   }
   if (!lattice_.manipulable(*q)) return number(of_kind(Cause::Kind::kManipulability));
   const auto pair = query_.find_violating_pair(
       *q, ClearanceRule::kNode,
-      is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(likely)].pairs[0]) : std::nullopt);
+      is(Cause::Kind::kPair) ? std::optional(about_[static_cast<std::size_t>(suspected)].pairs[0]) : std::nullopt);
   if (pair) return number(*pair);
   if (check_ && !check_.states({&*q, 1})[0]) {
     Cause cause = of_kind(Cause::Kind::kCheck);
@@ -230,12 +230,12 @@ bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer
   return false;
 }
 
-int Witnesses::of_layers(int layer, int a, int b, const Move& move, int likely) {
+int Witnesses::of_layers(int layer, int a, int b, const Move& move, int suspected) {
   const Lattice::Between between = lattice_.between(layer, a, move.from, b, move.to);
   if (const auto fault = of_fault(between)) return number(*fault);
-  if (likely >= 0 &&
-      removes_layers(causes_[static_cast<std::size_t>(likely)], about_[static_cast<std::size_t>(likely)], layer, a, b, move))
-    return likely;
+  if (suspected >= 0 &&
+      removes_layers(causes_[static_cast<std::size_t>(suspected)], about_[static_cast<std::size_t>(suspected)], layer, a, b, move))
+    return suspected;
   for (std::size_t k = 0; k <= between.rows.size(); ++k) {
     const Config& from = k == 0 ? move.from : between.rows[k - 1];
     const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
@@ -257,11 +257,11 @@ bool Witnesses::removes_edge(int witness, int layer, int a, int b) {
          removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
 }
 
-int Witnesses::of_edge(int layer, int a, int b, int likely) {
+int Witnesses::of_edge(int layer, int a, int b, int suspected) {
   budget_.poll();
   const auto asked = move(layer, a, b);
   if (!asked) return -1;
-  if (lattice_.has_layers_between()) return of_layers(layer, a, b, *asked, likely);
+  if (lattice_.has_layers_between()) return of_layers(layer, a, b, *asked, suspected);
   const auto removes = [&](int witness) {
     return witness >= 0 &&
            removes_move(causes_[static_cast<std::size_t>(witness)], about_[static_cast<std::size_t>(witness)], layer, a, b, *asked);
@@ -269,7 +269,7 @@ int Witnesses::of_edge(int layer, int a, int b, int likely) {
   for (const Cause::Kind kind : {Cause::Kind::kRollSlope, Cause::Kind::kJointStep, Cause::Kind::kSpeed, Cause::Kind::kPathError,
                                  Cause::Kind::kAngleError, Cause::Kind::kStepError})
     if (const Cause cause = of_kind(kind); removes_move(cause, {}, layer, a, b, *asked)) return number(cause);
-  if (removes(likely)) return likely;
+  if (removes(suspected)) return suspected;
   if (lattice_.limits().edges == EdgeMode::kContinuous)
     if (const auto pair = edge_blocked(query_, rule_, asked->from, asked->to, budget_)) return number(*pair);
   if (!check_) return -1;

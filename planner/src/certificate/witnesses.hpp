@@ -34,12 +34,12 @@ class Witnesses {
   /// Returns true if the witness removes the edge from slot a of `layer` to slot b of the next
   /// layer, whose joint step is allowed. Throws Stopped.
   [[nodiscard]] bool removes_edge(int witness, int layer, int a, int b);
-  /// Returns the number of a witness that removes the node; -1 if none was found. `likely` is a
+  /// Returns the number of a witness that removes the node; -1 if none was found. `suspected` is a
   /// witness to try early, or -1. Throws Stopped.
-  [[nodiscard]] int of_node(int layer, int slot, int likely);
+  [[nodiscard]] int of_node(int layer, int slot, int suspected);
   /// Returns the number of a witness that removes the edge from slot a of `layer` to slot b of the
-  /// next layer; -1 if none was found. `likely` is a witness to try early, or -1. Throws Stopped.
-  [[nodiscard]] int of_edge(int layer, int a, int b, int likely);
+  /// next layer; -1 if none was found. `suspected` is a witness to try early, or -1. Throws Stopped.
+  [[nodiscard]] int of_edge(int layer, int a, int b, int suspected);
 
  private:
   struct About {
@@ -60,7 +60,7 @@ class Witnesses {
   // For lattices that have path layers between their own (Lattice::has_layers_between).
   [[nodiscard]] std::optional<Cause> of_fault(const Lattice::Between& between) const;
   [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
-  [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int likely);
+  [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int suspected);
   [[nodiscard]] Cause limit_of(int joint, Cause::Side side) const;
 
   const Lattice& lattice_;

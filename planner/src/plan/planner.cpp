@@ -179,7 +179,7 @@ struct Planner::Impl {
   std::optional<std::vector<std::string>> scale_of_robot;  // warnings: a robot does not change
   std::unique_ptr<CostToGo> retired;                       // of another lattice
   ClearanceMemory memory;                                  // of this lattice, the robot and the limits
-  std::vector<Suspect> suspects;                           // what failed on the lattice before this one; of these bodies
+  std::vector<FailureHint> failure_hints;                  // what failed on the lattice before this one; of these bodies
   std::uint64_t plans = 0;                                 // that the memory knows of
   std::vector<std::uint64_t> met;                          // by object: the first of them that meets it as it is
   std::optional<Executor> executor;
@@ -195,7 +195,7 @@ struct Planner::Impl {
   void path_changed() {
     if (layout && layout->first.cost_to_go) retired = std::move(layout->first.cost_to_go);
     layout.reset();
-    if (auto failed = memory.suspects(); !failed.empty()) suspects = std::move(failed);
+    if (auto failed = memory.failure_hints(); !failed.empty()) failure_hints = std::move(failed);
     memory = {};
     viewable = false;
   }
@@ -204,7 +204,7 @@ struct Planner::Impl {
     viewable = false;
   }
   void bodies_changed() {
-    suspects.clear();
+    failure_hints.clear();
     scene_changed();
   }
   void all_changed() {
@@ -366,8 +366,8 @@ struct Planner::Impl {
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads,
                                lanes_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
-    const std::vector<Suspect> asked_before = remembered ? std::exchange(suspects, {}) : std::vector<Suspect>();
-    found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : AskedFirst{}, asked_before, options,
+    const std::vector<FailureHint> asked_before = remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
+    found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{}, asked_before, options,
                           counters, result.time_ms);
     count(validity);
     return found;
@@ -528,7 +528,7 @@ void Planner::set_problem(Problem problem) {
   impl_->problem.vary = problem.vary;
   impl_->set_scene(std::move(problem.scene));
   impl_->set_task(problem);
-  impl_->suspects.clear();  // problems have little in common; and what one takes must not hang on the one before
+  impl_->failure_hints.clear();  // problems have little in common; and what one takes must not hang on the one before
 }
 
 void Planner::add(SceneObject object) {

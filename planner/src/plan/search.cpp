@@ -40,8 +40,8 @@ SlotPath proved_part(const SlotPath& path, const Verdicts& verdicts, const Valid
 
 }  // namespace
 
-Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const AskedFirst& first,
-                    std::span<const Suspect> suspects, const PlanOptions& options, Counters& counters,
+Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const PriorFailures& first,
+                    std::span<const FailureHint> failure_hints, const PlanOptions& options, Counters& counters,
                     std::map<std::string, double>& time_ms) {
   Stopwatch watch;
   Found found;
@@ -57,7 +57,7 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
     path_first_options = {.batch = 16, .worth_a_round = 128, .grow_beside = shares_work(cost_to_go.lattice())};
   try {
     if (!swept) {
-      ask_suspects(cost_to_go, validity, suspects);
+      check_failure_hints(cost_to_go, validity, failure_hints);
       cost_to_go.sweep(cost_to_go.lattice().layers() - 1);
     }
     time_ms["sweep"] = watch.lap();

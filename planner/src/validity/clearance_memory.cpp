@@ -127,18 +127,18 @@ void ClearanceMemory::learn() {
   take(noted_edges_, edges_, failed_edges_);
 }
 
-std::vector<Suspect> ClearanceMemory::suspects() {
+std::vector<FailureHint> ClearanceMemory::failure_hints() {
   learn();
-  std::vector<Suspect> suspects;
+  std::vector<FailureHint> failure_hints;
   for (const std::uint64_t node : failed_nodes_)
     if (const NodeFinding& finding = nodes_.at(node); !finding.valid && finding.pair != kNoPair)
-      suspects.push_back(
+      failure_hints.push_back(
           {static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), failure_of(finding.pair)});
-  return suspects;
+  return failure_hints;
 }
 
-AskedFirst ClearanceMemory::failures() const {
-  AskedFirst failures;
+PriorFailures ClearanceMemory::failures() const {
+  PriorFailures failures;
   for (const std::uint64_t node : failed_nodes_)
     if (const NodeFinding& finding = nodes_.at(node); !finding.valid)
       failures.nodes.push_back({static_cast<int>(node >> 32), static_cast<int>(static_cast<std::uint32_t>(node)), finding.q});

@@ -66,9 +66,9 @@ class ClearanceMemory {
   void note_edge(const EdgeQuestion& question, bool valid, const BodyPair& pair, double slack);
 
   /// Returns all nodes and edges that fail, in the order in which they were found.
-  [[nodiscard]] AskedFirst failures() const;
+  [[nodiscard]] PriorFailures failures() const;
   /// Returns the nodes that fail by a pair of bodies, those of the last plan included.
-  [[nodiscard]] std::vector<Suspect> suspects();
+  [[nodiscard]] std::vector<FailureHint> failure_hints();
 
  private:
   struct EdgeKey {

@@ -92,7 +92,7 @@ void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::
   for (std::size_t k = 0; k < questions.size(); ++k) {
     const NodeQuestion& x = questions[k];
     Open open{k};
-    if (x.likely >= 0) open.pair = pair_of(x.likely);
+    if (x.suspected >= 0) open.pair = pair_of(x.suspected);
     if (const auto* known = memory_ ? memory_->node(x.layer, x.slot) : nullptr) {
       const auto holds = memory_->holds(*known);
       if (holds == ClearanceMemory::Holds::kAll) {
@@ -118,34 +118,34 @@ void CollisionValidity::ask_nodes(std::span<const NodeQuestion> questions, std::
 NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int worker, Queries& queries) {
   const TraceSpan span("node");
   budget_.poll();
-  const auto likely = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
+  const auto suspected = open.pair == ClearanceMemory::kNoPair ? std::nullopt : std::optional(open.pair);
   open.pair = ClearanceMemory::kNoPair;
   const auto failure = [&](const BodyPair& pair, bool shared) {
     open.pair = pair;
     return NodeAnswer{false, shared, groups_of(*world_, pair), failure_of(pair)};
   };
-  if (likely && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *likely, queries.whole))
-    return failure(*likely, lattice_->shares_body_poses(groups_of(*world_, *likely)));
+  if (suspected && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *suspected, queries.whole))
+    return failure(*suspected, lattice_->shares_body_poses(groups_of(*world_, *suspected)));
   const auto unmanipulable = [&](bool shared) {
     return NodeAnswer{false, shared, lattice_->manipulability_groups(), kManipulability};
   };
-  const bool likely_so = question.likely == kManipulability && !open.only_changed;
-  if (likely_so && lattice_->all_below_manipulability(question.layer, question.q)) return unmanipulable(true);
+  const bool suspects_manipulability = question.suspected == kManipulability && !open.only_changed;
+  if (suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q)) return unmanipulable(true);
   const auto q = row(question.layer, question.slot, question.q, worker);
   if (!q) return {};
   if (!open.only_changed && !lattice_->manipulable(*q))
-    return unmanipulable(!likely_so && lattice_->all_below_manipulability(question.layer, question.q));
+    return unmanipulable(!suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto shared = [&](const BodyPair& pair) {
     return is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, pair);
   };
-  if (question.only_scene && likely && query.violation_proof_is_cheap(*likely)) {
-    if (!query.proves_violation(*q, *likely, ClearanceRule::kNode)) return {.valid = true};
-    return failure(*likely, shared(*likely));
+  if (question.only_scene && suspected && query.violation_proof_is_cheap(*suspected)) {
+    if (!query.proves_violation(*q, *suspected, ClearanceRule::kNode)) return {.valid = true};
+    return failure(*suspected, shared(*suspected));
   }
-  const auto pair = question.only_scene ? query.find_violating_pair_with_scene(*q, ClearanceRule::kNode, likely)
+  const auto pair = question.only_scene ? query.find_violating_pair_with_scene(*q, ClearanceRule::kNode, suspected)
                                         : query.find_violating_pair_incremental(*q, ClearanceRule::kNode,
-                                                                                open.only_changed ? std::nullopt : likely);
+                                                                                open.only_changed ? std::nullopt : suspected);
   if (!pair) {
     if (open.only_changed) open.slack = query.slack(ClearanceRule::kNode);
     return {.valid = true};

@@ -179,15 +179,15 @@ class World {
     /// First of pairs() whose clearance at q is below its threshold, or none: "clearance >= threshold" for all pairs. The pair that
     /// is likely to be below is asked before the others. A function of the arguments alone.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair(const Config& q, const Threshold& threshold,
-                                                              const std::optional<BodyPair>& likely = {});
+                                                              const std::optional<BodyPair>& suspected = {});
     /// The same answer, sooner where postures lie near each other: from one such question to the next a lower bound of every pair's
     /// clearance is kept, less what the two bodies have moved. FCL calls and what is proved depend on such questions before.
     /// With Distance proofs::kOff nothing is kept.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_incremental(const Config& q, const Threshold& threshold,
-                                                                          const std::optional<BodyPair>& likely = {});
-    /// The same of `likely` and the pairs with the scene alone.
+                                                                          const std::optional<BodyPair>& suspected = {});
+    /// The same of `suspected` and the pairs with the scene alone.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_with_scene(const Config& q, const Threshold& threshold,
-                                                                         const std::optional<BodyPair>& likely);
+                                                                         const std::optional<BodyPair>& suspected);
     /// The same, where more than the threshold's rule is asked of a pair only as far as it can come nearer on the segment about q.
     [[nodiscard]] std::optional<BodyPair> find_violating_pair_over_motion(const MotionSegment& segment, const Config& q,
                                                                           const Threshold& threshold);

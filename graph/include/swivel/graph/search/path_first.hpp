@@ -75,16 +75,16 @@ struct SearchCounters {
   SlotPath candidate;  ///< the path tried last
 };
 /// What failed in an earlier search of the same lattice, and is likely to fail again.
-struct AskedFirst {
+struct PriorFailures {
   std::vector<NodeQuestion> nodes;
   std::vector<EdgeQuestion> edges;
 };
 
 /// A node that failed in the search of another lattice like this one, whose path lay a little
 /// elsewhere.
-struct Suspect {
+struct FailureHint {
   int layer = 0, slot = 0;
-  FailureId likely = kNoFailure;
+  FailureId suspected = kNoFailure;
 };
 
 /// Path-first search (LazySP: Dellin & Srinivasa 2016): take the best path of the optimistic
@@ -96,12 +96,12 @@ struct Suspect {
 /// not have followed yet. `first` is asked about before the first path, all at once; it changes the
 /// work, never the answer. Throws Stopped.
 [[nodiscard]] SearchOutcome path_first(CostToGo& cost_to_go, Validity& validity, const PathFirstOptions& options,
-                                       SearchCounters& counters, const AskedFirst& first = {});
+                                       SearchCounters& counters, const PriorFailures& first = {});
 
 /// Asks about nodes before the first sweep and removes those that fail, so that neither sweep nor
 /// search begins with what failed a moment ago. It ends where fewer than half fail. Changes the
 /// work, never the answer. Throws Stopped.
-void ask_suspects(CostToGo& cost_to_go, Validity& validity, std::span<const Suspect> suspects);
+void check_failure_hints(CostToGo& cost_to_go, Validity& validity, std::span<const FailureHint> failure_hints);
 
 /// Returns the deepest layer that a valid path from layer 0 reaches, once path_first() has found
 /// none; -1 when layer 0 has no valid node. The cost-to-go then has that layer as its goal, and

@@ -18,8 +18,8 @@ inline constexpr FailureId kNoFailure = -1;
 struct NodeQuestion {
   int layer = 0, slot = 0;
   Config q;
-  FailureId likely = kNoFailure;
-  /// True: it is only asked whether the node fails by `likely`, or by the scene as far as that is
+  FailureId suspected = kNoFailure;
+  /// True: it is only asked whether the node fails by `suspected`, or by the scene as far as that is
   /// soon seen. An answer of valid then says nothing.
   bool only_scene = false;
 };
