@@ -45,13 +45,13 @@ DistanceProofs distance_proofs_of(const PlanOptions& options) {
   return is_eager(options) || options.fcl_alone ? DistanceProofs::kOff : DistanceProofs::kOn;
 }
 
-/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each lane finds its own bounds of
+/// Fixed, as the batch is. The eager planners have none: their nodes are shared out one by one. Each chunk finds its own bounds of
 /// distances, which takes a few per cent of a short plan.
-int lanes_of(const PlanOptions& options, const Lattice& lattice) {
-  constexpr std::int64_t kNodesOfLane = 50'000, kFewest = 2, kMost = 8;
+int chunks_of(const PlanOptions& options, const Lattice& lattice) {
+  constexpr std::int64_t kNodesPerChunk = 50'000, kFewest = 2, kMost = 8;
   if (options.planner == PlannerKind::kLazy) return 1;
   if (options.planner != PlannerKind::kParallel) return 0;
-  return static_cast<int>(std::clamp(lattice.nodes() / kNodesOfLane, kFewest, kMost));
+  return static_cast<int>(std::clamp(lattice.nodes() / kNodesPerChunk, kFewest, kMost));
 }
 
 SharedWork shared_with(Executor& threads) {
@@ -364,7 +364,7 @@ struct Planner::Impl {
       if (plans > 1 && !memory.changed().empty()) changed.emplace(*world, memory.changed());
     }
     CollisionValidity validity(lattice, *world, rule, problem.limits.edges, distance_proofs_of(options), threads,
-                               lanes_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
+                               chunks_of(options, lattice), budget, remembered ? &memory : nullptr, changed ? &*changed : nullptr);
     HookedValidity hooked(lattice, validity, options.hooks, budget);
     const std::vector<FailureHint> asked_before = remembered ? std::exchange(failure_hints, {}) : std::vector<FailureHint>();
     found = search_lazily(*cost_to_go, swept, hooked, remembered ? memory.failures() : PriorFailures{}, asked_before, options,

@@ -19,7 +19,7 @@ constexpr FailureId kManipulability = -2;
 }  // namespace
 
 CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
-                                     DistanceProofs distance_proofs, Executor& executor, int partitions, const Budget& budget,
+                                     DistanceProofs distance_proofs, Executor& executor, int chunks, const Budget& budget,
                                      ClearanceMemory* memory, const World* changed)
     : lattice_(&lattice),
       world_(&world),
@@ -32,8 +32,8 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
       budget_(budget),
       memory_(memory),
       changed_(changed) {
-  partitions_.reserve(static_cast<std::size_t>(partitions));
-  for (int partition = 0; partition < partitions; ++partition) partitions_.push_back(make_queries());
+  chunks_.reserve(static_cast<std::size_t>(chunks));
+  for (int chunk = 0; chunk < chunks; ++chunk) chunks_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
   if (lattice.has_own_rows())
@@ -59,16 +59,16 @@ CollisionValidity::Queries CollisionValidity::make_queries() const {
 
 template <class Ask>
 void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* work) {
-  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(partitions_.size()));
+  const int count = static_cast<int>(open_.size()), runs = std::min(count, static_cast<int>(chunks_.size()));
   const auto at = [&](int index, int worker, Queries& queries) { ask(open_[static_cast<std::size_t>(index)], worker, queries); };
-  if (partitions_.empty()) {
+  if (chunks_.empty()) {
     if (work) (*work)();
     return executor_->for_each(count,
                                [&](int index, int worker) { at(index, worker, workers_[static_cast<std::size_t>(worker)]); });
   }
-  const auto ask_run = [&](int partition, int worker) {
-    for (int index = count * partition / runs; index < count * (partition + 1) / runs; ++index)
-      at(index, worker, partitions_[static_cast<std::size_t>(partition)]);
+  const auto ask_run = [&](int chunk, int worker) {
+    for (int index = count * chunk / runs; index < count * (chunk + 1) / runs; ++index)
+      at(index, worker, chunks_[static_cast<std::size_t>(chunk)]);
   };
   if (work)
     executor_->for_each_beside(runs, ask_run, *work);
@@ -255,7 +255,7 @@ bool CollisionValidity::asks_edges() const {
 
 CollisionCounters CollisionValidity::counters() const {
   CollisionCounters sum;
-  for (const auto* all : {&workers_, &partitions_})
+  for (const auto* all : {&workers_, &chunks_})
     for (const Queries& queries : *all) {
       sum += queries.whole.counters();
       if (queries.changed) sum += queries.changed->counters();

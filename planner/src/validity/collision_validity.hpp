@@ -14,17 +14,17 @@
 namespace swivel {
 
 /// Validates nodes and edges by the costly predicates of docs/model.md, with collision queries on
-/// the executor's threads. A batch is cut into a fixed number of contiguous partitions, each with
-/// its own query cache (World::Query::find_violating_pair_incremental()). What a partition caches depends on its own
+/// the executor's threads. A batch is cut into a fixed number of contiguous chunks, each with
+/// its own query cache (World::Query::find_violating_pair_incremental()). What a chunk caches depends on its own
 /// questions alone, so that counters do not depend on the number of threads.
 class CollisionValidity final : public Validity {
  public:
-  /// Creates a validity for a lattice in a world. If `partitions` is 0, each question is shared out
+  /// Creates a validity for a lattice in a world. If `chunks` is 0, each question is shared out
   /// by itself, with a cache for each worker. `memory`, or null, holds what earlier plans found
   /// about the same lattice, robot and limits; `changed` is then the world of only those pairs
   /// whose objects have moved since (null: none has). References and pointers must outlive it.
   CollisionValidity(const Lattice& lattice, const World& world, const EdgeRule& rule, EdgeMode edge_mode,
-                    DistanceProofs distance_proofs, Executor& executor, int partitions, const Budget& budget,
+                    DistanceProofs distance_proofs, Executor& executor, int chunks, const Budget& budget,
                     ClearanceMemory* memory = nullptr, const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
@@ -37,7 +37,7 @@ class CollisionValidity final : public Validity {
   [[nodiscard]] std::int64_t nodes_checked() const { return nodes_checked_; }
   /// Returns how many edges were tested, because the memory did not answer for them.
   [[nodiscard]] std::int64_t edges_checked() const { return edges_checked_; }
-  /// Returns the collision counters of all workers and partitions.
+  /// Returns the collision counters of all workers and chunks.
   [[nodiscard]] CollisionCounters counters() const;
 
  private:
@@ -83,7 +83,7 @@ class CollisionValidity final : public Validity {
   ClearanceMemory* memory_;
   const World* changed_;
   std::vector<Queries> workers_;  // one each
-  std::vector<Queries> partitions_;
+  std::vector<Queries> chunks_;
   std::vector<Open> open_;
   struct Row {
     int layer = -1, slot = -1;
