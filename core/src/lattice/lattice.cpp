@@ -7,7 +7,7 @@
 
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/kinematics/equations/pose_shift.hpp"
+#include "swivel/core/kinematics/equations/pose_error_bound.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/core/messages/input_error.hpp"
 #include "swivel/core/problem/validate.hpp"
@@ -243,11 +243,11 @@ std::array<double, 3> angle_deviation(const Chain& chain, const ToolPath& path, 
   return deviation;
 }
 
-PoseShift BodyPoseClasses::row_shift(int, int, const Config&) const {
+PoseErrorBound BodyPoseClasses::pose_error_of_node(int, int, const Config&) const {
   return {};
 }
 
-PoseShift BodyPoseClasses::rows_apart(int, int, const Config&) const {
+PoseErrorBound BodyPoseClasses::pose_error_between(int, int, const Config&) const {
   return {};
 }
 

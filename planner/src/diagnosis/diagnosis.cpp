@@ -54,7 +54,7 @@ constexpr int kFree = -1, kManipulability = -2, kUnknown = -3;  // instead of th
 class LayerBlockers {
  public:
   LayerBlockers(const Lattice& lattice, const World& world, World::Query& query)
-      : lattice_(lattice), world_(world), row_margin_(lattice, world), query_(query) {}
+      : lattice_(lattice), world_(world), clearance_error_(lattice, world), query_(query) {}
 
   void start(int layer) {
     known_.assign(static_cast<std::size_t>(lattice_.slots(layer)), kUnknown);
@@ -90,7 +90,7 @@ class LayerBlockers {
     const auto& pairs = world_.pairs();
     known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());
     const Config node = lattice_.has_own_rows() ? *lattice_.node(layer, slot) : q;
-    if (!is_shared(lattice_, world_, row_margin_, query_, layer, node, q, *pair)) {
+    if (!is_shared(lattice_, world_, clearance_error_, query_, layer, node, q, *pair)) {
       all_ = false;
       return known_[k];
     }
@@ -105,7 +105,7 @@ class LayerBlockers {
 
   const Lattice& lattice_;
   const World& world_;
-  RowMargin row_margin_;
+  ClearanceError clearance_error_;
   World::Query& query_;
   std::vector<int> known_;   // [slot] what is known to block the node, or kUnknown
   std::vector<char> asked_;  // [slot] known_ is the first pair that does

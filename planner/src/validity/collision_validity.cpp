@@ -23,7 +23,7 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
                                      ClearanceMemory* memory, const World* changed)
     : lattice_(&lattice),
       world_(&world),
-      row_margin_(lattice, world),
+      clearance_error_(lattice, world),
       rule_(rule),
       changed_rule_(changed ? changed->edge_rule(rule.radii) : EdgeRule{rule.radii, rule.h, {}}),
       edge_mode_(edge_mode),
@@ -137,7 +137,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
     return unmanipulable(!suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q));
   World::Query& query = open.only_changed ? *queries.changed : queries.whole;
   const auto shared = [&](const BodyPair& pair) {
-    return is_shared(*lattice_, *world_, row_margin_, query, question.layer, question.q, *q, pair);
+    return is_shared(*lattice_, *world_, clearance_error_, query, question.layer, question.q, *q, pair);
   };
   if (question.only_scene && suspected && query.violation_proof_is_cheap(*suspected)) {
     if (!query.proves_violation(*q, *suspected, ClearanceRule::kNode)) return {.valid = true};
@@ -157,7 +157,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
 /// more than it can move them, the node fails whether it has one or not, and so do the nodes at
 /// which the bodies have the same poses.
 bool CollisionValidity::fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
-  const double margin = row_margin_.from_node(question.layer, question.q, pair);
+  const double margin = clearance_error_.from_node(question.layer, question.q, pair);
   return std::isfinite(margin) && query.proves_violation(question.q, pair, Threshold(ClearanceRule::kNode, -margin));
 }
 
@@ -175,10 +175,10 @@ unsigned groups_of(const World& world, const BodyPair& pair) {
 /// configurations. The verdict is therefore shared only if the pair is too near by more than that
 /// and than FCL can err: then every planner that asks FCL about one of those nodes gets the same
 /// verdict.
-bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query, int layer,
+bool is_shared(const Lattice& lattice, const World& world, const ClearanceError& clearance_error, World::Query& query, int layer,
                const Config& node, const Config& row, const BodyPair& pair) {
   if (!lattice.shares_body_poses(groups_of(world, pair))) return false;
-  const double apart = row_margin.between_rows(layer, node, pair);
+  const double apart = clearance_error.between_exact_configs(layer, node, pair);
   if (apart > 0) return std::isfinite(apart) && query.proves_violation(row, pair, Threshold(ClearanceRule::kNode, -apart));
   return query.violation_is_proved() || query.pair_violates(row, pair, Threshold(ClearanceRule::kNode, -kVerdictBand));
 }

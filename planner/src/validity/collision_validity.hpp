@@ -8,8 +8,8 @@
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/graph/verdicts/validity.hpp"
 #include "swivel/parallel/executor.hpp"
+#include "validity/clearance_error.hpp"
 #include "validity/clearance_memory.hpp"
-#include "validity/row_margin.hpp"
 
 namespace swivel {
 
@@ -73,7 +73,7 @@ class CollisionValidity final : public Validity {
 
   const Lattice* lattice_;
   const World* world_;
-  RowMargin row_margin_;
+  ClearanceError clearance_error_;
   EdgeRule rule_;
   EdgeRule changed_rule_;  // for the pairs with changed objects, none of them a robot pair
   EdgeMode edge_mode_;
@@ -100,7 +100,7 @@ class CollisionValidity final : public Validity {
 /// Returns true if the failure of a pair at a node applies to every node of the layer at which its
 /// bodies have the same poses (Lattice::shares_body_poses). `node` holds the node's joints, `row` its
 /// exact configuration, at which `query` has just named the pair.
-[[nodiscard]] bool is_shared(const Lattice& lattice, const World& world, const RowMargin& row_margin, World::Query& query,
+[[nodiscard]] bool is_shared(const Lattice& lattice, const World& world, const ClearanceError& clearance_error, World::Query& query,
                              int layer, const Config& node, const Config& row, const BodyPair& pair);
 
 }  // namespace swivel

@@ -276,12 +276,12 @@ void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned group
   for (int& other : out) other = slot_of(slot / width_, other);
 }
 
-PoseShift RollLattice::row_shift(int layer, int group, const Config& q) const {
-  return has_own_rows() ? PoseShift::unknown(at_roll(0).row_shift(layer, group, q).about) : PoseShift{};
+PoseErrorBound RollLattice::pose_error_of_node(int layer, int group, const Config& q) const {
+  return has_own_rows() ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about) : PoseErrorBound{};
 }
 
-PoseShift RollLattice::rows_apart(int layer, int group, const Config& q) const {
-  return row_shift(layer, group, q);
+PoseErrorBound RollLattice::pose_error_between(int layer, int group, const Config& q) const {
+  return pose_error_of_node(layer, group, q);
 }
 
 bool RollLattice::in_window(int layer, int a, int b) const {

@@ -139,7 +139,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   }
 
   if (problem.start) place_start(problem);
-  if (!arm.exact) row_shift_.emplace(chain, arm);
+  if (!arm.exact) pose_error_model_.emplace(chain, arm);
   prepare_arcs();
   if (resolution.arcs) move_cells(budget);
 }
@@ -577,25 +577,26 @@ bool SrsLattice::all_below_manipulability(int layer, const Config& q) const {
   const auto J = chain_->jacobian(q);
   const Eigen::Matrix<double, 6, 6> G = J * J.transpose();
   const double found = G.determinant(), allowed = limits().manipulability * limits().manipulability - kBand;
-  if (!row_shift_ || !(found < allowed)) return found < allowed;
+  if (!pose_error_model_ || !(found < allowed)) return found < allowed;
   if (last_joint_ || (layer == 0 && start_) || found < kBand) return false;  // not known, or G's inverse is all rounding
   // No singular value s of J grows by more than `change` to the row, so their product, the manipulability, grows by at most
   // (1 + change * mean of 1 / s)^6. That mean is at most the root of the mean of 1 / s^2, which are the eigenvalues of G's inverse.
   // docs/theory.md, Lemma 6.
-  const double change = row_shift_->jacobian_change(plane(layer).reach, q);
+  const double change = pose_error_model_->jacobian_change(plane(layer).reach, q);
   const double ratio = 1 + change * std::sqrt(G.inverse().trace() / 6);
   return found * std::pow(ratio, 12) < allowed;
 }
 
-PoseShift SrsLattice::row_shift(int layer, int group, const Config& q) const {
-  if (!row_shift_) return {};
-  return layer == 0 && start_ ? PoseShift::unknown(row_shift_->about(group)) : row_shift_->from_node(group, plane(layer).reach, q);
+PoseErrorBound SrsLattice::pose_error_of_node(int layer, int group, const Config& q) const {
+  if (!pose_error_model_) return {};
+  return layer == 0 && start_ ? PoseErrorBound::unknown(pose_error_model_->about(group))
+                              : pose_error_model_->from_node(group, plane(layer).reach, q);
 }
 
-PoseShift SrsLattice::rows_apart(int layer, int group, const Config& q) const {
-  if (!row_shift_) return {};
-  return layer == 0 && start_ ? PoseShift::unknown(row_shift_->about(group))
-                              : row_shift_->between_rows(group, plane(layer).reach, q);
+PoseErrorBound SrsLattice::pose_error_between(int layer, int group, const Config& q) const {
+  if (!pose_error_model_) return {};
+  return layer == 0 && start_ ? PoseErrorBound::unknown(pose_error_model_->about(group))
+                              : pose_error_model_->between_exact_configs(group, plane(layer).reach, q);
 }
 
 bool SrsLattice::may_change_elbow_side(int step_layer, int layer, int side, int other_layer, int other) const {

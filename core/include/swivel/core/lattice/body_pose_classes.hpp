@@ -6,7 +6,7 @@
 
 namespace swivel {
 
-struct PoseShift;
+struct PoseErrorBound;
 
 /// Which nodes of a layer share the poses of which bodies, so that one collision removes all nodes
 /// that share it. The part of a Lattice that collision questions need.
@@ -18,7 +18,7 @@ class BodyPoseClasses {
   /// The bit of `groups` below for bodies on followers of the chain, whose poses no two nodes are sure to share.
   static constexpr unsigned kFollowers = 1u << (kDof + 1);
   /// Whether nodes of a layer share the poses of all bodies of some groups; bit g of `groups`: the bodies that move with joint g of
-  /// 1..7, or kFollowers. Rows of such nodes: up to rows_apart() of every group.
+  /// 1..7, or kFollowers. Rows of such nodes: up to pose_error_between() of every group.
   [[nodiscard]] virtual bool shares_body_poses(unsigned groups) const = 0;
   /// Replaces `out` by the slots of the layer at which those bodies stand where they stand at this one: at least the slot itself.
   virtual void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const = 0;
@@ -33,9 +33,9 @@ class BodyPoseClasses {
   }
   /// How far the row of a node, where it has one, may place the bodies that move with joint `group` of 1..7 from where the joints
   /// of a node place them, itself or one at which they have the same poses. `q`: the joints of either node.
-  [[nodiscard]] virtual PoseShift row_shift(int layer, int group, const Config& q) const;
+  [[nodiscard]] virtual PoseErrorBound pose_error_of_node(int layer, int group, const Config& q) const;
   /// How far two rows of nodes at which those bodies have the same poses may place them apart. `q`: the joints of either node.
-  [[nodiscard]] virtual PoseShift rows_apart(int layer, int group, const Config& q) const;
+  [[nodiscard]] virtual PoseErrorBound pose_error_between(int layer, int group, const Config& q) const;
 
  protected:
   BodyPoseClasses() = default;

@@ -102,8 +102,8 @@ class RollLattice final : public Lattice {
   [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override {
     return !has_own_rows() && at_roll(0).all_below_manipulability(layer, q);
   }
-  [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
-  [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   [[nodiscard]] bool in_arm_window(int layer, int a, int b) const override;
   /// From knot to knot; what the rows between turn is a matter of between().

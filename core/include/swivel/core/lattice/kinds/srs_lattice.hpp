@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "swivel/core/kinematics/srs/limit_arcs.hpp"
-#include "swivel/core/kinematics/srs/row_shift.hpp"
+#include "swivel/core/kinematics/srs/pose_error_model.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 
@@ -137,8 +137,8 @@ class SrsLattice final : public Lattice {
   /// column of J round and leaves J J^T as it is.
   [[nodiscard]] unsigned manipulability_groups() const override;
   [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override;
-  [[nodiscard]] PoseShift row_shift(int layer, int group, const Config& q) const override;
-  [[nodiscard]] PoseShift rows_apart(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group, const Config& q) const override;
+  [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
 
@@ -256,7 +256,7 @@ class SrsLattice final : public Lattice {
   std::vector<std::array<ElbowCircle, 2>> circles_;  // per layer; empty where out of reach
   std::vector<std::uint8_t> elbow_alive_;            // [layer][elbow]: its angle lies within the limits
   std::optional<Start> start_;
-  std::optional<RowShift> row_shift_;                       // of an arm that is not exact
+  std::optional<PoseErrorModel> pose_error_model_;          // of an arm that is not exact
   std::array<std::vector<TripleLimits>, 2> triple_limits_;  // [triple][its winding]
   std::vector<Moved> moved_;                                // empty too where resolution.arcs is off
   std::vector<std::size_t> moved_begin_;                    // [layer], and the end

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
-#include "swivel/core/kinematics/equations/pose_shift.hpp"
+#include "swivel/core/kinematics/equations/pose_error_bound.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 
 namespace swivel {
@@ -9,19 +9,19 @@ namespace swivel {
 /// the joints of its lattice node place them, both by the exact chain. The bound comes from how far
 /// the exact axes are from the fitted ones, and from the triangle of shoulder, elbow and wrist.
 /// Source: docs/theory.md, Lemma 6.
-class RowShift {
+class PoseErrorModel {
  public:
   /// Prepares the bounds for an exact chain and the S-R-S arm fitted to it.
-  RowShift(const Chain& chain, const SrsArm& arm);
+  PoseErrorModel(const Chain& chain, const SrsArm& arm);
   /// Returns how far the row of a node may place the bodies that move with joint `group` of 1..7
   /// from where the node's joints q (rad) place them, or those of another node that places these
   /// bodies alike. The node's wrist centre is `reach` m from the shoulder centre. The bound is
   /// unknown next to the straight arm, and for links next to a singular shoulder or wrist.
-  [[nodiscard]] PoseShift from_node(int group, double reach, const Config& q) const;
+  [[nodiscard]] PoseErrorBound from_node(int group, double reach, const Config& q) const;
   /// Returns how far apart the rows of two nodes that place the bodies of joint `group` of 1..7
   /// alike may place them; q (rad) and `reach` (m) are those of one of them. The bound is unknown
   /// where that of from_node() is.
-  [[nodiscard]] PoseShift between_rows(int group, double reach, const Config& q) const;
+  [[nodiscard]] PoseErrorBound between_exact_configs(int group, double reach, const Config& q) const;
   /// Returns a bound on the Frobenius norm of the change of the exact chain's Jacobian, but for the
   /// signs of columns, from a node's joints q (rad) to its row or to the row of a node with the
   /// same elbow. Both Jacobians are taken about the point where the exact chain has the tool at the
@@ -35,7 +35,7 @@ class RowShift {
   static constexpr std::size_t kShoulder = 0, kElbow = 1, kWrist = 2;
   static constexpr std::size_t part_of(int group) { return group <= 3 ? kShoulder : group == 4 ? kElbow : kWrist; }
   /// Returns how far a row may place a body from where the fitted arm has it at its node.
-  [[nodiscard]] PoseShift from_fitted(int group, double reach, const Config& q) const;
+  [[nodiscard]] PoseErrorBound from_fitted(int group, double reach, const Config& q) const;
 
   double upper_, fore_, hand_;           // m; hand_: wrist centre to tool
   double shoulder_shift_, wrist_shift_;  // rad, EulerTriple::shift

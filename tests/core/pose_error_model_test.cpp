@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bounds on how far rows of arms that are not exactly S-R-S place links from where their nodes place them, against the rows.
-#include "swivel/core/kinematics/srs/row_shift.hpp"
+#include "swivel/core/kinematics/srs/pose_error_model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,13 +28,13 @@ Eigen::Matrix<double, 6, kDof> jacobian_about(const Chain& chain, const Config& 
 }
 
 /// Rows of all branches that share an elbow stand within the bound of every node at which the link has the same pose.
-TEST(RowShift, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
+TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
   const std::uint64_t base = seed("RowShift");
   Random random(base);
   for (const TestRobot& robot : inexact_robots(random)) {
     const Chain chain = arm_of(robot).chain;
     const SrsArm arm = fit_srs(chain, robot.name);
-    const RowShift bounds(chain, arm);
+    const PoseErrorModel bounds(chain, arm);
     struct Known {
       int branch;
       Config node, row;
@@ -74,8 +74,8 @@ TEST(RowShift, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
         const int signs = group < 3 ? kShoulderBit : group == 5 || group == 6 ? kWristBit : 0;
         const double radius = random.uniform(0, 1);
         for (const Known& here : all) {
-          const PoseShift bound = bounds.from_node(group, plane.reach, here.node);
-          const PoseShift apart = bounds.between_rows(group, plane.reach, here.node);
+          const PoseErrorBound bound = bounds.from_node(group, plane.reach, here.node);
+          const PoseErrorBound apart = bounds.between_exact_configs(group, plane.reach, here.node);
           ++(std::isfinite(bound.shift) ? known : unknown);
           if (!std::isfinite(bound.shift)) continue;
           for (const double r : {0.0, radius}) {
@@ -94,7 +94,7 @@ TEST(RowShift, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
     }
     Config middle;
     middle.setOnes();
-    const PoseShift forearm = bounds.from_node(4, 0.8 * (arm.upper + arm.fore), middle);
+    const PoseErrorBound forearm = bounds.from_node(4, 0.8 * (arm.upper + arm.fore), middle);
     std::printf(
         "%s: %d rows, %d bounds known, %d not; forearm at 0.8 of the reach %.2g mm + %.2g mrad; reached, of J and by links:",
         robot.name.c_str(), rows, known, unknown, 1e3 * forearm.shift, 1e3 * forearm.turn);

@@ -11,18 +11,18 @@ namespace swivel {
 /// Bounds how much the clearance of two bodies may differ between configurations that a lattice
 /// treats as placing them equally. The bodies are measured when this is first asked, because most
 /// plans whose paths meet no obstacle never ask. Safe to call from many threads.
-class RowMargin {
+class ClearanceError {
  public:
-  RowMargin(const Lattice& lattice, const World& world) : lattice_(&lattice), world_(&world) {}
+  ClearanceError(const Lattice& lattice, const World& world) : lattice_(&lattice), world_(&world) {}
   /// Returns an upper bound, m, of how much the clearance of a pair may differ between the joints q
-  /// of a node and the node's exact configuration (Lattice::row_shift). 0 if nodes are exact
+  /// of a node and the node's exact configuration (Lattice::pose_error_of_node). 0 if nodes are exact
   /// configurations themselves, infinite if nothing is known.
   [[nodiscard]] double from_node(int layer, const Config& q, const BodyPair& pair) const;
   /// Returns an upper bound, m, of how much the clearance of a pair may differ between the exact
-  /// configurations of two nodes at which its bodies have the same poses (Lattice::rows_apart). `q`
+  /// configurations of two nodes at which its bodies have the same poses (Lattice::pose_error_between). `q`
   /// holds the joints of either node. 0 if nodes are exact configurations themselves, infinite if
   /// nothing is known.
-  [[nodiscard]] double between_rows(int layer, const Config& q, const BodyPair& pair) const;
+  [[nodiscard]] double between_exact_configs(int layer, const Config& q, const BodyPair& pair) const;
 
  private:
   template <class Shift>
@@ -30,7 +30,7 @@ class RowMargin {
 
   struct Body {
     int group = 0;
-    double radius = 0;  ///< m, from the centre of its PoseShift to its farthest point
+    double radius = 0;  ///< m, from the centre of its PoseErrorBound to its farthest point
   };
   [[nodiscard]] std::vector<Body> measured() const;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/kinematics/srs/row_shift.hpp"
+#include "swivel/core/kinematics/srs/pose_error_model.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace swivel {
 
-RowShift::RowShift(const Chain& chain, const SrsArm& arm)
+PoseErrorModel::PoseErrorModel(const Chain& chain, const SrsArm& arm)
     : upper_(arm.upper),
       fore_(arm.fore),
       hand_(arm.wrist_in_tool.norm()),
@@ -30,9 +30,9 @@ RowShift::RowShift(const Chain& chain, const SrsArm& arm)
   }
 }
 
-PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const {
+PoseErrorBound PoseErrorModel::from_fitted(int group, double reach, const Config& q) const {
   const std::size_t part = part_of(group);
-  const PoseShift unknown = PoseShift::unknown(about_[part]);
+  const PoseErrorBound unknown = PoseErrorBound::unknown(about_[part]);
   if (group == kDof) return {about_[part], 0, 0};  // the tool stands where the layer puts it
   // With a smaller sine a row might have flipped the elbow: polish() moves no joint by more than
   // kMostPolished.
@@ -59,7 +59,7 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
     return turn < kPi / 2 && ratio < 1 ? std::asin(ratio) : std::numeric_limits<double>::infinity();
   };
   const auto known = [&](double turn, double shift) {
-    return std::isfinite(turn) ? PoseShift{about_[part], turn + turn_[part], shift + shift_[part]} : unknown;
+    return std::isfinite(turn) ? PoseErrorBound{about_[part], turn + turn_[part], shift + shift_[part]} : unknown;
   };
   if (part == kElbow) return known(fore, upper_ * upper);
   if (part == kShoulder) {
@@ -72,26 +72,26 @@ PoseShift RowShift::from_fitted(int group, double reach, const Config& q) const 
   return known(group == 5 ? fore + last : turn_[kWrist] + last, wrist);
 }
 
-PoseShift RowShift::from_node(int group, double reach, const Config& q) const {
-  const PoseShift row = from_fitted(group, reach, q);
+PoseErrorBound PoseErrorModel::from_node(int group, double reach, const Config& q) const {
+  const PoseErrorBound row = from_fitted(group, reach, q);
   return {row.about, row.turn + turn_[part_of(group)], row.shift + shift_[part_of(group)]};
 }
 
-double RowShift::jacobian_change(double reach, const Config& q) const {
+double PoseErrorModel::jacobian_change(double reach, const Config& q) const {
   const double tool = from_node(kDof, reach, q).of(hand_);  // m, from where the layer has it
   const std::array<double, 3> from_tool{reach + hand_ + tool, fore_ + hand_ + tool, hand_ + tool};
   double squares = 0;
   // an axis turns, and its point next to the centre moves
   for (int joint = 1; joint <= kDof; ++joint) {
-    const PoseShift moved = from_node(joint, reach, q);
+    const PoseErrorBound moved = from_node(joint, reach, q);
     const double moment = moved.of(from_tool[part_of(joint)]);
     squares += moved.turn * moved.turn + moment * moment;
   }
   return std::sqrt(squares);
 }
 
-PoseShift RowShift::between_rows(int group, double reach, const Config& q) const {
-  const PoseShift row = from_fitted(group, reach, q);
+PoseErrorBound PoseErrorModel::between_exact_configs(int group, double reach, const Config& q) const {
+  const PoseErrorBound row = from_fitted(group, reach, q);
   return {row.about, 2 * row.turn, 2 * row.shift};
 }
 

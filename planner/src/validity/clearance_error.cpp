@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "validity/row_margin.hpp"
+#include "validity/clearance_error.hpp"
 
 #include <algorithm>
 #include <limits>
 #include <memory>
 
-#include "swivel/core/kinematics/equations/pose_shift.hpp"
+#include "swivel/core/kinematics/equations/pose_error_bound.hpp"
 
 namespace swivel {
 
-std::vector<RowMargin::Body> RowMargin::measured() const {
+std::vector<ClearanceError::Body> ClearanceError::measured() const {
   std::vector<Body> bodies;
   if (!lattice_->has_own_rows()) return bodies;
   for (const RobotBody& body : world_->bodies()) {
     Body& mine = bodies.emplace_back(Body{body.group, 0});
     if (body.group == 0 || body.group > static_cast<int>(kDof)) continue;
-    const Vector3d about = lattice_->row_shift(0, body.group, Config::Zero()).about;
+    const Vector3d about = lattice_->pose_error_of_node(0, body.group, Config::Zero()).about;
     for (const Ball& ball : bounding_balls(body.shape))
       mine.radius = std::max(mine.radius, (body.pose * ball.center - about).norm() + ball.radius);
   }
@@ -23,7 +23,7 @@ std::vector<RowMargin::Body> RowMargin::measured() const {
 }
 
 template <class Shift>
-double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
+double ClearanceError::sum(const BodyPair& pair, const Shift& shift) const {
   const std::vector<Body>& bodies = bodies_.get([this] { return std::make_unique<std::vector<Body>>(measured()); });
   double sum = 0;
   for (const int body : {pair.a, pair.b}) {
@@ -36,12 +36,12 @@ double RowMargin::sum(const BodyPair& pair, const Shift& shift) const {
   return sum;
 }
 
-double RowMargin::from_node(int layer, const Config& q, const BodyPair& pair) const {
-  return sum(pair, [&](int group) { return lattice_->row_shift(layer, group, q); });
+double ClearanceError::from_node(int layer, const Config& q, const BodyPair& pair) const {
+  return sum(pair, [&](int group) { return lattice_->pose_error_of_node(layer, group, q); });
 }
 
-double RowMargin::between_rows(int layer, const Config& q, const BodyPair& pair) const {
-  return sum(pair, [&](int group) { return lattice_->rows_apart(layer, group, q); });
+double ClearanceError::between_exact_configs(int layer, const Config& q, const BodyPair& pair) const {
+  return sum(pair, [&](int group) { return lattice_->pose_error_between(layer, group, q); });
 }
 
 }  // namespace swivel
