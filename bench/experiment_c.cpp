@@ -74,7 +74,7 @@ std::optional<Config> first_start(const PreparedRobot& robot, Problem problem) {
   const World world(robot.world(), problem);
   World::Query query(world);
   for (int slot = 0; slot < lattice.width(); ++slot) {
-    const auto q = lattice.row(0, slot);
+    const auto q = lattice.exact_config(0, slot);
     if (q && lattice.manipulable(*q) && !query.find_violating_pair(*q, ClearanceRule::kNode)) return q;
   }
   return std::nullopt;

@@ -193,7 +193,7 @@ ConstrainedResult plan_constrained(const PreparedRobot& robot, const Problem& pr
   const SrsLattice lattice(chain, robot.srs(), path, problem);
   std::vector<Eigen::VectorXd> ends;
   for (int slot = 0; slot < lattice.width(); ++slot)
-    if (const auto q = lattice.row(lattice.layers() - 1, slot))
+    if (const auto q = lattice.exact_config(lattice.layers() - 1, slot))
       if (const auto x = coordinates(*q, kLength); valid(x)) ends.push_back(x);
   const std::size_t every = std::max<std::size_t>(1, ends.size() / kGoals);
   for (std::size_t k = 0; k < ends.size(); k += every) goals->addState(state_of(ends[k]));

@@ -218,7 +218,7 @@ LatticeMap make_map(const PlanView& view, bool full, const Budget& budget) {
     const Verdict verdict = view.verdicts ? view.verdicts->node(layer, slot) : Verdict::kUnknown;
     if (verdict == Verdict::kUnknown && !map.complete) return LatticeMap::Node{NodeState::kNotLookedAt};
     budget.poll();
-    const auto row = lattice.row(layer, slot, node);
+    const auto row = lattice.exact_config(layer, slot, node);
     if (!row) {  // the exact chain does not reach the pose there, or not within its limits
       const LatticeMap::Node fault = of_fault(layer, slot);
       return fault.state == NodeState::kJointLimit ? fault : LatticeMap::Node{};

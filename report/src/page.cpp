@@ -280,7 +280,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   if (!best) return nullptr;
   const int cell = map_cell(map, lattice, layer, best->slot);
   const LatticeMap::Node& node = map.at(layer, cell / map.angles, cell % map.angles);
-  const Config q = turned_towards(lattice, lattice.row(layer, best->slot, best->q).value_or(best->q), rows, rows.size());
+  const Config q = turned_towards(lattice, lattice.exact_config(layer, best->slot, best->q).value_or(best->q), rows, rows.size());
   std::string what = "no valid pose here: " + reason;
   Json pair = nullptr, line = nullptr;
   if (node.state == NodeState::kBlocked) {
@@ -296,7 +296,7 @@ Json cut_json(const LatticeMap& map, const Lattice& lattice, const World& world,
   } else if (!map.path.empty()) {
     what = "the next pose cannot be moved to: " + reason;
     if (diagnosis["cause"].is_object() && diagnosis["cause"]["cause"] == "joint_step") {
-      const Config step = lattice.delta(*lattice.row(layer - 1, path.back()), q);
+      const Config step = lattice.delta(*lattice.exact_config(layer - 1, path.back()), q);
       Eigen::Index joint = 0;
       const double most = step.cwiseAbs().maxCoeff(&joint);
       const std::string text = formatted(" by %.2f rad", most);
@@ -380,7 +380,7 @@ Json map_json(const LatticeMap& map, const Lattice& lattice, const World& world,
         if (panel_of[solution] < 0 || shown[k].layer >= 0 || map.at(layer, solution, angle) != cells.node(solution, column, row))
           return;
         const auto near = static_cast<std::size_t>(layer);
-        const Config q = turned_towards(lattice, lattice.row(layer, node.slot, node.q).value_or(node.q), rows,
+        const Config q = turned_towards(lattice, lattice.exact_config(layer, node.slot, node.q).value_or(node.q), rows,
                                         near < row_of_layer.size() ? row_of_layer[near] : rows.size());
         const double roll = turned ? roll_between(lattice.path().layer(layer).tool, lattice.chain().tool(q)) : 0;
         shown[k] = {layer, node.slot, lattice.phi(layer, node.slot), roll, q};

@@ -137,12 +137,12 @@ TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
         small.problem.limits.manipulability = random.uniform(0.005, 0.1);
         small.rebuild();
         const SrsLattice& lattice = *small.lattice;
-        ASSERT_TRUE(lattice.has_own_rows());
+        ASSERT_TRUE(lattice.is_approximate());
         std::vector<int> same_poses;
         for (int layer = 0; layer < lattice.layers(); ++layer)
           for (int slot = 0; slot < lattice.width(); ++slot) {
             const auto q = lattice.node(layer, slot);
-            const auto row = q ? lattice.row(layer, slot, *q) : std::nullopt;
+            const auto row = q ? lattice.exact_config(layer, slot, *q) : std::nullopt;
             if (!row) continue;
             ++rows;
             too_few += !lattice.manipulable(*row);
@@ -153,7 +153,7 @@ TEST(Lattice, WhatIsUnmanipulableForOneElbowIsSoInEveryRow) {
             lattice.slots_with_same_body_poses(layer, slot, lattice.manipulability_groups(), same_poses);
             for (const int other : same_poses) {
               const auto node = lattice.node(layer, other);
-              const auto there = node ? lattice.row(layer, other, *node) : std::nullopt;
+              const auto there = node ? lattice.exact_config(layer, other, *node) : std::nullopt;
               ASSERT_FALSE(there && lattice.manipulable(*there)) << small.problem.source << " layer " << layer << " slot " << other;
             }
           }

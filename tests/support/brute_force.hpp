@@ -42,7 +42,7 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
         rows[i].emplace_back();
         continue;
       }
-      rows[i].push_back(lattice.row(static_cast<int>(i), slot, *q));
+      rows[i].push_back(lattice.exact_config(static_cast<int>(i), slot, *q));
       const auto& row = rows[i].back();
       if (!row || chain.manipulability(*row) < limits.manipulability || query.find_violating_pair(*row, ClearanceRule::kNode))
         q.reset();

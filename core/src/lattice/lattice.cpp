@@ -122,13 +122,13 @@ Lattice::Between Lattice::between(int, int, const Config&, int, const Config&) c
   return {};
 }
 
-std::optional<Config> Lattice::row(int, int, const Config& q) const {
+std::optional<Config> Lattice::exact_config(int, int, const Config& q) const {
   return q;
 }
 
-std::optional<Config> Lattice::row(int layer, int slot) const {
+std::optional<Config> Lattice::exact_config(int layer, int slot) const {
   const auto q = node(layer, slot);
-  return q ? row(layer, slot, *q) : std::nullopt;
+  return q ? exact_config(layer, slot, *q) : std::nullopt;
 }
 
 bool Lattice::manipulable(const Config& q) const {

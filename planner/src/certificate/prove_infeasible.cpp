@@ -83,9 +83,9 @@ class Finder {
   /// the search need not have computed.
   [[nodiscard]] bool has_row(int layer, int slot, Nodes& nodes) const {
     if (!nodes.open(index(slot))) return false;
-    if (lattice_.has_own_rows() && !nodes.asked[index(slot)]) {
+    if (lattice_.is_approximate() && !nodes.asked[index(slot)]) {
       nodes.asked[index(slot)] = 1;
-      nodes.removed[index(slot)] = !lattice_.row(layer, slot, nodes.at[index(slot)]->q);
+      nodes.removed[index(slot)] = !lattice_.exact_config(layer, slot, nodes.at[index(slot)]->q);
     }
     return nodes.open(index(slot));
   }

@@ -78,7 +78,7 @@ Cause Witnesses::limit_of(int joint, Cause::Side side) const {
   return cause;
 }
 
-/// Returns true if the cause explains why a slot has no exact configuration (Lattice::row).
+/// Returns true if the cause explains why a slot has no exact configuration (Lattice::exact_config).
 bool Witnesses::removes_missing(const Cause& cause, const About& about, int layer, int slot) const {
   const Lattice::NodeFault fault = lattice_.fault(layer, slot);
   switch (fault.status) {
@@ -114,7 +114,7 @@ bool Witnesses::removes_node(int witness, int layer, int slot) {
   budget_.poll();
   const Cause& cause = causes_[static_cast<std::size_t>(witness)];
   const About& about = about_[static_cast<std::size_t>(witness)];
-  const auto q = lattice_.row(layer, slot);
+  const auto q = lattice_.exact_config(layer, slot);
   if (!q) return removes_missing(cause, about, layer, slot);
   if (cause.kind == Cause::Kind::kManipulability) return !lattice_.manipulable(*q);
   if (cause.kind == Cause::Kind::kCheck) return !check_.states({&*q, 1})[0];
@@ -126,7 +126,7 @@ bool Witnesses::removes_node(int witness, int layer, int slot) {
 int Witnesses::of_node(int layer, int slot, int suspected) {
   budget_.poll();
   const auto is = [&](Cause::Kind kind) { return suspected >= 0 && causes_[static_cast<std::size_t>(suspected)].kind == kind; };
-  const auto q = lattice_.row(layer, slot);
+  const auto q = lattice_.exact_config(layer, slot);
   if (!q) {
     if (is(Cause::Kind::kLimit) && removes_node(suspected, layer, slot)) return suspected;
     const auto cause = of_missing(layer, slot);
@@ -146,7 +146,7 @@ int Witnesses::of_node(int layer, int slot, int suspected) {
 }
 
 std::optional<Witnesses::Move> Witnesses::move(int layer, int a, int b) const {
-  const auto qa = lattice_.row(layer, a), qb = lattice_.row(layer + 1, b);
+  const auto qa = lattice_.exact_config(layer, a), qb = lattice_.exact_config(layer + 1, b);
   if (!qa || !qb) return std::nullopt;
   return Move{*qa, *qa + lattice_.delta(*qa, *qb)};
 }

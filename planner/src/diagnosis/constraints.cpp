@@ -40,7 +40,7 @@ Constraints::Constraints(const Lattice& lattice, const World& world, const EdgeR
       check_(check, budget),
       query_(world, DistanceProofs::kOn),
       question_us_(world.has_meshes() ? 300 : 3),
-      node_us_(lattice.has_own_rows() ? 5 : 1),
+      node_us_(lattice.is_approximate() ? 5 : 1),
       number_of_(world.bodies().size() * world.body_names().size(), kUnmet) {
   object_of_.fill(-1);
 }
@@ -155,7 +155,7 @@ Constraints::Node Constraints::node(int layer, int slot, ConstraintSet waived, U
   ++nodes_;
   Node node;
   Violations found{*this, waived, until};
-  if (const auto q = lattice_.row(layer, slot)) {
+  if (const auto q = lattice_.exact_config(layer, slot)) {
     node.q = *q;
   } else {
     ++nodes_;
@@ -194,7 +194,7 @@ ConstraintSet Constraints::edge(int layer, int a, const Node& from, int b, const
   const Config& bound = lattice_.row_step_bound(layer);
   if (!lattice_.row_step_allowed(layer, delta)) {
     add_steps(qa, delta, bound, Config::Zero(), found);
-  } else if (lattice_.has_own_rows()) {  // nodes have a bound of their own
+  } else if (lattice_.is_approximate()) {  // nodes have a bound of their own
     const auto a_node = lattice_.node(layer, a), b_node = lattice_.node(layer + 1, b);
     if (a_node && b_node) add_steps(*a_node, lattice_.delta(*a_node, *b_node), bound, 2 * lattice_.fit_error(), found);
   }

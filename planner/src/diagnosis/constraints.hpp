@@ -30,7 +30,7 @@ using ConstraintSet = std::uint64_t;
 /// user's check, and pairs of bodies in the order in which they are met. Each scene object has a
 /// number too, which stands for all pairs with it, since an object can be removed as a whole. Tells
 /// which constraints a node or an edge violates, for any lattice, by exact configurations
-/// (Lattice::row). The user's check is only called about what violates nothing else; otherwise it
+/// (Lattice::exact_config). The user's check is only called about what violates nothing else; otherwise it
 /// counts as passed. Clearance queries go to a query of this object and are counted.
 class Constraints {
  public:

@@ -89,7 +89,7 @@ class LayerBlockers {
     if (!pair) return known_[k] = kFree;
     const auto& pairs = world_.pairs();
     known_[k] = static_cast<int>(std::find(pairs.begin(), pairs.end(), *pair) - pairs.begin());
-    const Config node = lattice_.has_own_rows() ? *lattice_.node(layer, slot) : q;
+    const Config node = lattice_.is_approximate() ? *lattice_.node(layer, slot) : q;
     if (!is_shared(lattice_, world_, clearance_error_, query_, layer, node, q, *pair)) {
       all_ = false;
       return known_[k];
@@ -162,7 +162,7 @@ class Inspector {
     Counts causes;
     if (const int slot = hint < 0 ? -1 : lattice_.along(layer - 1, hint, 1); slot >= 0) {
       constraints_.count_nodes(1);
-      if (const auto q = lattice_.row(layer, slot); q && blockers_.any(layer, slot, *q) == kFree) {
+      if (const auto q = lattice_.exact_config(layer, slot); q && blockers_.any(layer, slot, *q) == kFree) {
         free.push_back({slot, *q});
         keep_allowed(free, causes);
         hint = slot;
@@ -177,7 +177,7 @@ class Inspector {
     std::map<int, std::int64_t> counts;
     for (const Lattice::Node& node : nodes_) {
       budget_.poll();
-      const auto q = lattice_.row(layer, node.slot, node.q);
+      const auto q = lattice_.exact_config(layer, node.slot, node.q);
       if (!q) continue;
       const int blocker = blockers_.any(layer, node.slot, *q);
       if (blocker == kFree) {
@@ -328,10 +328,10 @@ class Inspector {
   /// Lists the nodes of a layer that have an exact configuration, with its joints.
   void rows_of(int layer, std::vector<Lattice::Node>& out) {
     lattice_.layer_nodes(layer, out);
-    if (!lattice_.has_own_rows()) return;
+    if (!lattice_.is_approximate()) return;
     std::erase_if(out, [&](Lattice::Node& node) {
       budget_.poll();
-      const auto row = lattice_.row(layer, node.slot, node.q);
+      const auto row = lattice_.exact_config(layer, node.slot, node.q);
       if (row) node.q = *row;
       return !row;
     });
@@ -425,7 +425,7 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
   }
   // No node is listed that continues the path.
   if (!diagnosis.without_it && deepest >= 0 && lattice.along(deepest, path.back(), 1) < 0)
-    if (const auto limit = inspector.limit_ahead(deepest, *lattice.row(deepest, path.back())))
+    if (const auto limit = inspector.limit_ahead(deepest, *lattice.exact_config(deepest, path.back())))
       diagnosis.cause = *limit, answer.emplace();
   inspector.begin_layers();
   Counts edges;

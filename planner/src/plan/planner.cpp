@@ -409,7 +409,7 @@ struct Planner::Impl {
       result.cost = result.lattice.cost = found.outcome.cost;
       result.trajectory = lattice.path_rows(path);
       measure_margins(robot->arm().chain, layout->path, result.trajectory, result);
-      if (lattice.has_own_rows() || lattice.has_layers_between())
+      if (lattice.is_approximate() || lattice.has_layers_between())
         result.cost = cost_of_rows(lattice, path, result.trajectory, result.cost);
     }
     result.time_ms["plan"] = whole.lap();

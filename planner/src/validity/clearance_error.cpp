@@ -11,7 +11,7 @@ namespace swivel {
 
 std::vector<ClearanceError::Body> ClearanceError::measured() const {
   std::vector<Body> bodies;
-  if (!lattice_->has_own_rows()) return bodies;
+  if (!lattice_->is_approximate()) return bodies;
   for (const RobotBody& body : world_->bodies()) {
     Body& mine = bodies.emplace_back(Body{body.group, 0});
     if (body.group == 0 || body.group > static_cast<int>(kDof)) continue;

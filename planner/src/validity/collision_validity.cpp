@@ -36,18 +36,18 @@ CollisionValidity::CollisionValidity(const Lattice& lattice, const World& world,
   for (int chunk = 0; chunk < chunks; ++chunk) chunks_.push_back(make_queries());
   workers_.reserve(static_cast<std::size_t>(executor.threads()));
   for (int worker = 0; worker < executor.threads(); ++worker) workers_.push_back(make_queries());
-  if (lattice.has_own_rows())
+  if (lattice.is_approximate())
     rows_.assign(static_cast<std::size_t>(executor.threads()),
                  std::vector<Row>(std::min(kMostRows, kRowsOfLayer * static_cast<std::size_t>(lattice.layers()))));
 }
 
-std::optional<Config> CollisionValidity::row(int layer, int slot, const Config& q, int worker) {
-  if (!lattice_->has_own_rows()) return q;
+std::optional<Config> CollisionValidity::exact_config(int layer, int slot, const Config& q, int worker) {
+  if (!lattice_->is_approximate()) return q;
   auto& rows = rows_[static_cast<std::size_t>(worker)];
   // Neighbours along the path and along the coordinate must not share a place in the cache.
   const auto place = (static_cast<std::size_t>(layer) * kSlotsApart + static_cast<std::size_t>(slot)) % rows.size();
   Row& row = rows[place];
-  if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->row(layer, slot, q)};
+  if (row.layer != layer || row.slot != slot) row = {layer, slot, lattice_->exact_config(layer, slot, q)};
   return row.q;
 }
 
@@ -124,14 +124,15 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
     open.pair = pair;
     return NodeAnswer{false, shared, groups_of(*world_, pair), failure_of(pair)};
   };
-  if (suspected && !open.only_changed && lattice_->has_own_rows() && fails_before_row(question, *suspected, queries.whole))
+  if (suspected && !open.only_changed && lattice_->is_approximate() &&
+      fails_before_exact_config(question, *suspected, queries.whole))
     return failure(*suspected, lattice_->shares_body_poses(groups_of(*world_, *suspected)));
   const auto unmanipulable = [&](bool shared) {
     return NodeAnswer{false, shared, lattice_->manipulability_groups(), kManipulability};
   };
   const bool suspects_manipulability = question.suspected == kManipulability && !open.only_changed;
   if (suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q)) return unmanipulable(true);
-  const auto q = row(question.layer, question.slot, question.q, worker);
+  const auto q = exact_config(question.layer, question.slot, question.q, worker);
   if (!q) return {};
   if (!open.only_changed && !lattice_->manipulable(*q))
     return unmanipulable(!suspects_manipulability && lattice_->all_below_manipulability(question.layer, question.q));
@@ -156,7 +157,7 @@ NodeAnswer CollisionValidity::node(const NodeQuestion& question, Open& open, int
 /// Computing the exact configuration means solving seven equations. If the bodies are too near by
 /// more than it can move them, the node fails whether it has one or not, and so do the nodes at
 /// which the bodies have the same poses.
-bool CollisionValidity::fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
+bool CollisionValidity::fails_before_exact_config(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const {
   const double margin = clearance_error_.from_node(question.layer, question.q, pair);
   return std::isfinite(margin) && query.proves_violation(question.q, pair, Threshold(ClearanceRule::kNode, -margin));
 }
@@ -210,11 +211,11 @@ void CollisionValidity::edges(std::span<const EdgeQuestion> questions, std::span
 bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Queries& queries) {
   const TraceSpan span("edge");
   budget_.poll();
-  const auto qa = row(x.layer, x.a, x.qa, worker), qb = row(x.layer + 1, x.b, x.qb, worker);
+  const auto qa = exact_config(x.layer, x.a, x.qa, worker), qb = exact_config(x.layer + 1, x.b, x.qb, worker);
   if (!qa || !qb) return false;
   if (lattice_->has_layers_between()) return edge_of_layers(x, *qa, *qb, open, queries.whole);
   const Config move = lattice_->delta(*qa, *qb);
-  if (!open.only_changed && ((lattice_->has_own_rows() && !lattice_->row_step_allowed(x.layer, move)) ||
+  if (!open.only_changed && ((lattice_->is_approximate() && !lattice_->row_step_allowed(x.layer, move)) ||
                              !lattice_->follows_path(x.layer, x.a, *qa, x.b, *qb)))
     return false;
   if (edge_mode_ == EdgeMode::kNodes) return true;
@@ -249,7 +250,7 @@ bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, 
 }
 
 bool CollisionValidity::asks_edges() const {
-  return lattice_->has_own_rows() || lattice_->has_layers_between() || lattice_->asks_path_error() ||
+  return lattice_->is_approximate() || lattice_->has_layers_between() || lattice_->asks_path_error() ||
          (edge_mode_ == EdgeMode::kContinuous && !world_->pairs().empty());
 }
 

@@ -63,13 +63,13 @@ class CollisionValidity final : public Validity {
   [[nodiscard]] NodeAnswer node(const NodeQuestion& question, Open& open, int worker, Queries& queries);
   /// Returns true if the pair is proved to be too near at the node's exact configuration, without
   /// computing that.
-  [[nodiscard]] bool fails_before_row(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;
+  [[nodiscard]] bool fails_before_exact_config(const NodeQuestion& question, const BodyPair& pair, World::Query& query) const;
   [[nodiscard]] bool edge(const EdgeQuestion& question, Open& open, int worker, Queries& queries);
   [[nodiscard]] bool edge_of_layers(const EdgeQuestion& question, const Config& qa, const Config& qb, Open& open,
                                     World::Query& query);
-  /// Returns the exact configuration of a node (Lattice::row). Each worker caches recent ones,
+  /// Returns the exact configuration of a node (Lattice::exact_config). Each worker caches recent ones,
   /// since a path's nodes are tested first and then its edges.
-  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q, int worker);
+  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot, const Config& q, int worker);
 
   const Lattice* lattice_;
   const World* world_;

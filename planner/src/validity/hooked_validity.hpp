@@ -25,10 +25,10 @@ class HookedValidity final : public Validity {
 
  private:
   void check_layers_between(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers);
-  /// Returns the state that hooks are given for a node: its exact configuration (Lattice::row) if
+  /// Returns the state that hooks are given for a node: its exact configuration (Lattice::exact_config) if
   /// it has one of its own, else its joints.
   [[nodiscard]] Config state(int layer, int slot, const Config& node) const {
-    return lattice_->has_own_rows() ? lattice_->row(layer, slot, node).value_or(node) : node;
+    return lattice_->is_approximate() ? lattice_->exact_config(layer, slot, node).value_or(node) : node;
   }
 
   const Lattice* lattice_;

@@ -43,7 +43,7 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   World::Query query(laid.robot.world());
   std::map<std::string, std::int64_t> reasons;
   for (int slot = 0; slot < laid.lattice.width(); ++slot) {
-    const auto q = laid.lattice.row(layer, slot);
+    const auto q = laid.lattice.exact_config(layer, slot);
     if (!q) continue;
     const auto pair = query.find_violating_pair(*q, ClearanceRule::kNode);
     const auto& names = laid.robot.world().body_names();
@@ -196,7 +196,7 @@ TEST(Diagnosis, SaysByHowMuchAJointIsOutsideItsLimits) {
         const SrsLattice wider(chain, laid.robot.srs(), laid.path, problem);
         for (int layer = empty.first; layer <= empty.last; ++layer)
           for (int slot = 0; slot < wider.width(); ++slot)
-            if (wider.row(layer, slot)) return true;
+            if (wider.exact_config(layer, slot)) return true;
         return false;
       };
       EXPECT_TRUE(exists_with(*cause.by() + 1e-8)) << empty.first << " " << words(cause);

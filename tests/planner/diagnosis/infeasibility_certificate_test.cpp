@@ -43,7 +43,7 @@ class Plain {
   [[nodiscard]] bool valid(int layer, int slot) {
     const auto [at, is_new] = valid_.try_emplace({layer, slot}, false);
     if (is_new) {
-      const auto q = lattice_->row(layer, slot);
+      const auto q = lattice_->exact_config(layer, slot);
       at->second = q && lattice_->chain().manipulability(*q) >= lattice_->limits().manipulability &&
                    !query_.find_violating_pair(*q, ClearanceRule::kNode);
     }
@@ -54,7 +54,7 @@ class Plain {
     if (!lattice_->in_window(layer, a, b)) return false;
     const Limits& limits = lattice_->limits();
     const Config na = *lattice_->node(layer, a), nb = *lattice_->node(layer + 1, b);
-    const Config qa = *lattice_->row(layer, a, na), qb = *lattice_->row(layer + 1, b, nb);
+    const Config qa = *lattice_->exact_config(layer, a, na), qb = *lattice_->exact_config(layer + 1, b, nb);
     Config nodes = nb - na, rows = qb - qa;
     for (int j = 0; j < kDof; ++j) {
       for (Config* move : {&nodes, &rows})

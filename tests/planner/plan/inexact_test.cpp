@@ -52,9 +52,10 @@ TEST(Inexact, FourPlannersAndBruteForceAgreeAndRowsAreOnTheExactChain) {
         "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " + problem.source;
     const Laid laid(problem);
     const SrsLattice& lattice = laid.lattice;
-    ASSERT_TRUE(lattice.has_own_rows()) << what;
+    ASSERT_TRUE(lattice.is_approximate()) << what;
     for (int layer = 0; layer < lattice.layers(); ++layer)
-      for (int slot = 0; slot < lattice.width(); ++slot) without_row += lattice.node(layer, slot) && !lattice.row(layer, slot);
+      for (int slot = 0; slot < lattice.width(); ++slot)
+        without_row += lattice.node(layer, slot) && !lattice.exact_config(layer, slot);
     const Answer truth = truth_of(laid);
     std::vector<PlanResult> results;
     for (const PlannerKind planner : kPlanners) {
@@ -153,7 +154,7 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
       const int slot = laid.lattice.start_slot();
       const auto node = laid.lattice.node(0, slot);
       ASSERT_TRUE(node) << robot.name;
-      ASSERT_EQ(laid.lattice.row(0, slot), q);
+      ASSERT_EQ(laid.lattice.exact_config(0, slot), q);
       ASSERT_LE((*node - q).cwiseAbs().maxCoeff(), kMostPolished);
       const ArmPlane& plane = laid.lattice.plane(0);
       const double phi = plane.angle_of(arm.elbow_axis(q));
@@ -234,7 +235,7 @@ TEST(Inexact, AStartBeyondTheFittedArmsReachIsANode) {
     const Laid laid(problem);  // no bad input
     const auto node = laid.lattice.node(0, laid.lattice.start_slot());
     ASSERT_TRUE(node);
-    ASSERT_EQ(laid.lattice.row(0, laid.lattice.start_slot()), q);
+    ASSERT_EQ(laid.lattice.exact_config(0, laid.lattice.start_slot()), q);
     (*node == q ? own : fitted) += 1;
     const Answer truth = truth_of(laid);
     for (const PlannerKind planner : kPlanners) {

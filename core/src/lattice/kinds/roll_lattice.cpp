@@ -268,7 +268,7 @@ int RollLattice::along(int layer, int slot, int by) const {
 }
 
 void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const {
-  if (has_own_rows() || (layer == 0 && start_)) {
+  if (is_approximate() || (layer == 0 && start_)) {
     out.assign(1, slot);
     return;
   }
@@ -277,7 +277,7 @@ void RollLattice::slots_with_same_body_poses(int layer, int slot, unsigned group
 }
 
 PoseErrorBound RollLattice::pose_error_of_node(int layer, int group, const Config& q) const {
-  return has_own_rows() ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about) : PoseErrorBound{};
+  return is_approximate() ? PoseErrorBound::unknown(at_roll(0).pose_error_of_node(layer, group, q).about) : PoseErrorBound{};
 }
 
 PoseErrorBound RollLattice::pose_error_between(int layer, int group, const Config& q) const {
@@ -435,7 +435,7 @@ std::vector<TrajectoryRow> RollLattice::path_rows(const std::vector<int>& slots)
   std::vector<TrajectoryRow> rows;
   for (int k = 0; k < static_cast<int>(slots.size()); ++k) {
     const int slot = slots[static_cast<std::size_t>(k)];
-    Config q = *row(k, slot);
+    Config q = *exact_config(k, slot);
     if (k > 0) {
       const Config before = rows.back().q;  // of the knot before
       static_cast<void>(walk(k - 1, slots[static_cast<std::size_t>(k) - 1], before, slot, q,

@@ -486,7 +486,7 @@ std::optional<Config> SrsLattice::polished(int layer, int slot, const Config& q)
                      : polish(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
 }
 
-std::optional<Config> SrsLattice::row(int layer, int slot, const Config& q) const {
+std::optional<Config> SrsLattice::exact_config(int layer, int slot, const Config& q) const {
   if (arm_->exact) return q;
   if (layer == 0 && start_) return start_->row;
   auto row = polished(layer, slot, q);

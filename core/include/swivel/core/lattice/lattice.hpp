@@ -53,20 +53,20 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   /// One node; none where it does not exist.
   [[nodiscard]] virtual std::optional<Config> node(int layer, int slot) const = 0;
   /// The joints that a trajectory has at a node, whose own joints are q: on the exact chain, within the limits. Nodes of arms with
-  /// an exact closed form are rows themselves. Other arms have the nodes of the ideal arm fitted to them, and rows that Newton
+  /// an exact closed form are exact themselves. Other arms have the nodes of the ideal arm fitted to them, and rows that Newton
   /// finds near those; none where it does not, or where that row is outside the limits: the node is then invalid.
-  [[nodiscard]] virtual std::optional<Config> row(int layer, int slot, const Config& q) const;
+  [[nodiscard]] virtual std::optional<Config> exact_config(int layer, int slot, const Config& q) const;
   /// Of a slot; none where the node does not exist, too.
-  [[nodiscard]] std::optional<Config> row(int layer, int slot) const;
-  /// False where every node is its own row.
-  [[nodiscard]] virtual bool has_own_rows() const { return false; }
+  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot) const;
+  /// False where every node is exact.
+  [[nodiscard]] virtual bool is_approximate() const { return false; }
   struct Node {
     int slot = 0;
     Config q;
   };
   /// Replaces `out` by all nodes of a layer that exist, in the order of slots.
   virtual void layer_nodes(int layer, std::vector<Node>& out) const = 0;
-  /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and row().
+  /// Manipulability bound of a row alone; everything else that makes a node kinematically valid is in node() and exact_config().
   [[nodiscard]] bool manipulable(const Config& q) const;
   [[nodiscard]] bool asks_manipulability() const { return limits_.manipulability > 0; }
 
@@ -164,13 +164,14 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   [[nodiscard]] const Config& step_bound(int layer) const {
     return step_bounds_[step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
-  /// The same of a move between rows, by joint_step and speed limits as they are: part of an edge's validity where has_own_rows().
+  /// The same of a move between rows, by joint_step and speed limits as they are: part of an edge's validity where
+  /// is_approximate().
   [[nodiscard]] bool row_step_allowed(int layer, const Config& delta) const;
   [[nodiscard]] const Config& row_step_bound(int layer) const {
     return row_step_bounds_[row_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(layer)];
   }
   /// By how much a row's joints differ from their node's on this arm, as measured (SrsArm::fit_error), rad: 0 where every node is
-  /// its own row. Limits and steps of nodes are wider by it, so that few rows are missed.
+  /// exact. Limits and steps of nodes are wider by it, so that few rows are missed.
   [[nodiscard]] const Config& fit_error() const { return fit_error_; }
   /// Cost of a move, a multiple of 2^-40 units.
   [[nodiscard]] double edge_cost(const Config& delta) const;

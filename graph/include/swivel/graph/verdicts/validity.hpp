@@ -43,7 +43,7 @@ struct NodeAnswer {
 };
 
 /// Answers the costly questions about nodes and edges, in batches; a search asks about each node
-/// and edge at most once. A node is valid if it has a row (Lattice::row()) that keeps
+/// and edge at most once. A node is valid if it has a row (Lattice::exact_config()) that keeps
 /// manipulability, clearance and a user's check. An edge, whose nodes' joint steps are allowed, is
 /// valid if its rows' joint steps, tool-path error, clearance of the motion and a user's check
 /// allow it. Questions give the joints of nodes. Every batch throws Stopped once the caller's

@@ -13,7 +13,7 @@ class PoseErrorModel {
  public:
   /// Prepares the bounds for an exact chain and the S-R-S arm fitted to it.
   PoseErrorModel(const Chain& chain, const SrsArm& arm);
-  /// Returns how far the row of a node may place the bodies that move with joint `group` of 1..7
+  /// Returns how far the exact configuration of a node may place the bodies that move with joint `group` of 1..7
   /// from where the node's joints q (rad) place them, or those of another node that places these
   /// bodies alike. The node's wrist centre is `reach` m from the shoulder centre. The bound is
   /// unknown next to the straight arm, and for links next to a singular shoulder or wrist.
@@ -23,7 +23,7 @@ class PoseErrorModel {
   /// where that of from_node() is.
   [[nodiscard]] PoseErrorBound between_exact_configs(int group, double reach, const Config& q) const;
   /// Returns a bound on the Frobenius norm of the change of the exact chain's Jacobian, but for the
-  /// signs of columns, from a node's joints q (rad) to its row or to the row of a node with the
+  /// signs of columns, from a node's joints q (rad) to its row or to the exact configuration of a node with the
   /// same elbow. Both Jacobians are taken about the point where the exact chain has the tool at the
   /// node's joints. The bound is infinite where a shift is unknown. `reach` is as for from_node().
   [[nodiscard]] double jacobian_change(double reach, const Config& q) const;

@@ -79,11 +79,11 @@ class RollLattice final : public Lattice {
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override {
     return at(layer, slot).node(layer, inner(layer, slot));
   }
-  using Lattice::row;
-  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q) const override {
-    return at(layer, slot).row(layer, inner(layer, slot), q);
+  using Lattice::exact_config;
+  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot, const Config& q) const override {
+    return at(layer, slot).exact_config(layer, inner(layer, slot), q);
   }
-  [[nodiscard]] bool has_own_rows() const override { return at_roll(0).has_own_rows(); }
+  [[nodiscard]] bool is_approximate() const override { return at_roll(0).is_approximate(); }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
   [[nodiscard]] NodeFault fault(int layer, int slot) const override { return at(layer, slot).fault(layer, inner(layer, slot)); }
   /// Where no roll is within reach: of the one that misses least.
@@ -96,11 +96,11 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int across(int layer, int slot, int by) const override;
   [[nodiscard]] int along(int layer, int slot, int by) const override;
   /// As in an SrsLattice, among nodes of one roll.
-  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return !has_own_rows() && (groups & kFollowers) == 0; }
+  [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return !is_approximate() && (groups & kFollowers) == 0; }
   void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;
   [[nodiscard]] unsigned manipulability_groups() const override { return at_roll(0).manipulability_groups(); }
   [[nodiscard]] bool all_below_manipulability(int layer, const Config& q) const override {
-    return !has_own_rows() && at_roll(0).all_below_manipulability(layer, q);
+    return !is_approximate() && at_roll(0).all_below_manipulability(layer, q);
   }
   [[nodiscard]] PoseErrorBound pose_error_of_node(int layer, int group, const Config& q) const override;
   [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group, const Config& q) const override;

@@ -110,9 +110,9 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int slots(int) const override { return width(); }
   [[nodiscard]] std::int64_t nodes() const override { return static_cast<std::int64_t>(layers()) * width(); }
   [[nodiscard]] std::optional<Config> node(int layer, int slot) const override;
-  using Lattice::row;
-  [[nodiscard]] std::optional<Config> row(int layer, int slot, const Config& q) const override;
-  [[nodiscard]] bool has_own_rows() const override { return !arm_->exact; }
+  using Lattice::exact_config;
+  [[nodiscard]] std::optional<Config> exact_config(int layer, int slot, const Config& q) const override;
+  [[nodiscard]] bool is_approximate() const override { return !arm_->exact; }
   void layer_nodes(int layer, std::vector<Node>& out) const override;
   [[nodiscard]] NodeFault fault(int layer, int slot) const override;
   /// The wrist centre from the shoulder.
@@ -241,7 +241,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] int winding_images(int winding, int joint) const;
   [[nodiscard]] Run grid_run(double phi) const;
 
-  /// The row of a node on the exact chain, limits aside; for the tool as the node turns it where joint 7 stays.
+  /// The exact configuration of a node on the exact chain, limits aside; for the tool as the node turns it where joint 7 stays.
   [[nodiscard]] std::optional<Config> polished(int layer, int slot, const Config& q) const;
 
   std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
