@@ -22,7 +22,7 @@ double pose_distance(const Pose& a, const Pose& b) {
 }
 
 struct Tally {
-  int tried = 0, found = 0, excused = 0, solutions = 0, unpolished = 0;
+  int tried = 0, found = 0, excused = 0, solutions = 0, unsolved = 0;
   double worst = 0;
 };
 
@@ -44,9 +44,9 @@ Tally round_trip(const Chain& chain, const SrsArm& srs, int trials, Random& rand
     const double phi = plane.angle_of(srs.elbow_axis(q));
     bool found = false;
     for (int branch = 0; branch < kBranches; ++branch) {
-      const auto solution = polish(chain, srs, plane, tool, phi, srs_ik(srs, circles, phi, branch));
+      const auto solution = solve_exact_chain(chain, srs, plane, tool, phi, srs_ik(srs, circles, phi, branch));
       if (!solution) {
-        ++tally.unpolished;
+        ++tally.unsolved;
         continue;
       }
       ++tally.solutions;
@@ -88,7 +88,7 @@ TEST_P(RealSda5f, PolishReachesTheExactChain) {
   const SrsArm srs = fit_srs(chain, file.string());
   const int count = trials(100000);
   const Tally tally = round_trip(chain, srs, count, random);
-  const double share = static_cast<double>(tally.unpolished) / (8.0 * (tally.tried - tally.excused));
+  const double share = static_cast<double>(tally.unsolved) / (8.0 * (tally.tried - tally.excused));
   std::printf("%s: fit %.3g m %.3g rad, tried %d, found %d, excused %d, solutions %d, not converged %.4f %%, worst residual %.2e\n",
               GetParam(), srs.deviation.offset, srs.deviation.angle, tally.tried, tally.found, tally.excused, tally.solutions,
               100 * share, tally.worst);

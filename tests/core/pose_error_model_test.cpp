@@ -53,7 +53,7 @@ TEST(PoseErrorModel, NoRowIsFurtherFromItsNodeOrFromOneThatStandsAlike) {
       std::vector<Known> all;
       for (const int branch : {elbow, elbow | kShoulderBit, elbow | kWristBit, elbow | kShoulderBit | kWristBit}) {
         const Config node = srs_ik(arm, circles, phi, branch);
-        if (const auto row = polish(chain, arm, plane, tool, phi, node)) all.push_back({branch, node, *row});
+        if (const auto row = solve_exact_chain(chain, arm, plane, tool, phi, node)) all.push_back({branch, node, *row});
       }
       rows += static_cast<int>(all.size());
       for (const Known& here : all) {

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "kinematics/srs/polish_turned.hpp"
+#include "kinematics/srs/exact_chain_turned.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/equations/alignment.hpp"
 #include "swivel/core/kinematics/srs/arm_angle.hpp"
@@ -27,7 +27,9 @@ std::optional<Config> joints_near(const Chain& chain, const SrsArm& arm, const A
                                   const TrajectoryRow& row, const std::optional<double>& last_joint = {}) {
   std::optional<Config> q = srs_ik(arm, circles, angle, row.branch);
   if (last_joint) (*q)[kDof - 1] = *last_joint;
-  if (!arm.exact) q = last_joint ? polish_turned(chain, arm, plane, tool, angle, *q) : polish(chain, arm, plane, tool, angle, *q);
+  if (!arm.exact)
+    q = last_joint ? solve_exact_chain_turned(chain, arm, plane, tool, angle, *q)
+                   : solve_exact_chain(chain, arm, plane, tool, angle, *q);
   if (!q) return std::nullopt;
   for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = row.q[j] + wrap_angle((*q)[j] - row.q[j]);
   return q;

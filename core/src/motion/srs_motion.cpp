@@ -66,7 +66,7 @@ std::optional<Config> SrsMotion::joints(double travel) const {
   const TrajectoryRow &from = rows_[k], &to = rows_[k + 1];
   const double angle = angle_->at(travel);
   std::optional<Config> q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), angle, t < 0.5 ? from.branch : to.branch);
-  if (!arm_->exact) q = polish(*chain_, *arm_, plane, tool, angle, *q);
+  if (!arm_->exact) q = solve_exact_chain(*chain_, *arm_, plane, tool, angle, *q);
   if (!q) return std::nullopt;
   const Config expected = from.q + t * (to.q - from.q);
   for (Eigen::Index j = 0; j < kDof; ++j) (*q)[j] = expected[j] + wrap_angle((*q)[j] - expected[j]);

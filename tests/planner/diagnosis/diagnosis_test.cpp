@@ -53,7 +53,7 @@ std::map<std::string, std::int64_t> plain_reasons(const Laid& laid, int layer) {
   return reasons;
 }
 
-/// An arm whose axes miss each other by what rounding in a file may do, so that joints are polished.
+/// An arm whose axes miss each other by what rounding in a file may do, so that joints are corrected on the exact chain.
 TestRobot inexact_robot() {
   TestRobot robot = data_robot("iiwa14");
   auto model = std::make_shared<RobotModel>(*robot.model);

@@ -155,12 +155,12 @@ TEST(Inexact, PosturesAtTheLimitsAreRows) {
       const auto node = laid.lattice.node(0, slot);
       ASSERT_TRUE(node) << robot.name;
       ASSERT_EQ(laid.lattice.exact_config(0, slot), q);
-      ASSERT_LE((*node - q).cwiseAbs().maxCoeff(), kMostPolished);
+      ASSERT_LE((*node - q).cwiseAbs().maxCoeff(), kMostCorrection);
       const ArmPlane& plane = laid.lattice.plane(0);
       const double phi = plane.angle_of(arm.elbow_axis(q));
-      const auto polished = polish(chain, arm, plane, tool, phi, *node);
-      ASSERT_TRUE(polished) << robot.name;
-      ASSERT_LE((*polished - q).cwiseAbs().maxCoeff(), 1e-7) << robot.name;
+      const auto exact = solve_exact_chain(chain, arm, plane, tool, phi, *node);
+      ASSERT_TRUE(exact) << robot.name;
+      ASSERT_LE((*exact - q).cwiseAbs().maxCoeff(), 1e-7) << robot.name;
       for (int j = 0; j < kDof; ++j) {
         EXPECT_LE(std::abs((*node)[j] - q[j]), 1.5 * laid.lattice.fit_error()[j] + 1e-9) << robot.name << " joint " << j;
         const JointLimit& bound = chain.limit[static_cast<std::size_t>(j)];
@@ -194,7 +194,7 @@ TEST(Inexact, EveryRowIsOnTheExactChain) {
         const double phi = plane.angle_of(arm.elbow_axis(q));
         const auto circles = elbow_circles(arm, plane, tool);
         for (int branch = 0; branch < kBranches; ++branch) {
-          const auto row = polish(chain, arm, plane, tool, phi, srs_ik(arm, circles, phi, branch));
+          const auto row = solve_exact_chain(chain, arm, plane, tool, phi, srs_ik(arm, circles, phi, branch));
           none += !row;
           if (!row) continue;
           ++rows;

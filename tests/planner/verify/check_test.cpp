@@ -26,7 +26,8 @@ namespace {
 
 using namespace test;
 
-/// The iiwa14 as a vendor might round it: up to 0.2 mm and 1 mrad off, so that its closed form must be polished.
+/// The iiwa14 as a vendor might round it: up to 0.2 mm and 1 mrad off, so that its closed form must be corrected on the exact
+/// chain.
 TestRobot rounded_robot() {
   TestRobot robot = data_robot("iiwa14");
   auto model = std::make_shared<RobotModel>(*robot.model);
@@ -509,7 +510,7 @@ TEST(Check, StopsWhereItsTimeIsUp) {
                  Stopped);
 }
 
-/// A row at any place, by closed-form IK (polished on inexact arms), its joints next to those given.
+/// A row at any place, by closed-form IK (solved on the exact chain of inexact arms), its joints next to those given.
 std::optional<TrajectoryRow> row_between(const Good& good, double place) {
   const int layer = std::min(static_cast<int>(place), good.path->size() - 2);
   const double t = place - layer;
@@ -523,7 +524,8 @@ std::optional<TrajectoryRow> row_between(const Good& good, double place) {
   row.s = good.path->layer(layer).s + t * good.path->layer(layer).step_length;
   row.phi = wrap_angle(a.phi + t * wrap_angle(b.phi - a.phi));
   row.branch = a.branch;
-  const auto q = polish(good.chain(), arm, plane, tool, row.phi, srs_ik(arm, elbow_circles(arm, plane, tool), row.phi, row.branch));
+  const auto q =
+      solve_exact_chain(good.chain(), arm, plane, tool, row.phi, srs_ik(arm, elbow_circles(arm, plane, tool), row.phi, row.branch));
   if (!q) return std::nullopt;
   const Config straight = a.q + t * (b.q - a.q);
   for (int j = 0; j < kDof; ++j) row.q[j] = straight[j] + wrap_angle((*q)[j] - straight[j]);

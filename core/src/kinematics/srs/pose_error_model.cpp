@@ -34,10 +34,10 @@ PoseErrorBound PoseErrorModel::from_fitted(int group, double reach, const Config
   const std::size_t part = part_of(group);
   const PoseErrorBound unknown = PoseErrorBound::unknown(about_[part]);
   if (group == kDof) return {about_[part], 0, 0};  // the tool stands where the layer puts it
-  // With a smaller sine a row might have flipped the elbow: polish() moves no joint by more than
-  // kMostPolished.
+  // With a smaller sine a row might have flipped the elbow: solve_exact_chain() moves no joint by more than
+  // kMostCorrection.
   constexpr double kLeastSine = 0.05;
-  static_assert(kLeastSine >= kMostPolished);
+  static_assert(kLeastSine >= kMostCorrection);
   const double wrist =
       // Distance of the fitted arm's wrist centre at the row's joints from where it should be.
       shift_[kWrist];

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "kinematics/srs/polish_turned.hpp"
+#include "kinematics/srs/exact_chain_turned.hpp"
 #include "lattice/start.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/memory.hpp"
@@ -345,7 +345,8 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
   for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
   if (last_joint_) q[kDof - 1] = *last_joint_;
   if (!arm_->exact) {
-    const auto row = last_joint_ ? polish_turned(*chain_, *arm_, plane, tool, phi, q) : polish(*chain_, *arm_, plane, tool, phi, q);
+    const auto row = last_joint_ ? solve_exact_chain_turned(*chain_, *arm_, plane, tool, phi, q)
+                                 : solve_exact_chain(*chain_, *arm_, plane, tool, phi, q);
     if (!row) {
       fault.fault = Between::Fault::kNoIk;
       return std::nullopt;

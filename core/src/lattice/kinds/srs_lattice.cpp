@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "kinematics/kernels/kernels.hpp"
-#include "kinematics/srs/polish_turned.hpp"
+#include "kinematics/srs/exact_chain_turned.hpp"
 #include "lattice/start.hpp"
 #include "swivel/core/answer/plan.hpp"
 #include "swivel/core/base/angle.hpp"
@@ -208,7 +208,7 @@ std::optional<Config> SrsLattice::fitted_start(const Config& q, double phi) cons
   if (singular(fitted)) return std::nullopt;
   for (int k = 0; k < kDof; ++k) {
     fitted[k] = q[k] + wrap_angle(fitted[k] - q[k]);
-    if (!(std::abs(fitted[k] - q[k]) <= kMostPolished)) return std::nullopt;
+    if (!(std::abs(fitted[k] - q[k]) <= kMostCorrection)) return std::nullopt;
   }
   return fitted;
 }
@@ -480,16 +480,16 @@ std::optional<Config> SrsLattice::solved(int layer, int slot, double sine, doubl
   return excess <= 0 ? std::optional(q) : std::nullopt;
 }
 
-std::optional<Config> SrsLattice::polished(int layer, int slot, const Config& q) const {
+std::optional<Config> SrsLattice::on_exact_chain(int layer, int slot, const Config& q) const {
   const Pose& tool = path_->layer(layer).tool;
-  return last_joint_ ? polish_turned(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q)
-                     : polish(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
+  return last_joint_ ? solve_exact_chain_turned(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q)
+                     : solve_exact_chain(*chain_, *arm_, plane(layer), tool, phi(layer, slot), q);
 }
 
 std::optional<Config> SrsLattice::exact_config(int layer, int slot, const Config& q) const {
   if (arm_->exact) return q;
   if (layer == 0 && start_) return start_->row;
-  auto row = polished(layer, slot, q);
+  auto row = on_exact_chain(layer, slot, q);
   if (row && joints_outside(*row)) row.reset();
   return row;
 }
@@ -517,7 +517,7 @@ Lattice::NodeFault SrsLattice::fault(int layer, int slot) const {
   }
   fault.q = q;
   if (!arm_->exact) {
-    const auto row = polished(layer, slot, q);
+    const auto row = on_exact_chain(layer, slot, q);
     if (!row) return {NodeStatus::kNoIk};
     fault.q = *row;
     if (const std::uint8_t outside = joints_outside(*row)) fault.joints = outside;

@@ -51,7 +51,7 @@ struct SrsArm {
   bool exact = false;  ///< the fitted arm equals the chain, to rounding
   /// How far the fitted arm's joints are from the chain's at the same pose, arm angle and branch,
   /// each joint, rad: 0 where exact, else the most over seeded postures within the limits at which
-  /// no |sin| of shoulder, elbow and wrist is below 0.1 and no joint differs by more than polish()
+  /// no |sin| of shoulder, elbow and wrist is below 0.1 and no joint differs by more than solve_exact_chain()
   /// may move it.
   Config fit_error = Config::Zero();
 
@@ -126,14 +126,14 @@ enum class ReachStatus { kReachable, kSingular, kOutOfReach };
 /// form: rad, whole turns ignored, limits not applied.
 [[nodiscard]] Config srs_ik(const SrsArm& arm, const std::array<ElbowCircle, 2>& circles, double phi, int branch);
 
-/// Most that polish() may move a joint, rad.
-inline constexpr double kMostPolished = 0.05;
+/// Most that solve_exact_chain() may move a joint, rad.
+inline constexpr double kMostCorrection = 0.05;
 /// Refines joints of the fitted arm to the exact chain: Newton on seven equations (the exact
 /// chain's tool pose, and the arm angle phi in `plane`, rad, of the fitted arm), at most 5 steps to
 /// a residual of 1e-10. Returns none where it does not get there or would move a joint by more than
-/// kMostPolished in all. Returns the seed unchanged for an exact arm.
-[[nodiscard]] std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
-                                           double phi, const Config& seed);
+/// kMostCorrection in all. Returns the seed unchanged for an exact arm.
+[[nodiscard]] std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, const ArmPlane& plane,
+                                                      const Pose& tool, double phi, const Config& seed);
 /// Measures SrsArm::fit_error of an arm fitted to a chain, rad.
 [[nodiscard]] Config measure_fit_error(const Chain& chain, const SrsArm& arm);
 

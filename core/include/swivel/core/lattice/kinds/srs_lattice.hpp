@@ -70,8 +70,8 @@ class LayerNodes {
 /// of over 64 turns is treated as a continuous one (JointLimit::wide): its angles begin in the turn about 0, or in the nearest that
 /// leaves 31 turns to both limits.
 ///
-/// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's fit error; rows are
-/// polished.
+/// An arm that is not exactly S-R-S has the nodes of the ideal arm fitted to it, with limits wider by the arm's fit error; exact
+/// configurations are solved from them by Newton.
 ///
 /// The (s, phi) lattice of a problem: layers along the path, a circle of arm angles in each, `solutions` = 8 branches x windings of
 /// nodes at each angle. docs/model.md. A slot numbers a layer's nodes in the order of ties: (branch, winding, j) = solution *
@@ -242,7 +242,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] Run grid_run(double phi) const;
 
   /// The exact configuration of a node on the exact chain, limits aside; for the tool as the node turns it where joint 7 stays.
-  [[nodiscard]] std::optional<Config> polished(int layer, int slot, const Config& q) const;
+  [[nodiscard]] std::optional<Config> on_exact_chain(int layer, int slot, const Config& q) const;
 
   std::uint64_t id_;  // of a lattice and its copies; so that layouts outlive lattices safely
   const SrsArm* arm_;

@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "kinematics/srs/polish_turned.hpp"
+#include "kinematics/srs/exact_chain_turned.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/kinematics/srs/srs.hpp"
 #include "swivel/core/problem/tool_path.hpp"
@@ -56,8 +56,8 @@ Config solved(std::array<std::array<double, kDof + 1>, kDof>& rows) {
 
 }  // namespace
 
-std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
-                             const Config& seed) {
+std::optional<Config> solve_exact_chain(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
+                                        const Config& seed) {
   if (arm.exact) return seed;
   constexpr int kSteps = 5;
   constexpr double kResidual = 1e-10;
@@ -65,7 +65,7 @@ std::optional<Config> polish(const Chain& chain, const SrsArm& arm, const ArmPla
   // than the residual.
   constexpr double kLastStep = 1e-7, kLeastSine = 0.1;
   const auto near_seed = [&](const Config& q) {
-    return (q - seed).lpNorm<Eigen::Infinity>() > kMostPolished ? std::nullopt : std::optional(q);
+    return (q - seed).lpNorm<Eigen::Infinity>() > kMostCorrection ? std::nullopt : std::optional(q);
   };
   const Vector3d ur = plane.u.cross(plane.r);
   Config q = seed;
@@ -130,15 +130,15 @@ Config measure_fit_error(const Chain& chain, const SrsArm& arm) {
     const double phi = plane.angle_of(arm.elbow_axis(q));
     Config apart = srs_ik(arm, elbow_circles(arm, plane, tool), phi, arm.branch(q)) - q;
     for (double& joint : apart) joint = std::abs(wrap_angle(joint));
-    if (apart.maxCoeff() <= kMostPolished) fit_error = fit_error.cwiseMax(apart);
+    if (apart.maxCoeff() <= kMostCorrection) fit_error = fit_error.cwiseMax(apart);
   }
   return fit_error;
 }
 
-std::optional<Config> polish_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool, double phi,
-                                    const Config& seed) {
+std::optional<Config> solve_exact_chain_turned(const Chain& chain, const SrsArm& arm, const ArmPlane& plane, const Pose& tool,
+                                               double phi, const Config& seed) {
   const Pose turned = rolled(tool, roll_between(tool, chain.tool(seed)));
-  return polish(chain, arm, carry_plane(arm, plane, turned), turned, phi, seed);
+  return solve_exact_chain(chain, arm, carry_plane(arm, plane, turned), turned, phi, seed);
 }
 
 }  // namespace swivel
