@@ -28,9 +28,9 @@ namespace {
 constexpr double kFarthest = 1;  // rad, the most that a coordinate may move
 
 /// Every stride-th layer of another solver, its first and its last included.
-class EveryFew final : public LayerSolver {
+class StridedSolver final : public LayerSolver {
  public:
-  EveryFew(const LayerSolver& all, int stride) : all_(&all) {
+  StridedSolver(const LayerSolver& all, int stride) : all_(&all) {
     for (int i = 0; i + 1 < all.layers(); i += stride) layer_.push_back(i);
     layer_.push_back(all.layers() - 1);
   }
@@ -56,7 +56,7 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
   constexpr double kStep = 0.005;  // m
   const int n = solver.layers(), stride = static_cast<int>(kStep * (n - 1) / (solver.travel(n - 1) - solver.travel(0)) + 0.5);
   if (stride < 2) return x;
-  const EveryFew few(solver, stride);
+  const StridedSolver few(solver, stride);
   SmoothObjective coarse = objective;
   coarse.most_change *= stride;
   for (int& jump : coarse.jumps) jump = few.no_later(jump);
@@ -83,10 +83,10 @@ std::vector<double> coarse_minimum(const LayerSolver& solver, const SmoothObject
 
 /// Validates nodes and edges off the grid by the rules of docs/model.md and the additional margins
 /// of refinement.
-class Judge {
+class RefinementChecker {
  public:
-  Judge(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, const RefineOptions& options,
-        const Budget& budget)
+  RefinementChecker(const PreparedRobot& robot, const Problem& problem, const Redundancy& redundancy, const RefineOptions& options,
+                    const Budget& budget)
       : problem_(&problem),
         redundancy_(&redundancy),
         lattice_(&redundancy.lattice()),
@@ -198,13 +198,13 @@ double largest_bend(const ToolPath& path, const std::vector<TrajectoryRow>& rows
 }
 
 /// Refines one given path, whose nodes are valid, at one weight of smoothness.
-class Refinery {
+class PathRefiner {
  public:
   /// Whether the edges of the given path are known to be valid too.
   enum class Edges { kValid, kUnknown };
-  Refinery(const Redundancy& redundancy, Judge& judge, const std::vector<TrajectoryRow>& given, Edges edges, bool fixed_start,
-           const Budget& budget)
-      : judge_(&judge),
+  PathRefiner(const Redundancy& redundancy, RefinementChecker& checker, const std::vector<TrajectoryRow>& given, Edges edges,
+              bool fixed_start, const Budget& budget)
+      : checker_(&checker),
         given_(given),
         solver_(redundancy.solver(given_)),
         edges_(edges),
@@ -240,7 +240,7 @@ class Refinery {
       bool fails = false;
       for (std::size_t i = 0; i < n; ++i) {
         if (x[i] == given_[i].phi || x[i] == node_known[i]) continue;
-        if (!judge_->node(static_cast<int>(i), rows[i].q, given_[i].q, jumps_[i])) {
+        if (!checker_->node(static_cast<int>(i), rows[i].q, given_[i].q, jumps_[i])) {
           x[i] = shrink(i, x[i], boxes[i]);
           fails = true;
         }
@@ -250,7 +250,7 @@ class Refinery {
       for (std::size_t i = 0; i + 1 < n; ++i) {
         const bool verbatim = x[i] == given_[i].phi && x[i + 1] == given_[i + 1].phi;
         if ((verbatim && edges_ == Edges::kValid) || (edge_known[i][0] == x[i] && edge_known[i][1] == x[i + 1])) continue;
-        if (judge_->edge(static_cast<int>(i), rows[i], rows[i + 1])) {
+        if (checker_->edge(static_cast<int>(i), rows[i], rows[i + 1])) {
           edge_known[i] = {x[i], x[i + 1]};
           continue;
         }
@@ -286,7 +286,7 @@ class Refinery {
     for (int k = 0; k < kQueries; ++k) {
       const double middle = (good + bad) / 2;
       const auto q = solver_->joints(static_cast<int>(i), middle);
-      (q && judge_->node(static_cast<int>(i), *q, given_[i].q, jumps_[i]) ? good : bad) = middle;
+      (q && checker_->node(static_cast<int>(i), *q, given_[i].q, jumps_[i]) ? good : bad) = middle;
     }
     (x > given_[i].phi ? box.high : box.low) = good;
     return good;
@@ -308,7 +308,7 @@ class Refinery {
         valid = valid && q;
         if (q) rows[k - i].q = *q;
       }
-      (valid && judge_->edge(static_cast<int>(i), rows[0], rows[1]) ? good : bad) = middle;
+      (valid && checker_->edge(static_cast<int>(i), rows[0], rows[1]) ? good : bad) = middle;
     }
     for (const std::size_t k : {i, i + 1}) {
       const double given = given_[k].phi, bound = std::abs(x[k] - given) < kLeast ? given : at(k, good);
@@ -316,7 +316,7 @@ class Refinery {
     }
   }
 
-  Judge* judge_;
+  RefinementChecker* checker_;
   std::vector<TrajectoryRow> given_;  // phi holds the coordinate
   std::unique_ptr<LayerSolver> solver_;
   Edges edges_;
@@ -328,7 +328,7 @@ class Refinery {
 
 /// Moves rows to the nearest nodes that keep the margins of refinement, or are at least valid;
 /// returns false if a row has neither nearby. Edges are not tested.
-bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::vector<TrajectoryRow>& rows) {
+bool move_clear(const LayerSolver& solver, RefinementChecker& checker, bool fixed_start, std::vector<TrajectoryRow>& rows) {
   constexpr double kNearby = 0.1;  // rad
   constexpr int kSteps = 20;
   int left = 1000;  // nodes to test: in a narrow passage no layer has a valid one
@@ -337,7 +337,7 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
       for (const double by : {step * kNearby / kSteps, -step * kNearby / kSteps}) {
         if (left-- <= 0) return false;
         const auto q = solver.joints(layer, row.phi + by);
-        if (!q || !judge.node(layer, *q, *q)) continue;
+        if (!q || !checker.node(layer, *q, *q)) continue;
         row.phi += by;
         row.q = *q;
         return true;
@@ -347,8 +347,8 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool fixed = i == 0 && fixed_start;
     const int layer = static_cast<int>(i);
-    if (!fixed && (judge.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i]))) continue;
-    if (!judge.bare_node(layer, rows[i].q)) return false;
+    if (!fixed && (checker.node(layer, rows[i].q, rows[i].q) || moved_clear(layer, rows[i]))) continue;
+    if (!checker.bare_node(layer, rows[i].q)) return false;
   }
   return true;
 }
@@ -358,8 +358,8 @@ bool move_clear(const LayerSolver& solver, Judge& judge, bool fixed_start, std::
 /// None if there is no such path, if even its optimum without obstacles is not cheaper than
 /// `to_beat`, or if a layer has no valid node nearby.
 std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot, const Problem& problem,
-                                                      const Redundancy& redundancy, Judge& judge, const SmoothObjective& objective,
-                                                      double to_beat, const Budget& budget) {
+                                                      const Redundancy& redundancy, RefinementChecker& checker,
+                                                      const SmoothObjective& objective, double to_beat, const Budget& budget) {
   Problem coarse = problem;
   // Steps longer than 20 mm reach so many angles that the search takes longer than it is worth.
   constexpr double kMostTimes = 4, kLongest = 0.02, kAngle = 0.02;
@@ -416,7 +416,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
   std::vector<TrajectoryRow> best = rows;
   for (std::size_t i = 0; i < x.size(); ++i) best[i].q = solver->joints(static_cast<int>(i), x[i]).value_or(rows[i].q);
   if (cost_of(lattice, best) >= to_beat) return std::nullopt;
-  if (!move_clear(*solver, judge, problem.start.has_value(), rows)) return std::nullopt;
+  if (!move_clear(*solver, checker, problem.start.has_value(), rows)) return std::nullopt;
   return rows;
 }
 
@@ -424,7 +424,7 @@ std::optional<std::vector<TrajectoryRow>> second_path(const PreparedRobot& robot
 Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, const Problem& problem, const ToolPath& path,
                      const std::vector<TrajectoryRow>& rows, const RefineOptions& options, bool second_seed, const Budget& budget) {
   const Lattice& lattice = redundancy.lattice();
-  Judge judge(robot, problem, redundancy, options, budget);
+  RefinementChecker checker(robot, problem, redundancy, options, budget);
   Refined result;
   result.rows = rows;
   result.cost_before = result.cost = cost_of(lattice, rows);
@@ -441,15 +441,15 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     for (int i = 0; i < lattice.layers(); ++i) objective.roll.push_back(lattice.roll_weight(i));
   result.reason = "no valid path was found that is not dearer";
   const auto improve = [&](const std::vector<TrajectoryRow>& from, bool second) {
-    Refinery refinery(redundancy, judge, from, second ? Refinery::Edges::kUnknown : Refinery::Edges::kValid,
-                      problem.start.has_value(), budget);
+    PathRefiner refiner(redundancy, checker, from, second ? PathRefiner::Edges::kUnknown : PathRefiner::Edges::kValid,
+                        problem.start.has_value(), budget);
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
     objective.jumps = redundancy.jumps(from);
     // Try less smoothness if smoothness alone makes the path dearer than the lattice's.
     const int attempts = result.refined ? 1 : 3;
     for (int attempt = 0; attempt < attempts; ++attempt, objective.bending /= 10) {
-      auto refined = refinery.run(objective, result.rounds);
+      auto refined = refiner.run(objective, result.rounds);
       if (!refined) continue;
       const double cost = cost_of(lattice, *refined);
       if (!(cost <= result.cost)) continue;
@@ -466,12 +466,12 @@ Refined refine_along(const Redundancy& redundancy, const PreparedRobot& robot, c
     constexpr double kWorthIt = 1 - 1e-4;
     const double length = problem.refinement.smoothing;
     objective.bending = length * length * length;
-    if (const auto second = second_path(robot, problem, redundancy, judge, objective, kWorthIt * result.cost, budget))
+    if (const auto second = second_path(robot, problem, redundancy, checker, objective, kWorthIt * result.cost, budget))
       improve(*second, true);
   }
   result.bend = largest_bend(path, result.rows);
-  result.nodes_asked = judge.nodes_asked;
-  result.edges_asked = judge.edges_asked;
+  result.nodes_asked = checker.nodes_asked;
+  result.edges_asked = checker.edges_asked;
   return result;
 }
 
