@@ -58,7 +58,7 @@ Eigen::Matrix<double, 5, 4> derivative_weights(const double* places, double x) {
 
 /// A motion's geometry at one place of its travel: derivatives of the joints by the travel, and the
 /// tool's speeds per metre of it.
-struct Place {
+struct PathSample {
   double x = 0;  // m of travel
   Config q, first, second, third;
   double along = 0, turning = 0;  // m/m and rad/m
@@ -67,22 +67,22 @@ struct Place {
 };
 
 /// The joint and rate that slow a place down.
-struct Brake {
+struct SpeedLimiter {
   int joint = -1;  // -1: the speed asked for
   JointRate rate = JointRate::kSpeed;
 };
 
 /// The motion from one rest to the next: its place and speed at each time.
-class Piece {
+class RestToRest {
  public:
-  Piece(const JointRates& rates, const TimingOptions& options, std::vector<Place> places)
+  RestToRest(const JointRates& rates, const TimingOptions& options, std::vector<PathSample> places)
       : rates_(&rates), places_(std::move(places)), n_(places_.size()) {
     asked_.resize(n_);
-    cap_.resize(n_);
-    pull_.resize(n_);
-    brake_.resize(n_);
-    slower_.assign(n_, 1);
-    gentler_.assign(n_, 1);
+    speed_cap_.resize(n_);
+    acceleration_cap_.resize(n_);
+    limiter_.resize(n_);
+    speed_scale_.assign(n_, 1);
+    acceleration_scale_.assign(n_, 1);
     speed_.assign(n_, 0);
     const auto r = [](double limit, double value) { return value > 0 ? limit / value : kInfinity; };
     filter_ = 0;
@@ -90,26 +90,26 @@ class Piece {
       if (std::isfinite(rates.acceleration[j])) filter_ = std::max(filter_, kShare * rates.acceleration[j] / rates.jerk[j]);
     filter_ = std::max(filter_, 1e-4);
     for (std::size_t k = 0; k < n_; ++k) {
-      const Place& place = places_[k];
+      const PathSample& place = places_[k];
       asked_[k] = r(options.speed, place.along > kStill ? place.along : 0);
       if (options.turn_speed) asked_[k] = std::min(asked_[k], r(*options.turn_speed, place.turning));
       if (options.chord) asked_[k] = std::min(asked_[k], options.rate * std::sqrt(kTarget * r(*options.chord, place.chord)));
-      cap_[k] = asked_[k];
-      pull_[k] = kInfinity;
+      speed_cap_[k] = asked_[k];
+      acceleration_cap_[k] = kInfinity;
       double joint_speed = kInfinity;
       for (int j = 0; j < kDof; ++j) {
         joint_speed = std::min(joint_speed, r(rates.speed[j], std::abs(place.first[j])));
         lower(k, kTarget * r(rates.speed[j], std::abs(place.first[j])), {j, JointRate::kSpeed});
         lower(k, std::sqrt(kTarget * r(rates.acceleration[j], std::abs(place.second[j]))), {j, JointRate::kAcceleration});
         lower(k, std::cbrt(kTarget * r(rates.jerk[j], std::abs(place.third[j]))), {j, JointRate::kJerk});
-        pull_[k] = std::min(pull_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
+        acceleration_cap_[k] = std::min(acceleration_cap_[k], kShare * r(rates.acceleration[j], std::abs(place.first[j])));
       }
       if (!std::isfinite(asked_[k])) asked_[k] = joint_speed;
       // Nothing moves: any speed serves.
       const double any = places_.back().x - places_.front().x;
       if (!std::isfinite(asked_[k])) asked_[k] = any;
-      if (!std::isfinite(cap_[k])) cap_[k] = any;
-      if (!std::isfinite(pull_[k])) pull_[k] = 1e3 * any;
+      if (!std::isfinite(speed_cap_[k])) speed_cap_[k] = any;
+      if (!std::isfinite(acceleration_cap_[k])) acceleration_cap_[k] = 1e3 * any;
     }
   }
 
@@ -129,9 +129,9 @@ class Piece {
   /// Evaluates a piece at times, cheaply for times that ascend.
   class Walk {
    public:
-    explicit Walk(const Piece& piece) : piece_(&piece) {}
+    explicit Walk(const RestToRest& piece) : piece_(&piece) {}
     State at(double t) {
-      const Piece& p = *piece_;
+      const RestToRest& p = *piece_;
       t = t / p.stretch_ - p.filter_ / 2;
       const Raw a = p.raw(t - p.filter_ / 2, before_), b = p.raw(t + p.filter_ / 2, after_);
       const double w = p.filter_, z = 1 / p.stretch_;
@@ -144,7 +144,7 @@ class Piece {
     }
 
    private:
-    const Piece* piece_;
+    const RestToRest* piece_;
     std::size_t before_ = 0, after_ = 0;
   };
 
@@ -157,7 +157,7 @@ class Piece {
   /// is set to it.
   [[nodiscard]] Derivatives derivatives(double x, std::size_t& node) const {
     seek(x, node);
-    const Place &a = places_[node], &b = places_[node + 1];
+    const PathSample &a = places_[node], &b = places_[node + 1];
     const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0), v = 1 - u;
     return {v * a.first + u * b.first, v * a.second + u * b.second,   v * a.third + u * b.third,
             v * a.along + u * b.along, v * a.turning + u * b.turning, v * asked_[node] + u * asked_[node + 1],
@@ -194,12 +194,13 @@ class Piece {
     constexpr int kRounds = 12, kRepairs = 6;
     constexpr int kFew = 2;  // gains that are next to nothing
     int rounds = 0, few = 0;
-    std::vector<double> slower = slower_, gentler = gentler_;
+    std::vector<double> slower = speed_scale_, acceleration_scale = acceleration_scale_;
     double least = end_;
     while (duration() > kNearIdeal * ideal() && rounds < kRounds && few < kFew) {
       for (std::size_t k = 0; k < n_; ++k) {
-        slower_[k] = std::min(1.0, slower_[k] * std::clamp(std::cbrt(kUse / used_[k]), 1.0, kFaster));
-        gentler_[k] = std::min(std::max(gentler_[k], kHardest), gentler_[k] * std::clamp(kUse / used_[k], 1.0, kHarder));
+        speed_scale_[k] = std::min(1.0, speed_scale_[k] * std::clamp(std::cbrt(kUse / used_[k]), 1.0, kFaster));
+        acceleration_scale_[k] = std::min(std::max(acceleration_scale_[k], kHardest),
+                                          acceleration_scale_[k] * std::clamp(kUse / used_[k], 1.0, kHarder));
       }
       bool kept = false;
       for (int repair = 0; repair < kRepairs && !kept; ++repair) {
@@ -212,12 +213,12 @@ class Piece {
       few = end_ < (1 - kLittle) * least ? 0 : few + 1;
       if (end_ >= least) continue;
       least = end_;
-      slower = slower_;
-      gentler = gentler_;
+      slower = speed_scale_;
+      acceleration_scale = acceleration_scale_;
     }
     if (rounds == 0) return 0;
-    slower_ = std::move(slower);
-    gentler_ = std::move(gentler);
+    speed_scale_ = std::move(slower);
+    acceleration_scale_ = std::move(acceleration_scale);
     profile();
     return rounds;
   }
@@ -226,11 +227,11 @@ class Piece {
   void stretch(double factor) { stretch_ *= factor; }
   /// Slows down by factors of speeds and of accelerations along the path, one for each place;
   /// plan() must follow.
-  void slow_down(const std::vector<double>& slower, const std::vector<double>& gentler) {
-    for (std::size_t k = 0; k < n_; ++k) slower_[k] *= slower[k], gentler_[k] *= gentler[k];
+  void slow_down(const std::vector<double>& slower, const std::vector<double>& acceleration_scale) {
+    for (std::size_t k = 0; k < n_; ++k) speed_scale_[k] *= slower[k], acceleration_scale_[k] *= acceleration_scale[k];
   }
-  [[nodiscard]] const Brake& brake(std::size_t node) const { return brake_[node]; }
-  [[nodiscard]] const std::vector<Place>& places() const { return places_; }
+  [[nodiscard]] const SpeedLimiter& limiter(std::size_t node) const { return limiter_[node]; }
+  [[nodiscard]] const std::vector<PathSample>& places() const { return places_; }
 
  private:
   // part of a joint's acceleration for speeding up and slowing down
@@ -241,10 +242,10 @@ class Piece {
     double area = 0, x = 0, speed = 0, acceleration = 0;
   };
 
-  void lower(std::size_t k, double to, const Brake& brake) {
-    if (to >= cap_[k]) return;
-    cap_[k] = to;
-    brake_[k] = brake;
+  void lower(std::size_t k, double to, const SpeedLimiter& limiter) {
+    if (to >= speed_cap_[k]) return;
+    speed_cap_[k] = to;
+    limiter_[k] = limiter;
   }
 
   void seek(double x, std::size_t& node) const {
@@ -256,7 +257,7 @@ class Piece {
   /// looks, within what accelerations allow.
   void profile() {
     std::vector<double> cap(n_);
-    for (std::size_t k = 0; k < n_; ++k) cap[k] = cap_[k] * slower_[k];
+    for (std::size_t k = 0; k < n_; ++k) cap[k] = speed_cap_[k] * speed_scale_[k];
     speed_ = cap;
     for (std::size_t k = 0; k < n_; ++k) {
       const double reach = cap[k] * filter_ / 2;
@@ -267,9 +268,10 @@ class Piece {
     }
     speed_.front() = speed_.back() = 0;
     const auto bound = [&](std::size_t from, std::size_t to) {
-      const double pull = std::min(pull_[from] * gentler_[from], pull_[to] * gentler_[to]);
-      speed_[to] =
-          std::min(speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * pull * std::abs(places_[to].x - places_[from].x)));
+      const double acceleration_cap =
+          std::min(acceleration_cap_[from] * acceleration_scale_[from], acceleration_cap_[to] * acceleration_scale_[to]);
+      speed_[to] = std::min(
+          speed_[to], std::sqrt(speed_[from] * speed_[from] + 2 * acceleration_cap * std::abs(places_[to].x - places_[from].x)));
     };
     for (std::size_t k = 1; k < n_; ++k) bound(k - 1, k);
     for (std::size_t k = n_ - 1; k-- > 0;) bound(k + 1, k);
@@ -302,7 +304,7 @@ class Piece {
   /// excess.
   double verify(bool both, bool may_slow_down) {
     constexpr double kLeast = 0.5, kPath = 0.9;  // kPath: share of a rate that bends may take
-    std::vector<double> slower(n_, 1), gentler(n_, 1);
+    std::vector<double> slower(n_, 1), acceleration_scale(n_, 1);
     used_.assign(n_, kNothing);
     double worst = 1;
     const double step = std::min(1e-3, filter_ / 8);
@@ -329,7 +331,7 @@ class Piece {
           const bool of_speed = both || n == 0 || share > kPath;
           if (of_speed) {
             path = std::min(path, both || n == 0 ? 0.995 / root(ratio) : root(kPath / share));
-            brake_[d.node] = {j, static_cast<JointRate>(n)};
+            limiter_[d.node] = {j, static_cast<JointRate>(n)};
           }
           const double left = std::min(share, kPath);
           if (both)
@@ -344,20 +346,20 @@ class Piece {
       if (path >= 1 && along >= 1) continue;
       for (std::size_t k = low > 0 ? low - 1 : 0; k <= std::min(high + 2, n_ - 1); ++k) {
         slower[k] = std::min(slower[k], std::max(kLeast, path));
-        gentler[k] = std::min(gentler[k], std::max(kLeast, along));
+        acceleration_scale[k] = std::min(acceleration_scale[k], std::max(kLeast, along));
       }
     }
-    if (may_slow_down) slow_down(slower, gentler);
+    if (may_slow_down) slow_down(slower, acceleration_scale);
     return worst;
   }
 
   const JointRates* rates_;
-  std::vector<Place> places_;
+  std::vector<PathSample> places_;
   std::size_t n_;
-  std::vector<double> asked_;             // speed of travel asked for, m/s
-  std::vector<double> cap_, pull_;        // m/s and m/s^2: what the joints allow
-  std::vector<double> slower_, gentler_;  // factors of both, from verifying
-  std::vector<Brake> brake_;
+  std::vector<double> asked_;                             // speed of travel asked for, m/s
+  std::vector<double> speed_cap_, acceleration_cap_;      // m/s and m/s^2: what the joints allow
+  std::vector<double> speed_scale_, acceleration_scale_;  // factors of both, from verifying
+  std::vector<SpeedLimiter> limiter_;
   std::vector<double> used_;  // largest part of its rates that a joint uses near each place
   // of the unfiltered motion: constant acceleration between places
   std::vector<double> speed_, time_, area_;
@@ -413,7 +415,8 @@ std::vector<double> places_between(const PathMotion& motion, double from, double
 
 /// Computes joints and tool at the places, and their derivatives by the travel. Returns where the
 /// arm has no solution, none where it has one everywhere.
-std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, bool chords, std::vector<Place>& places) {
+std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<double>& xs, bool chords,
+                               std::vector<PathSample>& places) {
   const std::size_t n = xs.size();
   places.resize(n);
   std::vector<Pose> tool(n);
@@ -430,7 +433,7 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t first = std::min(k > 2 ? k - 2 : 0, n - 5);
     const auto weights = derivative_weights(xs.data() + first, xs[k]);
-    Place& place = places[k];
+    PathSample& place = places[k];
     place.first = place.second = place.third = Config::Zero();
     Vector3d along = Vector3d::Zero();
     for (std::size_t i = 0; i < 5; ++i) {
@@ -458,7 +461,7 @@ std::optional<NoMotion> survey(const PathMotion& motion, const std::vector<doubl
 /// The sampled motion, and its measures.
 class Samples {
  public:
-  Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, std::vector<Piece>& pieces,
+  Samples(const PathMotion& motion, const JointRates& rates, const TimingOptions& options, std::vector<RestToRest>& pieces,
           const Budget& budget)
       : motion_(&motion),
         rates_(&rates),
@@ -466,7 +469,7 @@ class Samples {
         pieces_(&pieces),
         budget_(&budget),
         near_(1 / options.rate <= 4e-3 * (1 + 1e-9)) {
-    for (const Piece& piece : pieces) for_tool_.emplace_back(piece.places().size(), 1);
+    for (const RestToRest& piece : pieces) for_tool_.emplace_back(piece.places().size(), 1);
   }
 
   std::optional<NoMotion> take(TimedPath& out) {
@@ -478,8 +481,8 @@ class Samples {
     const double dt = 1 / options_->rate;
     long long k = 0;
     for (std::size_t p = 0; p < pieces_->size(); ++p) {
-      const Piece& piece = (*pieces_)[p];
-      Piece::Walk walk(piece), beside(piece);
+      const RestToRest& piece = (*pieces_)[p];
+      RestToRest::Walk walk(piece), beside(piece);
       std::size_t node = 0;
       const bool last = p + 1 == pieces_->size();
       for (;; ++k) {
@@ -487,10 +490,10 @@ class Samples {
         const bool done = here >= piece.duration() - 1e-12;
         if (done && !last) break;
         if (k % 256 == 0) budget_->poll();
-        const Piece::State at = walk.at(std::min(here, piece.duration()));
+        const RestToRest::State at = walk.at(std::min(here, piece.duration()));
         const auto q = motion_->joints(at.x);
         if (!q) return NoMotion{motion_->row(at.x, Config::Zero()).s, "the arm has no solution between layers"};
-        const Piece::Derivatives d = piece.derivatives(at.x, node);
+        const RestToRest::Derivatives d = piece.derivatives(at.x, node);
         TimedRow row;
         row.t = t;
         row.row = motion_->row(at.x, *q);
@@ -547,17 +550,18 @@ class Samples {
     // times the excess of the tool's speed: neighbouring places contribute
     constexpr double kTool = 1.2;
     const auto n = static_cast<long long>(out.rows.size());
-    std::vector<std::vector<double>> slower, gentler;
-    for (const Piece& piece : *pieces_) slower.emplace_back(piece.places().size(), 1), gentler.push_back(slower.back());
+    std::vector<std::vector<double>> slower, acceleration_scale;
+    for (const RestToRest& piece : *pieces_)
+      slower.emplace_back(piece.places().size(), 1), acceleration_scale.push_back(slower.back());
     std::vector<std::vector<double>> for_tool = slower;
     std::vector<bool> changed(pieces_->size(), false);
     for (long long k = -1; k < n + 2; ++k) {
-      double speed = 1, pull = 1, tool = 1;
+      double speed = 1, acceleration_cap = 1, tool = 1;
       for (int order = 0; order < 3; ++order)
         for (int j = 0; j < kDof; ++j)
           if (const double ratio = ratio_at(out, k, order, j); ratio > 1) {
             speed = std::min(speed, std::max(kLeast, 0.995 / slower_by(ratio, order)));
-            if (order > 0) pull = std::min(pull, std::max(kLeast, 0.98 / ratio));
+            if (order > 0) acceleration_cap = std::min(acceleration_cap, std::max(kLeast, 0.98 / ratio));
           }
       if (const double by = slower_for_chord(static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))); by > 1)
         speed = std::min(speed, std::max(kLeast, 0.995 / by));
@@ -568,12 +572,12 @@ class Samples {
       const Asked &from = asked_[static_cast<std::size_t>(std::clamp(k - 3, 0LL, n - 1))],
                   &to = asked_[static_cast<std::size_t>(std::clamp(k, 0LL, n - 1))];
       for (const Asked* at : {&from, &to}) {
-        auto &speeds = slower[at->piece], &pulls = gentler[at->piece];
+        auto &speeds = slower[at->piece], &pulls = acceleration_scale[at->piece];
         const std::size_t first = at->piece == from.piece ? from.node : 0,
                           last = at->piece == to.piece ? to.node : speeds.size() - 1;
         for (std::size_t place = first > 0 ? first - 1 : 0; place <= std::min(last + 1, speeds.size() - 1); ++place) {
           speeds[place] = std::min(speeds[place], speed);
-          pulls[place] = std::min(pulls[place], pull);
+          pulls[place] = std::min(pulls[place], acceleration_cap);
           for_tool[at->piece][place] = std::min(for_tool[at->piece][place], tool);
         }
         changed[at->piece] = true;
@@ -582,7 +586,7 @@ class Samples {
     for (std::size_t p = 0; p < pieces_->size(); ++p) {
       if (!changed[p]) continue;
       for (std::size_t k = 0; k < for_tool[p].size(); ++k) for_tool_[p][k] *= for_tool[p][k];
-      (*pieces_)[p].slow_down(slower[p], gentler[p]);
+      (*pieces_)[p].slow_down(slower[p], acceleration_scale[p]);
       (*pieces_)[p].plan(*budget_);
     }
   }
@@ -676,7 +680,7 @@ class Samples {
 
   /// Computes speeds and accelerations of a row from differences over a few milliseconds. Returns
   /// false where the arm has no solution.
-  bool differ(const Piece& piece, Piece::Walk& walk, double t, TimedRow& row) const {
+  bool differ(const RestToRest& piece, RestToRest::Walk& walk, double t, TimedRow& row) const {
     constexpr double kStep = 1e-3, kLeast = 1e-4;  // s
     const double step = std::min({kStep, t, piece.duration() - t});
     if (step < kLeast) return true;  // at rest
@@ -701,19 +705,19 @@ class Samples {
     for (std::size_t i = first; i <= last; ++i)
       if (asked_[i].share < asked_[lowest].share) lowest = i;
     const Asked& at = asked_[lowest];
-    const Piece& piece = (*pieces_)[at.piece];
+    const RestToRest& piece = (*pieces_)[at.piece];
     // Find the reason nearest to the slowest moment.
-    Brake brake = piece.brake(at.node);
-    for (std::size_t off = 1; brake.joint < 0 && off < 200; ++off) {
-      if (at.node + off < piece.places().size()) brake = piece.brake(at.node + off);
-      if (brake.joint < 0 && off <= at.node) brake = piece.brake(at.node - off);
+    SpeedLimiter limiter = piece.limiter(at.node);
+    for (std::size_t off = 1; limiter.joint < 0 && off < 200; ++off) {
+      if (at.node + off < piece.places().size()) limiter = piece.limiter(at.node + off);
+      if (limiter.joint < 0 && off <= at.node) limiter = piece.limiter(at.node - off);
     }
     TimedPath::Slow slow;
     slow.from_s = out.rows[first].row.s, slow.to_s = out.rows[last].row.s;
     slow.from_t = out.rows[first].t, slow.to_t = out.rows[last].t;
     slow.share = at.share;
-    slow.joint = std::max(brake.joint, 0);
-    slow.reason = brake.rate;
+    slow.joint = std::max(limiter.joint, 0);
+    slow.reason = limiter.rate;
     const auto singular = motion_->nearest_singular(out.rows[lowest].row.q);
     if (singular && singular->angle < 0.3) slow.singular = singular->where, slow.singular_angle = singular->angle;
     out.slow.push_back(std::move(slow));
@@ -722,7 +726,7 @@ class Samples {
   const PathMotion* motion_;
   const JointRates* rates_;
   const TimingOptions* options_;
-  std::vector<Piece>* pieces_;
+  std::vector<RestToRest>* pieces_;
   const Budget* budget_;
   bool near_;  // true: samples are dense enough to give speeds and accelerations
   std::vector<double> travel_;
@@ -779,9 +783,9 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
     at.push_back(corner.layer);
   }
   rests.push_back(motion.length());
-  std::vector<Piece> pieces;
+  std::vector<RestToRest> pieces;
   for (std::size_t k = 1; k < rests.size(); ++k) {
-    std::vector<Place> places;
+    std::vector<PathSample> places;
     result.failure = survey(motion, places_between(motion, rests[k - 1], rests[k]), options.chord.has_value(), places);
     if (result.failure) return result;
     pieces.emplace_back(rates, options, std::move(places));
@@ -804,7 +808,7 @@ TimingResult time_path(const PathMotion& motion, const JointRates& rates, const 
     if (round <= kLocalRounds)
       samples.slow_down(out);
     else
-      for (Piece& piece : pieces) piece.stretch(slower * (1 + 1e-6));
+      for (RestToRest& piece : pieces) piece.stretch(slower * (1 + 1e-6));
   }
   double t = 0;
   for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
