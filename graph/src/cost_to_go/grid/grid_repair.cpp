@@ -122,7 +122,7 @@ void GridCostToGo::widen(const AngleSet& angles, AngleSet& result) const {
 
 /// What has changed of one elbow side's values on the way down: angles of the layer after, of any
 /// solution, and of this one.
-struct alignas(64) GridCostToGo::Front {
+struct alignas(64) GridCostToGo::ChangedAngles {
   AngleSet after, here;
   AngleSet dependent, needed;  // angles here that may change, and those after that decide
   bool any_after = false, any_here = false;
@@ -132,7 +132,7 @@ struct alignas(64) GridCostToGo::Front {
     std::fill(here.begin(), here.end(), std::uint8_t{0});
     any_here = false;
   }
-  void add(const Front& other) {
+  void add(const ChangedAngles& other) {
     any_after = any_after || other.any_after;
     for (std::size_t c = 0; c < after.size(); ++c) after[c] |= other.after[c];
   }
@@ -143,15 +143,15 @@ void GridCostToGo::propagate_removals() {
   forget_joints();
   auto& pending = verdicts_.pending;
   while (!pending.empty() && pending.rbegin()->first > goal_) pending.erase(std::prev(pending.end()));
-  std::array<Front, SrsLattice::kElbowSides> fronts;
-  for (Front& front : fronts) front.after = front.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
+  std::array<ChangedAngles, SrsLattice::kElbowSides> changes;
+  for (ChangedAngles& changed : changes) changed.after = changed.here = AngleSet(static_cast<std::size_t>(tile_columns()), 0);
   const auto set = [&](int layer, int slot, double value) {
     if (at(layer, slot) == value) return;
     value_at(layer, slot) = value;
-    Front& front = fronts[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
+    ChangedAngles& changed = changes[static_cast<std::size_t>(lattice_->elbow_side_of(lattice_->solution_of(slot)))];
     const int angle = lattice_->angle_of(slot);
-    front.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
-    front.any_here = true;
+    changed.here[static_cast<std::size_t>(angle / kTileWidth)] |= static_cast<std::uint8_t>(1 << angle % kTileWidth);
+    changed.any_here = true;
   };
   const auto on_elbow_side = [&](int side, int slot) { return lattice_->elbow_side_of(lattice_->solution_of(slot)) == side; };
   // Nodes that cost more now are first computed with the layer after as it was; where that changed
@@ -166,10 +166,10 @@ void GridCostToGo::propagate_removals() {
       if (on_elbow_side(side, slot) && at(layer, slot) != kUnreachable) set(layer, slot, kUnreachable);
   };
   // Find what depends on the changes of the layer after, and what of that layer it depends on.
-  const auto load_after = [&](int side, int layer, Front& front) {
-    widen(front.after, front.dependent);
-    widen(front.dependent, front.needed);
-    load_tiles(side, layer + 1, front.needed, workspace(layer + 1));
+  const auto load_after = [&](int side, int layer, ChangedAngles& changed) {
+    widen(changed.after, changed.dependent);
+    widen(changed.dependent, changed.needed);
+    load_tiles(side, layer + 1, changed.needed, workspace(layer + 1));
     publish_values(side, workspace(layer + 1));
   };
   const auto relax_loaded = [&](int side, int layer) {
@@ -177,9 +177,9 @@ void GridCostToGo::propagate_removals() {
     apply_masks(side, workspace(layer));
     add_node_costs(side, workspace(layer));
   };
-  const auto settle = [&](int side, int layer, Front& front) {
+  const auto settle = [&](int side, int layer, ChangedAngles& changed) {
     prune_above_limit(side, workspace(layer));
-    if (renew_tiles(side, workspace(layer), front.dependent, front.here)) front.any_here = true;
+    if (renew_tiles(side, workspace(layer), changed.dependent, changed.here)) changed.any_here = true;
   };
   const auto goes_alone = [&](int layer) {
     const auto now = pending.find(layer);
@@ -192,26 +192,26 @@ void GridCostToGo::propagate_removals() {
     if (end < layer) {
       budget_.poll();
       by_elbow_side([&](int side) {
-        Front& front = fronts[static_cast<std::size_t>(side)];
+        ChangedAngles& changed = changes[static_cast<std::size_t>(side)];
         for (int here = layer; here > end; --here) {
           const auto now = pending.find(here);
           if (now != pending.end()) raise(side, here, now->second);
-          if (front.any_after) {
-            load_after(side, here, front);
-            load_tiles(side, here, front.dependent, workspace(here), &workspace(here + 1).half(side).reached);
+          if (changed.any_after) {
+            load_after(side, here, changed);
+            load_tiles(side, here, changed.dependent, workspace(here), &workspace(here + 1).half(side).reached);
             relax_loaded(side, here);
-            settle(side, here, front);
+            settle(side, here, changed);
           }
           if (now != pending.end()) remove(side, here, now->second);
-          front.next_layer();
+          changed.next_layer();
         }
       });
       pending.erase(pending.upper_bound(end), pending.end());
     } else {
       --end;
-      fronts[0].add(fronts[1]);
-      fronts[1].add(fronts[0]);
-      const bool any = fronts[0].any_after;
+      changes[0].add(changes[1]);
+      changes[1].add(changes[0]);
+      const bool any = changes[0].any_after;
       const auto now = pending.find(layer);
       for (int side = 0; side < SrsLattice::kElbowSides && now != pending.end(); ++side) raise(side, layer, now->second);
       if (any && layer == 0 && lattice_->has_start()) {
@@ -219,13 +219,13 @@ void GridCostToGo::propagate_removals() {
         if (at(0, slot) != kUnreachable) set(0, slot, relax_one(0, slot));
       } else if (any) {
         by_elbow_side([&](int side) {
-          Front& front = fronts[static_cast<std::size_t>(side)];
-          load_after(side, layer, front);
-          load_tiles(side, layer, front.dependent, workspace(layer));
+          ChangedAngles& changed = changes[static_cast<std::size_t>(side)];
+          load_after(side, layer, changed);
+          load_tiles(side, layer, changed.dependent, workspace(layer));
         });
         by_elbow_side([&](int side) { relax_loaded(side, layer); });
         relax_removed(layer);
-        for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, layer, fronts[static_cast<std::size_t>(side)]);
+        for (int side = 0; side < SrsLattice::kElbowSides; ++side) settle(side, layer, changes[static_cast<std::size_t>(side)]);
       }
       if (now != pending.end()) {
         for (int side = 0; side < SrsLattice::kElbowSides; ++side) remove(side, layer, now->second);
@@ -235,10 +235,10 @@ void GridCostToGo::propagate_removals() {
         }
         pending.erase(now);
       }
-      for (Front& front : fronts) front.next_layer();
+      for (ChangedAngles& changed : changes) changed.next_layer();
     }
     layer = end;
-    if (!fronts[0].any_after && !fronts[1].any_after)
+    if (!changes[0].any_after && !changes[1].any_after)
       layer = pending.empty() ? -1 : pending.rbegin()->first;  // nothing until there
   }
 }
