@@ -99,7 +99,7 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     const SrsLattice lattice(arm.chain, srs, path, problem);
     const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
     cost_to_go->sweep(lattice.layers() - 1);
-    EarlierPaths earlier;
+    PathCache earlier;
     for (int round = 0; round < 8; ++round) {
       const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " robot " +
                                robot.name + " round " + std::to_string(round);
@@ -154,7 +154,7 @@ TEST(BestPath, FollowsNoEarlierOneWhereSumsAreRounded) {
     for (int layer = 0; layer < lattice.layers(); ++layer)
       for (int slot = 0; slot < lattice.width(); ++slot) cost_to_go->verdicts().set_cost(layer, slot, units * lattice.cost_unit());
     cost_to_go->sweep(lattice.layers() - 1);
-    EarlierPaths earlier;
+    PathCache earlier;
     std::int64_t first = 0, again = 0;
     const SlotPath best = best_path(*cost_to_go, first, &earlier);
     ASSERT_EQ(first, lattice.layers());

@@ -126,7 +126,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
           }
         }
 
-      EarlierPaths of_bounded, of_shared;
+      PathCache of_bounded, of_shared;
       for (int round = 0; round < 12; ++round) {
         const std::string what = robot.name + " trial " + std::to_string(trial) + " round " + std::to_string(round) + " metric " +
                                  std::to_string(static_cast<int>(problem.cost.metric));

@@ -123,7 +123,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
       bounded.sweep(lattice.layers() - 1);
       Values costs(place.size(), std::vector<double>(static_cast<std::size_t>(lattice.width()), 0.0));
       SlotPath last;
-      EarlierPaths earlier;
+      PathCache earlier;
       for (int round = 0; round < 14; ++round) {
         const std::string what = "SWIVEL_TEST_SEED " + std::to_string(base) + " " + robot.name + " trial " + std::to_string(trial) +
                                  " round " + std::to_string(round);

@@ -5,7 +5,7 @@
 // there, not just a lower bound. With an exact heuristic, distance + heuristic is the same at every
 // vertex of a best path, and larger at all others, which ImplicitLattice does not even list. So A*
 // walks straight to the goal and expands one vertex a layer, until it comes to a node from which an
-// earlier path still holds (EarlierPaths). Costs are multiples of one unit and their sums exact, so
+// earlier path still holds (PathCache). Costs are multiples of one unit and their sums exact, so
 // that equal costs compare equal.
 #include <algorithm>
 #include <boost/graph/astar_search.hpp>
@@ -77,9 +77,9 @@ struct Found {
 };
 
 struct Visitor : boost::default_astar_visitor {
-  EarlierPaths* earlier;
+  PathCache* earlier;
   std::int64_t* expansions;
-  Visitor(EarlierPaths* paths, std::int64_t* count) : earlier(paths), expansions(count) {}
+  Visitor(PathCache* paths, std::int64_t* count) : earlier(paths), expansions(count) {}
   void examine_vertex(Vertex v, const ImplicitLattice& g) const {
     const CostToGo& values = g.values();
     if (++*expansions % 16 == 0) values.budget().poll();
@@ -91,7 +91,7 @@ struct Visitor : boost::default_astar_visitor {
 
 }  // namespace
 
-void EarlierPaths::add(const SlotPath& path, const CostToGo& cost_to_go) {
+void PathCache::add(const SlotPath& path, const CostToGo& cost_to_go) {
   if (path.empty()) return;
   if (earlier_.size() == kMost) earlier_.pop_back();
   Earlier& added = earlier_.emplace_front(Earlier{path, {}});
@@ -100,35 +100,35 @@ void EarlierPaths::add(const SlotPath& path, const CostToGo& cost_to_go) {
     added.values.push_back(cost_to_go.at(layer, path[static_cast<std::size_t>(layer)]));
 }
 
-const SlotPath* EarlierPaths::from(int layer, int slot, const CostToGo& cost_to_go) {
+const SlotPath* PathCache::from(int layer, int slot, const CostToGo& cost_to_go) {
   for (Earlier& earlier : earlier_) {
     const bool of_goal = static_cast<int>(earlier.path.size()) == cost_to_go.goal_layer() + 1;
-    if (of_goal && earlier.path[static_cast<std::size_t>(layer)] == slot && holds_from(layer, earlier, cost_to_go))
+    if (of_goal && earlier.path[static_cast<std::size_t>(layer)] == slot && still_optimal_from(layer, earlier, cost_to_go))
       return &earlier.path;
   }
   return nullptr;
 }
 
-bool EarlierPaths::holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go) {
-  if (layer <= earlier.broken) return false;
+bool PathCache::still_optimal_from(int layer, Earlier& earlier, const CostToGo& cost_to_go) {
+  if (layer <= earlier.deepest_changed_layer) return false;
   const auto at = [](int k) { return static_cast<std::size_t>(k); };
   for (const int goal = cost_to_go.goal_layer(); layer <= goal; ++layer) {
     const int slot = earlier.path[at(layer)];
     if (cost_to_go.at(layer, slot) != earlier.values[at(layer)] ||
         (layer < goal && cost_to_go.verdicts().edge(layer, slot, earlier.path[at(layer) + 1]) == Verdict::kRemoved)) {
-      earlier.broken = layer;
+      earlier.deepest_changed_layer = layer;
       return false;
     }
   }
   return true;
 }
 
-SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier) {
+SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, PathCache* earlier) {
   const TraceSpan span("best path");
   const int first = cost_to_go.first_slot();
   if (first < 0) return {};
   const double cost = cost_to_go.at(0, first);
-  if (cost >= EarlierPaths::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
+  if (cost >= PathCache::kExact * cost_to_go.lattice().cost_unit()) earlier = nullptr;
   const ImplicitLattice graph(cost_to_go);
   Records records;
   records.reserve(static_cast<std::size_t>(4 * cost_to_go.goal_layer() + 64));

@@ -436,7 +436,7 @@ class Search {
   const Lattice& lattice_;
   Validity& validity_;
   PathFirstOptions options_;
-  EarlierPaths earlier_;
+  PathCache earlier_;
   static constexpr int kMostReach = 1 << 20;
   int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
   std::int64_t asked_ = 0;               // questions in this round

@@ -18,7 +18,7 @@ using SlotPath = std::vector<int>;
 /// is what it was, as long as that path still costs as little: removals leave fewer ways to keep a
 /// cost, so the first path in slot order stays the first. That needs sums of costs to be exact:
 /// paths of kExact units (Lattice::cost_unit()) and more are not followed.
-class EarlierPaths {
+class PathCache {
  public:
   // costs are multiples of 2^-40 of a unit, and a double has 53 bits
   static constexpr double kExact = 0x1p13;
@@ -35,9 +35,9 @@ class EarlierPaths {
     std::vector<double> values;  // cost-to-go of its nodes
     // the deepest layer found to cost more, or to be cut off from the next: up to there it is not
     // followed
-    int broken = -1;
+    int deepest_changed_layer = -1;
   };
-  [[nodiscard]] static bool holds_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
+  [[nodiscard]] static bool still_optimal_from(int layer, Earlier& earlier, const CostToGo& cost_to_go);
   static constexpr std::size_t kMost = 4;
   std::deque<Earlier> earlier_;  // the last one first
 };
@@ -46,7 +46,7 @@ class EarlierPaths {
 /// from CostToGo::first_slot() on the least cost, the smallest slots first among equals; empty when
 /// there is none. It is Boost.Graph's A* with the perfect heuristic, which expands one vertex a
 /// layer until it meets an earlier path, where such are given. Adds to `expansions`.
-[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, EarlierPaths* earlier = nullptr);
+[[nodiscard]] SlotPath best_path(CostToGo& cost_to_go, std::int64_t& expansions, PathCache* earlier = nullptr);
 
 /// What a search found.
 struct SearchOutcome {
