@@ -112,7 +112,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       bounded_ik += bounded.ik_nodes();
 
       expect_shared_is_bounded();
-      const CoarseBound bound(lattice);
+      const ChordLowerBound bound(lattice);
       const auto come = cost_to_come(whole);
       ASSERT_LE(bound.best(), whole.best());
       for (int layer = 0; layer < lattice.layers(); ++layer)

@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "cost_to_go/grid/coarse_bound.hpp"
+#include "cost_to_go/grid/chord_lower_bound.hpp"
 #include "diagnosis/diagnosis.hpp"
 #include "random_problem.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
@@ -87,7 +87,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
       {"tool path", [&] { long_path(); }},
       {"lattice", [&] { SrsLattice(robot.arm().chain, robot.srs(), path, problem, spent); }},
       {"scene", [&] { World(robot.world(), problem.scene, spent); }},
-      {"chord bound", [&] { CoarseBound(lattice, spent); }},
+      {"chord bound", [&] { ChordLowerBound(lattice, spent); }},
       {"sweep", [&] { cost_to_go.sweep(lattice.layers() - 1); }},
       {"search",
        [&] {

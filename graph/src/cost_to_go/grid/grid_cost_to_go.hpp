@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "cost_to_go/grid/coarse_bound.hpp"
+#include "cost_to_go/grid/chord_lower_bound.hpp"
 #include "cost_to_go/grid/tile_table.hpp"
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
 #include "swivel/graph/cost_to_go/cost_to_go.hpp"
@@ -15,7 +15,7 @@ namespace swivel {
 /// The cost-to-go of a grid in vector code, within the arm-slope window, over all pairs of IK
 /// solutions.
 ///
-/// Extent::kBounded leaves out what cannot matter: nodes that CoarseBound proves to lie on no path
+/// Extent::kBounded leaves out what cannot matter: nodes that ChordLowerBound proves to lie on no path
 /// of cost `limit` or less. best() is then exact as well, and so is at() on every best path: as
 /// long as no cost that is coarsely best() exceeds the limit, no path that matters is missing;
 /// where one does, the limit is raised and the sweep repeated. Beyond 2.5 times the bound, and for
@@ -157,7 +157,7 @@ class GridCostToGo final : public CostToGo {
 
   const SrsLattice* lattice_;
   bool bounded_;
-  std::unique_ptr<CoarseBound> coarse_bound_;  // made by the first bounded sweep
+  std::unique_ptr<ChordLowerBound> chord_bound_;  // made by the first bounded sweep
   double limit_ = kUnreachable;
   /// What deepest_reachable() found last: costs from layer 0 on, of every few layers and of the
   /// deepest.

@@ -144,11 +144,11 @@ void GridCostToGo::compute(int goal_layer) {
   if (goal_layer == lattice_->layers() - 1) {
     forget_reach();
     if (!hopeless && bounded_) {
-      if (!coarse_bound_) {
-        coarse_bound_ = std::make_unique<CoarseBound>(*lattice_, budget_, work_);
-        ik_nodes_ += coarse_bound_->ik_nodes();
+      if (!chord_bound_) {
+        chord_bound_ = std::make_unique<ChordLowerBound>(*lattice_, budget_, work_);
+        ik_nodes_ += chord_bound_->ik_nodes();
       }
-      hopeless = coarse_bound_->best() == kUnreachable || !raise_limit();
+      hopeless = chord_bound_->best() == kUnreachable || !raise_limit();
     }
   } else if (bounded_ && knows_reach() && reach_.deepest == goal_layer) {
     limit_by_reach();
@@ -159,7 +159,7 @@ void GridCostToGo::compute(int goal_layer) {
 }
 
 const float* GridCostToGo::cost_before(int layer) const {
-  if (!by_reach_) return coarse_bound_ ? coarse_bound_->row(layer) : nullptr;
+  if (!by_reach_) return chord_bound_ ? chord_bound_->row(layer) : nullptr;
   if (layer > reach_.deepest || (layer % Reach::kStride != 0 && layer != reach_.deepest)) return nullptr;
   const int row = (layer + Reach::kStride - 1) / Reach::kStride;
   return reach_.rows.data() + static_cast<std::ptrdiff_t>(row) * lattice_->width();
@@ -178,8 +178,8 @@ void GridCostToGo::limit_by_reach() {
 }
 
 bool GridCostToGo::raise_limit() {
-  if (!by_reach_ && goal_ == lattice_->layers() - 1 && coarse_bound_->row(0)) {
-    const double least = coarse_bound_->best(),
+  if (!by_reach_ && goal_ == lattice_->layers() - 1 && chord_bound_->row(0)) {
+    const double least = chord_bound_->best(),
                  found = limit_ == kUnreachable ? kUnreachable : lattice_->largest_of_same_coarse_cost(best());
     const double passed = limit_ == kUnreachable ? -1 : limit_;
     // most stop at the first: 2 to 10 % of the lattice

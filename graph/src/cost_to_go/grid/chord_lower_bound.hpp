@@ -14,10 +14,10 @@ namespace swivel {
 /// steps and any change of IK solution, therefore bounds every path's cost from below, and needs
 /// the joints of one layer a stride. It runs in single precision, less what that may lose. Memory:
 /// one byte a lattice node, or less.
-class CoarseBound {
+class ChordLowerBound {
  public:
   /// Computes the bounds. Throws Stopped.
-  explicit CoarseBound(const SrsLattice& lattice, const Budget& budget = {}, const SharedWork& work = {});
+  explicit ChordLowerBound(const SrsLattice& lattice, const Budget& budget = {}, const SharedWork& work = {});
 
   /// Returns the least bound over the last layer: infinite where some layer stops every path, and
   /// no bound where costs exceed single precision.

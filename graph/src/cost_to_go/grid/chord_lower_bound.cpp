@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "cost_to_go/grid/coarse_bound.hpp"
+#include "cost_to_go/grid/chord_lower_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -268,7 +268,7 @@ class Chords {
 
 }  // namespace
 
-CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget, const SharedWork& work)
+ChordLowerBound::ChordLowerBound(const SrsLattice& lattice, const Budget& budget, const SharedWork& work)
     : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const TraceSpan span("coarse bound");
   Chords chords(lattice, stride_, budget, work);
@@ -287,7 +287,7 @@ CoarseBound::CoarseBound(const SrsLattice& lattice, const Budget& budget, const 
   best_ = *std::min_element(rows_.end() - width_, rows_.end());
 }
 
-const float* CoarseBound::row(int layer) const {
+const float* ChordLowerBound::row(int layer) const {
   if (rows_.empty() || (layer % stride_ != 0 && layer != last_)) return nullptr;
   return rows_.data() + static_cast<std::ptrdiff_t>((layer + stride_ - 1) / stride_) * width_;
 }
