@@ -179,7 +179,7 @@ void add_kinematics(Fixture& c) {
 
 void add_search(Fixture& c) {
   const std::string unit = std::string("/") + to_string(active_isa());
-  for (const auto& [name, what] : {std::pair{"whole", Extent::kWhole}, {"bounded", Extent::kBounded}}) {
+  for (const auto& [name, what] : {std::pair{"whole", Pruning::kNone}, {"bounded", Pruning::kByBound}}) {
     const auto extent = what;  // a structured binding cannot be captured
     add(std::string("sweep/") + name + unit, [&c, extent](benchmark::State& state) {
       for (auto _ : state) {

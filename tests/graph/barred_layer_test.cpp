@@ -96,7 +96,7 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       const bool only_by_table = unbarred->best() != kUnreachable;
 
       for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1}, {.batch = 32}, {.batch = 32, .grow_beside = true}}) {
-        const auto cost_to_go = make_cost_to_go(lattice, Extent::kBounded);
+        const auto cost_to_go = make_cost_to_go(lattice, Pruning::kByBound);
         cost_to_go->sweep(lattice.layers() - 1);
         SearchCounters counters;
         const SearchOutcome found = path_first(*cost_to_go, table, options, counters);

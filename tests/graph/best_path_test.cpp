@@ -97,7 +97,7 @@ TEST(BestPath, IsThatOfAPlainDescent) {
     problem.resolution.arcs = trial % 2 == 1;
     const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
     const SrsLattice lattice(arm.chain, srs, path, problem);
-    const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Extent::kWhole : Extent::kBounded);
+    const auto cost_to_go = make_cost_to_go(lattice, random.coin() ? Pruning::kNone : Pruning::kByBound);
     cost_to_go->sweep(lattice.layers() - 1);
     PathCache earlier;
     for (int round = 0; round < 8; ++round) {

@@ -87,7 +87,7 @@ TEST(Bounded, SameBestPathsAsTheWholeSweepUnderRemovals) {
       const Problem problem = random_problem(robot, arm.chain, random, waypoints);
       const ToolPath path(waypoints_in_base(problem), problem.resolution, "test");
       const SrsLattice lattice(arm.chain, srs, path, problem);
-      GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded), shared(lattice, Extent::kBounded);
+      GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound), shared(lattice, Pruning::kByBound);
       const bool shares = problems % 3 == 0;
       std::vector<GridCostToGo*> all{&whole, &bounded};
       if (shares) {

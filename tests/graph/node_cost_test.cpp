@@ -118,7 +118,7 @@ TEST(NodeCosts, RepairedValuesAreThoseOfAPlainProgram) {
         listed = make_cost_to_go(*list);
         listed->sweep(list->layers() - 1);
       }
-      GridCostToGo whole(lattice), bounded(lattice, Extent::kBounded);
+      GridCostToGo whole(lattice), bounded(lattice, Pruning::kByBound);
       whole.sweep(lattice.layers() - 1);
       bounded.sweep(lattice.layers() - 1);
       Values costs(place.size(), std::vector<double>(static_cast<std::size_t>(lattice.width()), 0.0));

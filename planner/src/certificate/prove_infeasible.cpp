@@ -233,7 +233,7 @@ InfeasibilityCertificate prove_infeasible(const PlanView& view, const Budget& bu
   const TraceSpan span("cut");
   std::unique_ptr<CostToGo> own;  // for the eager planners, which keep no verdicts
   if (view.verdicts == nullptr) {
-    own = make_cost_to_go(view.lattice, Extent::kWhole, budget);
+    own = make_cost_to_go(view.lattice, Pruning::kNone, budget);
     own->sweep(view.lattice.layers() - 1);
     Executor executor(1);
     CollisionValidity validity(view.lattice, view.world, view.world.edge_rule(view.robot.radii()), view.problem.limits.edges,

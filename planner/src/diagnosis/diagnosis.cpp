@@ -463,7 +463,7 @@ SlotPath best_path_to(const Lattice& lattice, const World& world, const EdgeRule
   Executor executor(1);
   CollisionValidity validity(lattice, world, rule, lattice.limits().edges, DistanceProofs::kOn, executor, 1, budget);
   HookedValidity hooked(lattice, validity, hooks, budget);
-  const auto cost_to_go = make_cost_to_go(lattice, Extent::kWhole, budget);
+  const auto cost_to_go = make_cost_to_go(lattice, Pruning::kNone, budget);
   cost_to_go->sweep(layer);
   SearchCounters counters;
   return path_first(*cost_to_go, hooked, {}, counters).path;

@@ -352,7 +352,7 @@ struct Planner::Impl {
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go =
-          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Extent::kWhole : Extent::kBounded, budget, std::move(retired));
+          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget, std::move(retired));
     if (once) cost_to_go->never_restarts();
     const bool shares = shares_work(lattice);
     if (shares) threads.begin_brief();

@@ -77,7 +77,7 @@ TEST(Budget, NoStageGoesOnWhenItIsSpent) {
     return ToolPath(waypoints, fine, problem.source, spent);
   };
   Config q = Config::Zero(), away = Config::Constant(0.5);
-  const auto togo_of = make_cost_to_go(lattice, Extent::kBounded, spent);
+  const auto togo_of = make_cost_to_go(lattice, Pruning::kByBound, spent);
   CostToGo& cost_to_go = *togo_of;
   SearchCounters counters;
   EagerOutcome eager;

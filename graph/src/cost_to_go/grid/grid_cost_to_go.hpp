@@ -27,7 +27,7 @@ namespace swivel {
 class GridCostToGo final : public CostToGo {
  public:
   /// Takes over the memory of `retired`, which may be null.
-  explicit GridCostToGo(const SrsLattice& lattice, Extent extent = Extent::kWhole, const Budget& budget = {},
+  explicit GridCostToGo(const SrsLattice& lattice, Pruning pruning = Pruning::kNone, const Budget& budget = {},
                         GridCostToGo* retired = nullptr);
   ~GridCostToGo() override;
 

@@ -22,8 +22,8 @@ void each(int count, const F& f) {
 
 }  // namespace
 
-GridCostToGo::GridCostToGo(const SrsLattice& lattice, Extent extent, const Budget& budget, GridCostToGo* retired)
-    : CostToGo(lattice, budget), lattice_(&lattice), bounded_(extent == Extent::kBounded) {
+GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Budget& budget, GridCostToGo* retired)
+    : CostToGo(lattice, budget), lattice_(&lattice), bounded_(pruning == Pruning::kByBound) {
   const std::size_t tiles = tile_of_layer(lattice.solutions(), 0);
   tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, retired ? std::move(retired->tiles_[0]) : TileTable());
   if (retired) {

@@ -115,12 +115,12 @@ class CostToGo {
 /// Whether a sweep computes all nodes (kWhole), or may leave out nodes that a lower bound proves to
 /// lie on no best path (kBounded): these then read as unreachable, or as costlier than they are.
 /// best(), first_slot() and every best path are exact all the same.
-enum class Extent { kWhole, kBounded };
+enum class Pruning { kNone, kByBound };
 /// Returns the cost-to-go of a lattice: of an SrsLattice by vector code over its grid, of a
 /// RollLattice layer by layer over rolls and arm angles, of an ExplicitLattice over all pairs of
 /// nodes, always whole. The memory of `retired`, of any lattice, is used again: pages fresh from
 /// the system take a quarter of a plan that meets obstacles.
-[[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Extent extent = Extent::kWhole,
+[[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning pruning = Pruning::kNone,
                                                         const Budget& budget = {}, std::unique_ptr<CostToGo> retired = nullptr);
 
 }  // namespace swivel
