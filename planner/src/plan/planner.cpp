@@ -177,7 +177,7 @@ struct Planner::Impl {
   };
   std::unique_ptr<Layout> layout;
   std::optional<std::vector<std::string>> scale_of_robot;  // warnings: a robot does not change
-  std::unique_ptr<CostToGo> retired;                       // of another lattice
+  std::unique_ptr<CostToGo> recycled;                      // of another lattice
   ClearanceMemory memory;                                  // of this lattice, the robot and the limits
   std::vector<FailureHint> failure_hints;                  // what failed on the lattice before this one; of these bodies
   std::uint64_t plans = 0;                                 // that the memory knows of
@@ -185,15 +185,15 @@ struct Planner::Impl {
   std::optional<Executor> executor;
   int executor_threads = 0;  // that it was asked for
 
-  bool once = false;  // no plan follows: nothing is remembered
-  SlotPath path;      // of the last plan
+  bool single_use = false;  // no plan follows: nothing is remembered
+  SlotPath path;            // of the last plan
   bool viewable = false, was_eager = false;
 
   explicit Impl(Problem p) : problem(std::move(p)), met(problem.scene.size(), 1) {}
 
   // --- changes
   void path_changed() {
-    if (layout && layout->first.cost_to_go) retired = std::move(layout->first.cost_to_go);
+    if (layout && layout->first.cost_to_go) recycled = std::move(layout->first.cost_to_go);
     layout.reset();
     if (auto failed = memory.failure_hints(); !failed.empty()) failure_hints = std::move(failed);
     memory = {};
@@ -307,7 +307,7 @@ struct Planner::Impl {
     // What a caller's states cost may hang on joint 7.
     const bool rests = layout->coaxial && !options.hooks.cost;
     Found found;
-    if (rests || !layout->coaxial) found = search(layout->first, !once, rule, options, budget, result);
+    if (rests || !layout->coaxial) found = search(layout->first, !single_use, rule, options, budget, result);
     if (layout->coaxial && (!rests || (found.decided && found.outcome.path.empty()))) {
       layout->second = Searched{make_lattice(robot->arm().chain, robot->arm_class(), layout->path, problem, budget), nullptr};
       result.lattice = info_of(*layout->second->lattice, robot->arm_class());
@@ -352,8 +352,8 @@ struct Planner::Impl {
     std::unique_ptr<CostToGo>& cost_to_go = searched.cost_to_go;
     if (!cost_to_go)
       cost_to_go =
-          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget, std::move(retired));
-    if (once) cost_to_go->never_restarts();
+          make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget, std::move(recycled));
+    if (single_use) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
     if (shares) threads.begin_brief();
     cost_to_go->share(shares ? shared_with(threads) : SharedWork());
@@ -586,14 +586,14 @@ PlanView Planner::view() const {
 
 PlanResult plan(const Problem& problem, const PlanOptions& options) {
   Planner planner(problem);
-  planner.impl_->once = true;
+  planner.impl_->single_use = true;
   return planner.plan(options);
 }
 
 PlanResult plan(const PreparedRobot& robot, const Problem& problem, const PlanOptions& options) {
   // Not owned: it outlives this call.
   Planner planner(std::shared_ptr<const PreparedRobot>(std::shared_ptr<void>(), &robot), problem);
-  planner.impl_->once = true;
+  planner.impl_->single_use = true;
   return planner.plan(options);
 }
 

@@ -26,9 +26,9 @@ namespace swivel {
 /// are solved again when they are wanted again: that takes less time than a fresh page of memory.
 class GridCostToGo final : public CostToGo {
  public:
-  /// Takes over the memory of `retired`, which may be null.
+  /// Takes over the memory of `recycled`, which may be null.
   explicit GridCostToGo(const SrsLattice& lattice, Pruning pruning = Pruning::kNone, const Budget& budget = {},
-                        GridCostToGo* retired = nullptr);
+                        GridCostToGo* recycled = nullptr);
   ~GridCostToGo() override;
 
   [[nodiscard]] const SrsLattice& lattice() const override { return *lattice_; }

@@ -22,13 +22,14 @@ void each(int count, const F& f) {
 
 }  // namespace
 
-GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Budget& budget, GridCostToGo* retired)
+GridCostToGo::GridCostToGo(const SrsLattice& lattice, Pruning pruning, const Budget& budget, GridCostToGo* recycled)
     : CostToGo(lattice, budget), lattice_(&lattice), bounded_(pruning == Pruning::kByBound) {
   const std::size_t tiles = tile_of_layer(lattice.solutions(), 0);
-  tiles_[0] = TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, retired ? std::move(retired->tiles_[0]) : TileTable());
-  if (retired) {
-    passing_ = std::move(retired->passing_);
-    neighbours_ = std::move(retired->neighbours_);
+  tiles_[0] =
+      TileTable(static_cast<std::size_t>(lattice.layers()) * tiles, recycled ? std::move(recycled->tiles_[0]) : TileTable());
+  if (recycled) {
+    passing_ = std::move(recycled->passing_);
+    neighbours_ = std::move(recycled->neighbours_);
     for (Neighbours& neighbours : neighbours_) neighbours.of = -1;
   }
   for (auto& workspace : workspace_) {

@@ -20,11 +20,11 @@ class TileTable {
   using Costs = std::array<double, kTileWidth>;
 
   TileTable() = default;
-  /// Makes an empty table for tiles 0 ... tiles - 1. Takes over the memory of `retired`.
-  explicit TileTable(std::size_t tiles, TileTable&& retired = TileTable()) : held_(std::move(retired.held_)) {
-    retired.held_ = {};
-    if (retired.slot_.size() >= tiles) {
-      slot_ = std::move(retired.slot_);
+  /// Makes an empty table for tiles 0 ... tiles - 1. Takes over the memory of `recycled`.
+  explicit TileTable(std::size_t tiles, TileTable&& recycled = TileTable()) : held_(std::move(recycled.held_)) {
+    recycled.held_ = {};
+    if (recycled.slot_.size() >= tiles) {
+      slot_ = std::move(recycled.slot_);
       clear();
     } else {
       held_.costs.clear();

@@ -40,7 +40,7 @@ class CostToGo {
   /// the same, bit for bit.
   void share(const SharedWork& work) { work_ = work; }
   /// Declares that restart() will not be called, so that nothing need be kept for it.
-  void never_restarts() { restarts_ = false; }
+  void set_single_use() { restarts_ = false; }
 
   /// Computes the cost-to-go with every node of `goal_layer` as a goal. Verdicts are kept.
   void sweep(int goal_layer);
@@ -118,9 +118,9 @@ class CostToGo {
 enum class Pruning { kNone, kByBound };
 /// Returns the cost-to-go of a lattice: of an SrsLattice by vector code over its grid, of a
 /// RollLattice layer by layer over rolls and arm angles, of an ExplicitLattice over all pairs of
-/// nodes, always whole. The memory of `retired`, of any lattice, is used again: pages fresh from
+/// nodes, always whole. The memory of `recycled`, of any lattice, is used again: pages fresh from
 /// the system take a quarter of a plan that meets obstacles.
 [[nodiscard]] std::unique_ptr<CostToGo> make_cost_to_go(const Lattice& lattice, Pruning pruning = Pruning::kNone,
-                                                        const Budget& budget = {}, std::unique_ptr<CostToGo> retired = nullptr);
+                                                        const Budget& budget = {}, std::unique_ptr<CostToGo> recycled = nullptr);
 
 }  // namespace swivel
