@@ -303,7 +303,7 @@ TEST(ArcLattice, UnwrapsByValueOrNamesTheJoints) {
       std::vector<int> slots;
       for (int i = 0, slot = lattice.slots(0) > 0 ? random.below(lattice.slots(0)) : -1; i < lattice.layers() && slot >= 0; ++i) {
         slots.push_back(slot);
-        slot = lattice.along(i, slot, 1);
+        slot = lattice.neighbour_along_path(i, slot, 1);
       }
       if (static_cast<int>(slots.size()) != lattice.layers()) continue;
       const auto result = lattice.unwrap(slots);
@@ -369,7 +369,7 @@ TEST(ArcLattice, AStartIsTheOnlyFirstNodeAndIsTransported) {
       const ArcLattice lattice(chain, method, path, problem);
       ASSERT_EQ(lattice.slots(0), 1);
       ++tried;
-      if (const int next = lattice.along(0, 0, 1); next >= 0) {
+      if (const int next = lattice.neighbour_along_path(0, 0, 1); next >= 0) {
         ++continued;
         for (int j = 0; j < kDof; ++j) EXPECT_LT(std::abs(std::remainder(lattice.point(1, next).q[j] - start[j], kTwoPi)), 1.5);
       }

@@ -119,7 +119,7 @@ class Search {
       ask_about(layer, slot);
       for (const int by : {-1, 1})
         for (int beside = slot, k = 0; k < cost_reach_; ++k) {
-          beside = lattice_.beside(layer, beside, by);
+          beside = lattice_.neighbour_in_redundancy(layer, beside, by);
           if (beside < 0 || beside == slot) break;
           ask_about(layer, beside);
         }
@@ -282,9 +282,11 @@ class Search {
     };
     const auto add_neighbours = [&](const Failure& x) {
       for (const int by : {-1, 1})
-        if (x.layer + by <= cost_to_go_.goal_layer()) add(x.layer + by, lattice_.along(x.layer, x.slot, by), x.failure);
+        if (x.layer + by <= cost_to_go_.goal_layer())
+          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.slot, by), x.failure);
       for (const int by : {1, -1})
-        for (const int slot : {lattice_.beside(x.layer, x.slot, by), lattice_.across(x.layer, x.slot, by)})
+        for (const int slot :
+             {lattice_.neighbour_in_redundancy(x.layer, x.slot, by), lattice_.neighbour_in_roll(x.layer, x.slot, by)})
           add(x.layer, slot, x.failure);
     };
     for (const Failure& node : failed) add_neighbours(node);
@@ -347,12 +349,14 @@ class Search {
       if (a >= 0 && b >= 0) frontier.push_back({layer, a, b});
     };
     const auto add_neighbours = [&](const EdgeQuestion& x) {
-      const auto shifted = [&](int layer, int slot, int by) { return by == 0 ? slot : lattice_.beside(layer, slot, by); };
+      const auto shifted = [&](int layer, int slot, int by) {
+        return by == 0 ? slot : lattice_.neighbour_in_redundancy(layer, slot, by);
+      };
       constexpr std::pair<int, int> kShifts[] = {{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}};
       for (const auto& [da, db] : kShifts) add(x.layer, shifted(x.layer, x.a, da), shifted(x.layer + 1, x.b, db));
       for (const int by : {-1, 1})
         if (x.layer + by >= 0 && x.layer + by < cost_to_go_.goal_layer())
-          add(x.layer + by, lattice_.along(x.layer, x.a, by), lattice_.along(x.layer + 1, x.b, by));
+          add(x.layer + by, lattice_.neighbour_along_path(x.layer, x.a, by), lattice_.neighbour_along_path(x.layer + 1, x.b, by));
     };
     for (const EdgeQuestion& edge : failed) add_neighbours(edge);
     std::vector<Edge> asked;

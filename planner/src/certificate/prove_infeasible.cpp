@@ -121,7 +121,8 @@ class Finder {
           return leads_on[index(b)] && lattice_.step_allowed(layer, lattice_.delta(a.q, ahead.at[index(b)]->q)) &&
                  !lists(removed, b);
         };
-        if (const int b = lattice_.along(layer, a.slot, 1); b >= 0 && lattice_.in_window(layer, a.slot, b) && leads_to(b)) {
+        if (const int b = lattice_.neighbour_along_path(layer, a.slot, 1);
+            b >= 0 && lattice_.in_window(layer, a.slot, b) && leads_to(b)) {
           leads[index(a.slot)] = 1;
           continue;
         }

@@ -144,7 +144,7 @@ ConstraintRemoval::Pass ConstraintRemoval::run_pass(int from, ConstraintSet waiv
     const int slots = lattice_.slots(layer);
     for (int a = 0; a < slots; ++a)
       if (here.reached[index(a)] != 0)
-        if (const int b = lattice_.along(layer, a, 1); b >= 0) move(a, b);
+        if (const int b = lattice_.neighbour_along_path(layer, a, 1); b >= 0) move(a, b);
     for (int a = 0; a < slots && pass.whole; ++a) {
       if (here.reached[index(a)] == 0) continue;
       budget_.poll();

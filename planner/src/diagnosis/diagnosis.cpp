@@ -160,7 +160,7 @@ class Inspector {
     blockers_.start(layer);
     std::vector<Lattice::Node> free;  // except for the user's check
     Counts causes;
-    if (const int slot = hint < 0 ? -1 : lattice_.along(layer - 1, hint, 1); slot >= 0) {
+    if (const int slot = hint < 0 ? -1 : lattice_.neighbour_along_path(layer - 1, hint, 1); slot >= 0) {
       constraints_.count_nodes(1);
       if (const auto q = lattice_.exact_config(layer, slot); q && blockers_.any(layer, slot, *q) == kFree) {
         free.push_back({slot, *q});
@@ -424,7 +424,7 @@ void diagnose(const Lattice& lattice, const World& world, const EdgeRule& rule, 
     diagnosis.cause = *empty;
   }
   // No node is listed that continues the path.
-  if (!diagnosis.without_it && deepest >= 0 && lattice.along(deepest, path.back(), 1) < 0)
+  if (!diagnosis.without_it && deepest >= 0 && lattice.neighbour_along_path(deepest, path.back(), 1) < 0)
     if (const auto limit = inspector.limit_ahead(deepest, *lattice.exact_config(deepest, path.back())))
       diagnosis.cause = *limit, answer.emplace();
   inspector.begin_layers();

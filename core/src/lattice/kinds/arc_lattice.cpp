@@ -496,7 +496,7 @@ double ArcLattice::phi(int layer, int slot) const {
 }
 
 int ArcLattice::next_on_arc(int layer, int slot) const {
-  return layers_.next.empty() ? beside(layer, slot, 1)
+  return layers_.next.empty() ? neighbour_in_redundancy(layer, slot, 1)
                               : layers_.next[static_cast<std::size_t>(layer)][static_cast<std::size_t>(slot)];
 }
 

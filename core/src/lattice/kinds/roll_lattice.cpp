@@ -248,19 +248,19 @@ std::optional<Lattice::Reach> RollLattice::out_of_reach(int layer) const {
   return nearest;
 }
 
-int RollLattice::beside(int layer, int slot, int by) const {
+int RollLattice::neighbour_in_redundancy(int layer, int slot, int by) const {
   if (layer == 0 && start_) return -1;
-  return slot_of(slot / width_, at_roll(0).beside(layer, slot % width_, by));
+  return slot_of(slot / width_, at_roll(0).neighbour_in_redundancy(layer, slot % width_, by));
 }
 
-int RollLattice::across(int layer, int slot, int by) const {
+int RollLattice::neighbour_in_roll(int layer, int slot, int by) const {
   if (layer == 0 && start_) return -1;
   const int values = rolls(), value = value_of_[static_cast<std::size_t>(slot / width_)] + by;
   if (!circle_ && (value < 0 || value >= values)) return -1;
   return slot_of(rank_[static_cast<std::size_t>((value + values) % values)], slot % width_);
 }
 
-int RollLattice::along(int layer, int slot, int by) const {
+int RollLattice::neighbour_along_path(int layer, int slot, int by) const {
   if (layer + by < 0 || layer + by >= layers()) return -1;
   if (start_ && layer == 0) return slot_of(0, inner(0, 0));
   if (start_ && layer + by == 0) return in_window(0, 0, slot) ? 0 : -1;

@@ -541,11 +541,11 @@ void SrsLattice::layer_nodes(int layer, std::vector<Node>& out) const {
     if (nodes.valid(solution_of(slot), angle_of(slot))) out.push_back({slot, nodes.config(solution_of(slot), angle_of(slot))});
 }
 
-int SrsLattice::beside(int, int slot, int by) const {
+int SrsLattice::neighbour_in_redundancy(int, int slot, int by) const {
   return solution_of(slot) * angles_ + (angle_of(slot) + by + angles_) % angles_;
 }
 
-int SrsLattice::along(int layer, int slot, int by) const {
+int SrsLattice::neighbour_along_path(int layer, int slot, int by) const {
   return layer + by < 0 || layer + by >= layers() ? -1 : slot;
 }
 

@@ -38,8 +38,12 @@ class ExplicitLattice : public Lattice {
   [[nodiscard]] NodeFault fault(int, int) const override { return {}; }
   [[nodiscard]] double phi(int layer, int slot) const override { return point(layer, slot).phi; }
   [[nodiscard]] int branch(int layer, int slot) const override { return point(layer, slot).branch; }
-  [[nodiscard]] int beside(int layer, int slot, int by) const override { return point(layer, slot).beside[by < 0 ? 0 : 1]; }
-  [[nodiscard]] int along(int layer, int slot, int by) const override { return point(layer, slot).along[by < 0 ? 0 : 1]; }
+  [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override {
+    return point(layer, slot).beside[by < 0 ? 0 : 1];
+  }
+  [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override {
+    return point(layer, slot).along[by < 0 ? 0 : 1];
+  }
   /// The last link and the tool stand where the layer puts them; any other body stands alone.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return (groups & ~(1u << kDof)) == 0; }
   void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;

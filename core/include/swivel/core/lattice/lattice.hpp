@@ -133,14 +133,14 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
 
   // --- nodes near a node
   /// The slot before (by -1) or after (+1) it along the redundancy coordinate; -1 where there is none.
-  [[nodiscard]] virtual int beside(int layer, int slot, int by) const = 0;
+  [[nodiscard]] virtual int neighbour_in_redundancy(int layer, int slot, int by) const = 0;
   /// The same along a second redundancy coordinate, where there is one.
-  [[nodiscard]] virtual int across(int layer, int slot, int by) const {
+  [[nodiscard]] virtual int neighbour_in_roll(int layer, int slot, int by) const {
     static_cast<void>(layer), static_cast<void>(slot), static_cast<void>(by);
     return -1;
   }
   /// The slot of a neighbouring layer (by -1 or +1) that continues it; -1 where there is none.
-  [[nodiscard]] virtual int along(int layer, int slot, int by) const = 0;
+  [[nodiscard]] virtual int neighbour_along_path(int layer, int slot, int by) const = 0;
 
   // --- edges between slot a of `layer` and slot b of the next; joints as node() gives them, where not said otherwise
   /// Slots first ... last - 1.

@@ -35,7 +35,7 @@ class ArcLattice final : public ExplicitLattice {
   [[nodiscard]] int branch(int layer, int slot) const override;
   [[nodiscard]] double phi(int layer, int slot) const override;
 
-  /// That of beside(), which nodes of a lattice with_windings() lack.
+  /// That of neighbour_in_redundancy(), which nodes of a lattice with_windings() lack.
   [[nodiscard]] int next_on_arc(int layer, int slot) const override;
   [[nodiscard]] LatticeInfo describe() const override;
   /// Arcs of all layers.

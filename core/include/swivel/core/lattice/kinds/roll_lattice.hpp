@@ -92,9 +92,9 @@ class RollLattice final : public Lattice {
   [[nodiscard]] int branch(int layer, int slot) const override { return at(layer, slot).branch(layer, inner(layer, slot)); }
   [[nodiscard]] bool has_node_costs() const override { return roll_costs(); }
   [[nodiscard]] double node_cost(int layer, int slot) const override { return roll_cost(layer, roll(layer, slot)); }
-  [[nodiscard]] int beside(int layer, int slot, int by) const override;
-  [[nodiscard]] int across(int layer, int slot, int by) const override;
-  [[nodiscard]] int along(int layer, int slot, int by) const override;
+  [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
+  [[nodiscard]] int neighbour_in_roll(int layer, int slot, int by) const override;
+  [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override;
   /// As in an SrsLattice, among nodes of one roll.
   [[nodiscard]] bool shares_body_poses(unsigned groups) const override { return !is_approximate() && (groups & kFollowers) == 0; }
   void slots_with_same_body_poses(int layer, int slot, unsigned groups, std::vector<int>& out) const override;

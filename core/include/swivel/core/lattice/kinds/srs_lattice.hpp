@@ -125,8 +125,8 @@ class SrsLattice final : public Lattice {
     return (window_ + (moved_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;  // both ends half a cell from the grid
   }
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
-  [[nodiscard]] int beside(int layer, int slot, int by) const override;
-  [[nodiscard]] int along(int layer, int slot, int by) const override;
+  [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
+  [[nodiscard]] int neighbour_along_path(int layer, int slot, int by) const override;
   /// Where joint 7 stays, rad: the tool turns about its axis as the other joints make it.
   [[nodiscard]] const std::optional<double>& last_joint() const { return last_joint_; }
   /// The last link and the tool stand where the layer puts them, with links 5 and 6 where joint 7 stays; links 3 and 4 where arm
