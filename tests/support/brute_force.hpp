@@ -64,13 +64,13 @@ inline Answer brute_force(const Lattice& lattice, const World& world, const Edge
       const Config delta = lattice.delta(qa, qb);
       for (int j = 0; j < kDof; ++j)
         if (std::abs(delta[j]) > lattice.step_bound(layer)[j]) return std::nullopt;
-      Lattice::Between between = lattice.between(layer, sa, row_a, sb, row_b);
-      if (between.fault != Lattice::Between::Fault::kNone) return std::nullopt;
-      for (const Config& q : between.rows)
+      Lattice::InterpolatedEdge interpolated = lattice.interpolate_edge(layer, sa, row_a, sb, row_b);
+      if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return std::nullopt;
+      for (const Config& q : interpolated.rows)
         if (query.find_violating_pair(q, ClearanceRule::kNode)) return std::nullopt;
-      between.rows.push_back(row_b);
+      interpolated.rows.push_back(row_b);
       Config from = row_a;
-      for (const Config& row : between.rows) {
+      for (const Config& row : interpolated.rows) {
         const Config to = from + lattice.delta(from, row);
         if (limits.edges == EdgeMode::kContinuous && edge_blocked_plain(query, rule, from, to)) return std::nullopt;
         from = to;

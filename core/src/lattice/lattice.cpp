@@ -118,7 +118,7 @@ void Lattice::set_row_step_bounds(std::vector<Config> bounds) {
   for (const Config& most : row_step_bounds_) step_bounds_.push_back(most + 2 * fit_error_);
 }
 
-Lattice::Between Lattice::between(int, int, const Config&, int, const Config&) const {
+Lattice::InterpolatedEdge Lattice::interpolate_edge(int, int, const Config&, int, const Config&) const {
   return {};
 }
 

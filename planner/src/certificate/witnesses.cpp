@@ -185,9 +185,9 @@ bool Witnesses::removes_move(const Cause& cause, const About& about, int layer, 
 }
 
 /// Returns the cause that names a fault between two layers; none if there is no fault.
-std::optional<Cause> Witnesses::of_fault(const Lattice::Between& between) const {
-  using Fault = Lattice::Between::Fault;
-  switch (between.fault) {
+std::optional<Cause> Witnesses::of_fault(const Lattice::InterpolatedEdge& interpolated) const {
+  using Fault = Lattice::InterpolatedEdge::Fault;
+  switch (interpolated.fault) {
     case Fault::kNone:
       return std::nullopt;
     case Fault::kNoIk:
@@ -208,22 +208,22 @@ std::optional<Cause> Witnesses::of_fault(const Lattice::Between& between) const 
       break;
   }
   int joint = 0;
-  while (joint + 1 < kDof && ((between.joints >> joint) & 1) == 0) ++joint;
-  return limit_of(joint, side_of(between.q, joint));
+  while (joint + 1 < kDof && ((interpolated.joints >> joint) & 1) == 0) ++joint;
+  return limit_of(joint, side_of(interpolated.q, joint));
 }
 
 bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move) {
-  const Lattice::Between between = lattice_.between(layer, a, move.from, b, move.to);
-  if (const auto fault = of_fault(between)) {
+  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, move.from, b, move.to);
+  if (const auto fault = of_fault(interpolated)) {
     if (cause.kind != Cause::Kind::kLimit || fault->kind != cause.kind) return fault->kind == cause.kind;
-    return ((between.joints >> about.joint) & 1) != 0 && side_of(between.q, about.joint) == cause.side;
+    return ((interpolated.joints >> about.joint) & 1) != 0 && side_of(interpolated.q, about.joint) == cause.side;
   }
   if (cause.kind != Cause::Kind::kPair) return false;
-  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
-    const Config& from = k == 0 ? move.from : between.rows[k - 1];
-    const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
+  for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
+    const Config& from = k == 0 ? move.from : interpolated.rows[k - 1];
+    const Config to = from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
     for (const BodyPair& pair : about.pairs)
-      if ((k < between.rows.size() && query_.pair_violates(to, pair, ClearanceRule::kNode)) ||
+      if ((k < interpolated.rows.size() && query_.pair_violates(to, pair, ClearanceRule::kNode)) ||
           (lattice_.limits().edges == EdgeMode::kContinuous && edge_blocked_by(pair, query_, rule_, from, to, budget_)))
         return true;
   }
@@ -231,15 +231,15 @@ bool Witnesses::removes_layers(const Cause& cause, const About& about, int layer
 }
 
 int Witnesses::of_layers(int layer, int a, int b, const Move& move, int suspected) {
-  const Lattice::Between between = lattice_.between(layer, a, move.from, b, move.to);
-  if (const auto fault = of_fault(between)) return number(*fault);
+  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, move.from, b, move.to);
+  if (const auto fault = of_fault(interpolated)) return number(*fault);
   if (suspected >= 0 &&
       removes_layers(causes_[static_cast<std::size_t>(suspected)], about_[static_cast<std::size_t>(suspected)], layer, a, b, move))
     return suspected;
-  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
-    const Config& from = k == 0 ? move.from : between.rows[k - 1];
-    const Config to = from + lattice_.delta(from, k < between.rows.size() ? between.rows[k] : move.to);
-    if (k < between.rows.size())
+  for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
+    const Config& from = k == 0 ? move.from : interpolated.rows[k - 1];
+    const Config to = from + lattice_.delta(from, k < interpolated.rows.size() ? interpolated.rows[k] : move.to);
+    if (k < interpolated.rows.size())
       if (const auto pair = query_.find_violating_pair(to, ClearanceRule::kNode)) return number(*pair);
     if (lattice_.limits().edges == EdgeMode::kContinuous)
       if (const auto pair = edge_blocked(query_, rule_, from, to, budget_)) return number(*pair);

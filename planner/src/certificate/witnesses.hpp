@@ -58,7 +58,7 @@ class Witnesses {
   [[nodiscard]] std::optional<Move> move(int layer, int a, int b) const;
   [[nodiscard]] bool removes_move(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
   // For lattices that have path layers between their own (Lattice::has_layers_between).
-  [[nodiscard]] std::optional<Cause> of_fault(const Lattice::Between& between) const;
+  [[nodiscard]] std::optional<Cause> of_fault(const Lattice::InterpolatedEdge& interpolated) const;
   [[nodiscard]] bool removes_layers(const Cause& cause, const About& about, int layer, int a, int b, const Move& move);
   [[nodiscard]] int of_layers(int layer, int a, int b, const Move& move, int suspected);
   [[nodiscard]] Cause limit_of(int joint, Cause::Side side) const;

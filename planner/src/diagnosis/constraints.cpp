@@ -248,10 +248,10 @@ void Constraints::add_steps(const Config& from, const Config& moved, const Confi
 /// Adds what is violated by the configurations between the layers and the moves from one to the
 /// next: the first fault decides.
 void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, const Config& qb, Violations& found) {
-  using Fault = Lattice::Between::Fault;
-  const Lattice::Between between = lattice_.between(layer, a, qa, b, qb);
-  moves_ += 10 * static_cast<std::int64_t>(between.rows.size() + 1);
-  switch (between.fault) {
+  using Fault = Lattice::InterpolatedEdge::Fault;
+  const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
+  moves_ += 10 * static_cast<std::int64_t>(interpolated.rows.size() + 1);
+  switch (interpolated.fault) {
     case Fault::kNone:
       break;
     case Fault::kNoIk:
@@ -260,14 +260,14 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       return;
     case Fault::kLimit:
       for (int k = 0; k < kDof; ++k)
-        if (between.joints >> k & 1) found.add(limit_beyond(k, between.q));
+        if (interpolated.joints >> k & 1) found.add(limit_beyond(k, interpolated.q));
       return;
     case Fault::kManipulability:
       found.add(kManipulability);
       return;
     case Fault::kStep: {
-      const Config& from = between.rows.empty() ? qa : between.rows.back();
-      add_steps(from, between.q - from, Config::Constant(lattice_.limits().joint_step), Config::Zero(), found);
+      const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
+      add_steps(from, interpolated.q - from, Config::Constant(lattice_.limits().joint_step), Config::Zero(), found);
       if (found.set == 0) found.add(kSpeed);
       return;
     }
@@ -281,15 +281,15 @@ void Constraints::edge_of_layers(int layer, int a, const Config& qa, int b, cons
       found.add(kAngleError);
       return;
   }
-  for (const Config& q : between.rows)
+  for (const Config& q : interpolated.rows)
     if (const auto first = query_.find_violating_pair(q, ClearanceRule::kNode)) {
       if (!found.add(pair(*first))) add_other_pairs(q, ClearanceRule::kNode, found);
       if (found.done()) return;
     }
   if (lattice_.limits().edges != EdgeMode::kContinuous) return;
-  for (std::size_t k = 0; k <= between.rows.size(); ++k) {
-    const Config& from = k == 0 ? qa : between.rows[k - 1];
-    const Config to = k < between.rows.size() ? between.rows[k] : Config(from + lattice_.delta(from, qb));
+  for (std::size_t k = 0; k <= interpolated.rows.size(); ++k) {
+    const Config& from = k == 0 ? qa : interpolated.rows[k - 1];
+    const Config to = k < interpolated.rows.size() ? interpolated.rows[k] : Config(from + lattice_.delta(from, qb));
     if (const auto first = edge_blocked(query_, rule_, from, to, budget_); first && found.add(pair(*first))) return;
   }
 }
@@ -335,7 +335,7 @@ void Constraints::measure_contact(Cause& cause, int layer, int a, const Config& 
   const bool by_rows = lattice_.has_layers_between();
   std::vector<Config> rows{qa};
   if (by_rows)
-    for (const Config& q : lattice_.between(layer, a, qa, b, qb).rows) rows.push_back(q);
+    for (const Config& q : lattice_.interpolate_edge(layer, a, qa, b, qb).rows) rows.push_back(q);
   rows.push_back(rows.back() + lattice_.delta(rows.back(), qb));
   for (const BodyPair& p : world_.pairs()) {  // a link may have several bodies
     const RequiredClearance required = world_.required_clearance(p);
@@ -361,17 +361,17 @@ Cause Constraints::measured(int constraint, int layer, int a, const Config& qa, 
   }
   if (cause.kind == Cause::Kind::kRollSlope) {
     auto roll = *lattice_.roll_step(layer, a, qa, b, qb);
-    if (roll.allowed && lattice_.has_layers_between()) roll = lattice_.between(layer, a, qa, b, qb).roll;  // on the way
+    if (roll.allowed && lattice_.has_layers_between()) roll = lattice_.interpolate_edge(layer, a, qa, b, qb).roll;  // on the way
     cause.value = roll.change, cause.limit = roll.most, cause.over = roll.over;
     return cause;
   }
   if (lattice_.has_layers_between()) {
     if (cause.kind == Cause::Kind::kLimit) {
-      const Lattice::Between between = lattice_.between(layer, a, qa, b, qb);
-      const Config& from = between.rows.empty() ? qa : between.rows.back();
+      const Lattice::InterpolatedEdge interpolated = lattice_.interpolate_edge(layer, a, qa, b, qb);
+      const Config& from = interpolated.rows.empty() ? qa : interpolated.rows.back();
       const int k = constraint / 2;
-      cause.unwinds = between.fault == Lattice::Between::Fault::kStep;
-      cause.value = cause.unwinds ? from[k] + wrap_angle(between.q[k] - from[k]) : between.q[k];
+      cause.unwinds = interpolated.fault == Lattice::InterpolatedEdge::Fault::kStep;
+      cause.value = cause.unwinds ? from[k] + wrap_angle(interpolated.q[k] - from[k]) : interpolated.q[k];
     }
     cause.between_layers = cause.kind != Cause::Kind::kArmSlope;
     return cause;

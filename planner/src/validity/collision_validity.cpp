@@ -228,17 +228,17 @@ bool CollisionValidity::edge(const EdgeQuestion& x, Open& open, int worker, Quer
 /// Tests every configuration between the layers as a node, and every move from one to the next as
 /// an edge.
 bool CollisionValidity::edge_of_layers(const EdgeQuestion& x, const Config& qa, const Config& qb, Open& open, World::Query& query) {
-  Lattice::Between between = lattice_->between(x.layer, x.a, qa, x.b, qb);
-  if (between.fault != Lattice::Between::Fault::kNone) return false;
-  for (const Config& q : between.rows)
+  Lattice::InterpolatedEdge interpolated = lattice_->interpolate_edge(x.layer, x.a, qa, x.b, qb);
+  if (interpolated.fault != Lattice::InterpolatedEdge::Fault::kNone) return false;
+  for (const Config& q : interpolated.rows)
     if (const auto pair = query.find_violating_pair_incremental(q, ClearanceRule::kNode)) {
       open.pair = *pair;
       return false;
     }
   if (edge_mode_ == EdgeMode::kNodes) return true;
-  between.rows.push_back(qb);
+  interpolated.rows.push_back(qb);
   Config from = qa;
-  for (const Config& row : between.rows) {
+  for (const Config& row : interpolated.rows) {
     const Config to = from + lattice_->delta(from, row);
     if (const auto pair = edge_blocked(query, rule_, from, to, budget_)) {
       open.pair = *pair;

@@ -50,7 +50,7 @@ void HookedValidity::check_layers_between(std::span<const EdgeQuestion> question
     if (!answers[k]) continue;
     const EdgeQuestion& x = questions[k];
     const Config begin = state(x.layer, x.a, x.qa), end = state(x.layer + 1, x.b, x.qb);
-    states_ = lattice_->between(x.layer, x.a, begin, x.b, end).rows;
+    states_ = lattice_->interpolate_edge(x.layer, x.a, begin, x.b, end).rows;
     const auto allowed = check_.states(states_);
     bool passes = std::all_of(allowed.begin(), allowed.end(), [](auto one) { return one; });
     if (passes && check_.checks_motions()) {

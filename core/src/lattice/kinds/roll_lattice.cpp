@@ -329,17 +329,18 @@ void RollLattice::successors(int layer, int a, std::vector<SlotRun>& out) const 
     }
 }
 
-std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const {
+std::optional<Config> RollLattice::solve(int i, double roll, double phi, int branch, const Config& near,
+                                         InterpolatedEdge& fault) const {
   const Pose tool = rolled(whole_->layer(i).tool, roll);
   const ArmPlane plane = carry_plane(*arm_, planes_[static_cast<std::size_t>(i)], tool);
   const ReachStatus reach = reach_status(*arm_, plane.reach);
   if (reach != ReachStatus::kReachable) {
-    fault.fault = reach == ReachStatus::kSingular ? Between::Fault::kSingular : Between::Fault::kNoIk;
+    fault.fault = reach == ReachStatus::kSingular ? InterpolatedEdge::Fault::kSingular : InterpolatedEdge::Fault::kNoIk;
     return std::nullopt;
   }
   Config q = srs_ik(*arm_, elbow_circles(*arm_, plane, tool), phi, branch);
   if (std::abs(std::sin(arm_->shoulder_angle(q))) < kSingularSine || std::abs(std::sin(arm_->wrist_angle(q))) < kSingularSine) {
-    fault.fault = Between::Fault::kSingular;
+    fault.fault = InterpolatedEdge::Fault::kSingular;
     return std::nullopt;
   }
   for (int j = 0; j < kDof; ++j) q[j] = near[j] + wrap_angle(q[j] - near[j]);
@@ -348,7 +349,7 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
     const auto row = last_joint_ ? solve_exact_chain_turned(*chain_, *arm_, plane, tool, phi, q)
                                  : solve_exact_chain(*chain_, *arm_, plane, tool, phi, q);
     if (!row) {
-      fault.fault = Between::Fault::kNoIk;
+      fault.fault = InterpolatedEdge::Fault::kNoIk;
       return std::nullopt;
     }
     q = *row;
@@ -360,9 +361,9 @@ std::optional<Config> RollLattice::solve(int i, double roll, double phi, int bra
     if (!continuous_[static_cast<std::size_t>(j)] && !(q[j] >= limit.lower + margin && q[j] <= limit.upper - margin))
       fault.joints |= static_cast<std::uint8_t>(1u << j);
   }
-  if (fault.joints) fault.fault = Between::Fault::kLimit;
-  if (fault.fault == Between::Fault::kNone && !manipulable(q)) fault.fault = Between::Fault::kManipulability;
-  return fault.fault == Between::Fault::kNone ? std::optional(q) : std::nullopt;
+  if (fault.joints) fault.fault = InterpolatedEdge::Fault::kLimit;
+  if (fault.fault == InterpolatedEdge::Fault::kNone && !manipulable(q)) fault.fault = InterpolatedEdge::Fault::kManipulability;
+  return fault.fault == InterpolatedEdge::Fault::kNone ? std::optional(q) : std::nullopt;
 }
 
 double RollLattice::roll_at(int i, const Config& q, double chosen) const {
@@ -370,8 +371,8 @@ double RollLattice::roll_at(int i, const Config& q, double chosen) const {
 }
 
 template <class Visit>
-Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
-  Between between;
+Lattice::InterpolatedEdge RollLattice::walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const {
+  InterpolatedEdge interpolated;
   const int first = knots_[static_cast<std::size_t>(layer)], last = knots_[static_cast<std::size_t>(layer) + 1];
   const double roll = this->roll(layer, a), phi = this->phi(layer, a);
   const double roll_change = this->roll(layer + 1, b) - roll;
@@ -391,37 +392,37 @@ Lattice::Between RollLattice::walk(int layer, int a, const Config& qa, int b, co
     if (i + 1 == last)
       to = from + delta(from, qb);
     else
-      to = solve(i + 1, chosen(i + 1, t), phi + t * dphi, branch, from, between);
-    if (!to) return between;
-    between.q = *to;
+      to = solve(i + 1, chosen(i + 1, t), phi + t * dphi, branch, from, interpolated);
+    if (!to) return interpolated;
+    interpolated.q = *to;
     const Config move = *to - from;
     const double to_roll = roll_at(i + 1, *to, i + 1 == last ? roll + droll : chosen(i + 1, t));
     const double travel = whole_->layer(i + 1).travel - whole_->layer(i).travel, most_turn = limits_.roll_slope * travel;
     const double turned = std::abs(wrap_angle(to_roll - from_roll));
     const Config& bound = whole_step_bounds_[whole_step_bounds_.size() == 1 ? 0 : static_cast<std::size_t>(i)];
     if (!((move.cwiseAbs().array() <= bound.array()).all())) {
-      between.fault = Between::Fault::kStep;
+      interpolated.fault = InterpolatedEdge::Fault::kStep;
     } else if ((last_joint_ || windows_of_roll_) && !(turned <= most_turn + 1e-9)) {
-      between.fault = Between::Fault::kRollSlope;
-      between.roll = {turned, most_turn, travel, false};
+      interpolated.fault = InterpolatedEdge::Fault::kRollSlope;
+      interpolated.roll = {turned, most_turn, travel, false};
     } else if (limits_.tool_path_error && !keeps(path_deviation(*chain_, *whole_, i, from, move), limits_.tool_path_error)) {
-      between.fault = Between::Fault::kPathError;
+      interpolated.fault = InterpolatedEdge::Fault::kPathError;
     } else if (limits_.tool_angle_error && !keeps(angle_deviation(*chain_, *whole_, i, from, move), limits_.tool_angle_error)) {
-      between.fault = Between::Fault::kAngleError;
+      interpolated.fault = InterpolatedEdge::Fault::kAngleError;
     }
-    if (between.fault != Between::Fault::kNone) return between;
+    if (interpolated.fault != InterpolatedEdge::Fault::kNone) return interpolated;
     if (i + 1 < last) {
-      between.rows.push_back(*to);
+      interpolated.rows.push_back(*to);
       visit(
           TrajectoryRow{whole_->layer(i + 1).s, wrap_angle(phi + t * dphi), branch, *to, circle_ ? wrap_angle(to_roll) : to_roll});
     }
     from = *to;
     from_roll = to_roll;
   }
-  return between;
+  return interpolated;
 }
 
-Lattice::Between RollLattice::between(int layer, int a, const Config& qa, int b, const Config& qb) const {
+Lattice::InterpolatedEdge RollLattice::interpolate_edge(int layer, int a, const Config& qa, int b, const Config& qb) const {
   return walk(layer, a, qa, b, qb, [](const TrajectoryRow&) {});
 }
 

@@ -86,7 +86,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
   };
   /// The rows between row qa (slot a) and row qb (slot b of the next layer), as far as they exist and keep all but clearance; and
   /// what the next row, or the move to it, does not keep.
-  struct Between {
+  struct InterpolatedEdge {
     enum class Fault : std::uint8_t {
       kNone,
       kNoIk,
@@ -104,7 +104,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
     Config q = Config::Zero();  ///< of the row at fault, where it has joints; of a move, where it leads to
     RollStep roll;              ///< of kRollSlope
   };
-  [[nodiscard]] virtual Between between(int layer, int a, const Config& qa, int b, const Config& qb) const;
+  [[nodiscard]] virtual InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b, const Config& qb) const;
 
   // --- paths: one slot in each layer, from the first on
   /// The joints of the rows of a path: continuous joints go on without jumps. Empty where the lattice takes bounded joints of more

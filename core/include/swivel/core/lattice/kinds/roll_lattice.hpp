@@ -106,11 +106,11 @@ class RollLattice final : public Lattice {
   [[nodiscard]] PoseErrorBound pose_error_between(int layer, int group, const Config& q) const override;
   [[nodiscard]] bool in_window(int layer, int a, int b) const override;
   [[nodiscard]] bool in_arm_window(int layer, int a, int b) const override;
-  /// From knot to knot; what the rows between turn is a matter of between().
+  /// From knot to knot; what the rows between turn is a matter of interpolate_edge().
   [[nodiscard]] std::optional<RollStep> roll_step(int layer, int a, const Config& q0, int b, const Config& q1) const override;
   void successors(int layer, int a, std::vector<SlotRun>& out) const override;
   [[nodiscard]] bool has_layers_between() const override { return true; }
-  [[nodiscard]] Between between(int layer, int a, const Config& qa, int b, const Config& qb) const override;
+  [[nodiscard]] InterpolatedEdge interpolate_edge(int layer, int a, const Config& qa, int b, const Config& qb) const override;
 
  private:
   struct Knots {
@@ -129,11 +129,12 @@ class RollLattice final : public Lattice {
   void find_near(const Problem& problem);
   /// `visit(i, row)` for the layers i of the whole path between those of an edge.
   template <class Visit>
-  Between walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
+  InterpolatedEdge walk(int layer, int a, const Config& qa, int b, const Config& qb, const Visit& visit) const;
   /// The roll at a layer of the whole path: the one that was chosen, or what joint 7's rest makes it.
   [[nodiscard]] double roll_at(int i, const Config& q, double chosen) const;
   /// The joints at a layer of the whole path, near those of the layer before; or why there are none.
-  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near, Between& fault) const;
+  [[nodiscard]] std::optional<Config> solve(int i, double roll, double phi, int branch, const Config& near,
+                                            InterpolatedEdge& fault) const;
 
   struct Turned {
     Turned(std::vector<double> by, ToolPath knots, const Chain& chain, const SrsArm& arm, const Problem& problem,
