@@ -151,7 +151,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
       const SrsLattice grid = small.lattice(false), lattice = small.lattice(true);
       const int n = lattice.angles();
       const double step = kTwoPi / n;
-      ASSERT_EQ(grid.moved(0).size(), 0u);
+      ASSERT_EQ(grid.off_grid_nodes(0).size(), 0u);
       LayerNodes nodes, run;
       for (int layer = 0; layer < lattice.layers(); ++layer) {
         lattice.solve(layer, nodes);
@@ -159,7 +159,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
         const int first = random.below(n), count = 1 + random.below(2 * n);
         lattice.solve(layer, first, count, run);
         std::vector<char> stands(static_cast<std::size_t>(lattice.width()), 0);
-        for (const SrsLattice::Moved& cell : lattice.moved(layer)) stands[static_cast<std::size_t>(cell.slot)] = 1;
+        for (const SrsLattice::OffGridNode& cell : lattice.off_grid_nodes(layer)) stands[static_cast<std::size_t>(cell.slot)] = 1;
         for (int slot = 0; slot < lattice.width(); ++slot) {
           const int solution = lattice.solution_of(slot), j = lattice.angle_of(slot);
           const auto alone = lattice.node(layer, slot), plain = grid.node(layer, slot);
@@ -182,7 +182,7 @@ TEST(LimitArcs, MovedCellsAreNodesWhereverArcsAre) {
             ASSERT_EQ(alone.has_value(), stands[static_cast<std::size_t>(slot)] != 0);
           }
         }
-        for (const SrsLattice::Moved& cell : lattice.moved(layer)) {
+        for (const SrsLattice::OffGridNode& cell : lattice.off_grid_nodes(layer)) {
           const double own = grid.phi(layer, cell.slot);
           ASSERT_LE(std::abs(std::remainder(cell.phi - own, kTwoPi)), step / 2 + 1e-12);
           lattice.arcs(layer, lattice.solution_of(cell.slot), arcs);

@@ -141,7 +141,7 @@ SrsLattice::SrsLattice(const Chain& chain, const SrsArm& arm, const ToolPath& pa
   if (problem.start) place_start(problem);
   if (!arm.exact) pose_error_model_.emplace(chain, arm);
   prepare_arcs();
-  if (resolution.arcs) move_cells(budget);
+  if (resolution.arcs) place_off_grid_nodes(budget);
 }
 
 std::vector<ArmPlane> carried_planes(const SrsArm& arm, const ToolPath& path, const Budget& budget) {
@@ -230,7 +230,7 @@ std::uint8_t SrsLattice::joints_outside(const Config& row) const {
 
 double SrsLattice::phi(int layer, int slot) const {
   if (layer == 0 && start_) return start_->phi;
-  if (const Moved* moved = find_moved(layer, slot)) return moved->phi;
+  if (const OffGridNode* moved = find_off_grid(layer, slot)) return moved->phi;
   return cell_angle(slot);
 }
 
@@ -262,7 +262,7 @@ void SrsLattice::lay_out(int layer, int first, int count, LayerNodes& out) const
   out.layer_ = layer;
   out.first_ = first;
   const bool start = layer == 0 && start_;
-  const std::uint8_t moved = moved_.empty() ? std::uint8_t{0} : moved_branches_[static_cast<std::size_t>(layer)];
+  const std::uint8_t moved = off_grid_.empty() ? std::uint8_t{0} : off_grid_branches_[static_cast<std::size_t>(layer)];
   const LayerNodes::Layout layout{id_, count, elbow_alive(layer, 0), elbow_alive(layer, 1), start, moved};
   if (layout == out.layout_ && !start) return;
   out.layout_ = layout;
@@ -412,7 +412,7 @@ void SrsLattice::solve_part(int elbow, int begin, int end, LayerNodes& out) cons
       mask[k] = excess <= 0 ? 0 : std::numeric_limits<double>::infinity();
     }
   }
-  for (const Moved& moved : this->moved(out.layer_)) {
+  for (const OffGridNode& moved : this->off_grid_nodes(out.layer_)) {
     const int solution = solution_of(moved.slot);
     if (elbow_side_of(solution) != elbow) continue;
     const LayerNodes::Offsets& own = out.at(solution);
@@ -443,7 +443,7 @@ void SrsLattice::copy_shared(int solution, int begin, int end, LayerNodes& out) 
 
 std::optional<Config> SrsLattice::node(int layer, int slot) const {
   if (layer == 0 && start_) return fault(0, slot).status == NodeStatus::kValid ? std::optional(start_->node) : std::nullopt;
-  if (const Moved* moved = find_moved(layer, slot)) return moved->q;
+  if (const OffGridNode* moved = find_off_grid(layer, slot)) return moved->q;
   const auto j = static_cast<std::size_t>(angle_of(slot));
   return solved(layer, slot, sine_[j], cosine_[j]);
 }
@@ -563,7 +563,7 @@ void SrsLattice::slots_with_same_body_poses(int layer, int slot, unsigned groups
     for (int winding = 0; winding < windings_; ++winding)
       for (int j = first; j <= last; ++j) out.push_back((solution + winding) * angles_ + j);
   }
-  if (all_angles || moved(layer).empty()) return;
+  if (all_angles || off_grid_nodes(layer).empty()) return;
   const double angle = phi(layer, slot);  // cells move IK solution by IK solution
   std::erase_if(out, [&](int other) { return phi(layer, other) != angle; });
 }

@@ -88,10 +88,10 @@ bool SrsLattice::proved_unreachable(int layer) const {
   return true;
 }
 
-void SrsLattice::move_cells(const Budget& budget) {
+void SrsLattice::place_off_grid_nodes(const Budget& budget) {
   const TraceSpan span("arcs");
-  moved_begin_.assign(1, 0);
-  moved_branches_.assign(static_cast<std::size_t>(layers()), 0);
+  off_grid_begin_.assign(1, 0);
+  off_grid_branches_.assign(static_cast<std::size_t>(layers()), 0);
   // Branches and windings share what their triples allow.
   std::array<std::vector<std::vector<AngleArc>>, 2> of_triple;  // [triple][sign, winding]
   std::array<std::vector<char>, 2> known;
@@ -116,14 +116,14 @@ void SrsLattice::move_cells(const Budget& budget) {
         };
         if (found(0).empty() || found(1).empty()) continue;
         common_arcs(found(0), found(1), arcs);
-        move_cells_of(layer, solution, arcs);
+        place_off_grid_nodes_of(layer, solution, arcs);
       }
     }
-    moved_begin_.push_back(moved_.size());
+    off_grid_begin_.push_back(off_grid_.size());
   }
 }
 
-void SrsLattice::move_cells_of(int layer, int solution, const std::vector<AngleArc>& arcs) {
+void SrsLattice::place_off_grid_nodes_of(int layer, int solution, const std::vector<AngleArc>& arcs) {
   struct Move {
     int cell;
     double phi, away;  // away: from the cell's own angle
@@ -165,15 +165,15 @@ void SrsLattice::move_cells_of(int layer, int solution, const std::vector<AngleA
     if ((near || !arm_->exact) && solved(layer, slot, sine_[own], cosine_[own])) continue;
     const auto q = solved(layer, slot, std::sin(move.phi), std::cos(move.phi));
     if (!q) continue;  // beside a singular pose
-    moved_.push_back({slot, move.phi, *q});
-    moved_branches_[static_cast<std::size_t>(layer)] |= static_cast<std::uint8_t>(1 << branch_of(slot));
+    off_grid_.push_back({slot, move.phi, *q});
+    off_grid_branches_[static_cast<std::size_t>(layer)] |= static_cast<std::uint8_t>(1 << branch_of(slot));
   }
 }
 
-const SrsLattice::Moved* SrsLattice::find_moved(int layer, int slot) const {
-  const std::span<const Moved> here = moved(layer);
+const SrsLattice::OffGridNode* SrsLattice::find_off_grid(int layer, int slot) const {
+  const std::span<const OffGridNode> here = off_grid_nodes(layer);
   const auto found =
-      std::lower_bound(here.begin(), here.end(), slot, [](const Moved& moved, int wanted) { return moved.slot < wanted; });
+      std::lower_bound(here.begin(), here.end(), slot, [](const OffGridNode& moved, int wanted) { return moved.slot < wanted; });
   return found != here.end() && found->slot == slot ? &*found : nullptr;
 }
 

@@ -122,7 +122,7 @@ class SrsLattice final : public Lattice {
   [[nodiscard]] double phi(int layer, int slot) const override;
   /// The most that phi may change along an edge, rad.
   [[nodiscard]] double most_turn() const {
-    return (window_ + (moved_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;  // both ends half a cell from the grid
+    return (window_ + (off_grid_.empty() ? 0 : 1)) * kTwoPi / angles_ + 1e-9;  // both ends half a cell from the grid
   }
   [[nodiscard]] int branch(int, int slot) const override { return branch_of(slot); }
   [[nodiscard]] int neighbour_in_redundancy(int layer, int slot, int by) const override;
@@ -148,16 +148,16 @@ class SrsLattice final : public Lattice {
   /// as well: within limits narrowed by the fit error.
   void arcs(int layer, int solution, std::vector<AngleArc>& out) const;
   /// A cell whose node does not stand at its own angle.
-  struct Moved {
+  struct OffGridNode {
     int slot = 0;
     double phi = 0;
     Config q;
   };
   /// Of a layer, in order of slots.
-  [[nodiscard]] std::span<const Moved> moved(int layer) const {
-    if (moved_.empty()) return {};
-    const std::size_t begin = moved_begin_[static_cast<std::size_t>(layer)];
-    return {moved_.data() + begin, moved_begin_[static_cast<std::size_t>(layer) + 1] - begin};
+  [[nodiscard]] std::span<const OffGridNode> off_grid_nodes(int layer) const {
+    if (off_grid_.empty()) return {};
+    const std::size_t begin = off_grid_begin_[static_cast<std::size_t>(layer)];
+    return {off_grid_.data() + begin, off_grid_begin_[static_cast<std::size_t>(layer) + 1] - begin};
   }
 
   // --- nodes of whole runs, in vector code
@@ -213,19 +213,19 @@ class SrsLattice final : public Lattice {
   void copy_shared(int solution, int begin, int end, LayerNodes& out) const;
   /// The grid angle of a slot's cell, rad.
   [[nodiscard]] double cell_angle(int slot) const { return -kPi + kTwoPi * angle_of(slot) / angles_; }
-  [[nodiscard]] const Moved* find_moved(int layer, int slot) const;
+  [[nodiscard]] const OffGridNode* find_off_grid(int layer, int slot) const;
   /// The node of a slot at an arm angle.
   [[nodiscard]] std::optional<Config> solved(int layer, int slot, double sine, double cosine) const;
   void prepare_arcs();
   void triple_arcs(int layer, int solution, int triple, std::vector<AngleArc>& out) const;
   [[nodiscard]] bool elbow_within(int layer, int solution) const;
-  void move_cells(const Budget& budget);
+  void place_off_grid_nodes(const Budget& budget);
   /// Of an IK solution, among the windings of a triple.
   [[nodiscard]] int triple_winding(int solution, int triple) const;
   [[nodiscard]] int triple_windings(int triple) const {
     return static_cast<int>(triple_limits_[static_cast<std::size_t>(triple)].size());
   }
-  void move_cells_of(int layer, int solution, const std::vector<AngleArc>& arcs);
+  void place_off_grid_nodes_of(int layer, int solution, const std::vector<AngleArc>& arcs);
   /// What a layer's shoulder (0) or wrist (1) triple asks of the kernel; the run and where its results go are the caller's.
   [[nodiscard]] TripleTask triple_task(const ElbowCircle& circle, int triple) const;
   [[nodiscard]] bool step_error_allowed(int layer, int a, int b) const override;
@@ -258,9 +258,9 @@ class SrsLattice final : public Lattice {
   std::optional<Start> start_;
   std::optional<PoseErrorModel> pose_error_model_;          // of an arm that is not exact
   std::array<std::vector<TripleLimits>, 2> triple_limits_;  // [triple][its winding]
-  std::vector<Moved> moved_;                                // empty too where resolution.arcs is off
-  std::vector<std::size_t> moved_begin_;                    // [layer], and the end
-  std::vector<std::uint8_t> moved_branches_;                // [layer], bits
+  std::vector<OffGridNode> off_grid_;                       // empty too where resolution.arcs is off
+  std::vector<std::size_t> off_grid_begin_;                 // [layer], and the end
+  std::vector<std::uint8_t> off_grid_branches_;             // [layer], bits
 };
 
 /// The planes of a path's layers, carried from the beginning of the whole path: where it begins at a start between two layers, that
