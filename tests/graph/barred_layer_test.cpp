@@ -95,7 +95,8 @@ TEST(PathFirst, SeesThatALayerIsBarred) {
       unbarred->sweep(lattice.layers() - 1);
       const bool only_by_table = unbarred->best() != kUnreachable;
 
-      for (const PathFirstOptions& options : {PathFirstOptions{.batch = 1}, {.batch = 32}, {.batch = 32, .grow_beside = true}}) {
+      for (const PathFirstOptions& options :
+           {PathFirstOptions{.batch = 1}, {.batch = 32}, {.batch = 32, .overlap_region_questions = true}}) {
         const auto cost_to_go = make_cost_to_go(lattice, Pruning::kByBound);
         cost_to_go->sweep(lattice.layers() - 1);
         SearchCounters counters;

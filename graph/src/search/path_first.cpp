@@ -156,11 +156,11 @@ class Search {
     const auto at = [](int layer) { return static_cast<std::size_t>(layer); };
     asked_ = 0;
     failed_on_path_.clear();
-    left_to_grow_ = most_grown();
+    region_questions_left_ = most_region_questions();
     // Where paths cost so much more than the first, obstacles block most of them, and each path
     // would find a little more of the same region.
-    if (!beyond_reach_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
-      grow_on();
+    if (!deferred_.empty() && cost_to_go_.best() > kMuchDearer * first_cost_) {
+      expand_reached_regions();
       for (int i = 0; i < layers; ++i)
         if (verdicts_.node(i, path[at(i)]) == Verdict::kRemoved) return false;
     }
@@ -186,7 +186,7 @@ class Search {
     const auto known = layers - static_cast<std::int64_t>(open.size());
     bool all = true;
     std::vector<Question> some;
-    for (std::size_t next = 0; next < open.size() && (all || asked_ < options_.worth_a_round);) {
+    for (std::size_t next = 0; next < open.size() && (all || asked_ < options_.min_questions_per_iteration);) {
       cost_to_go_.budget().poll(Stage::kSearch, known + static_cast<std::int64_t>(next), layers);
       some.clear();
       for (; next < open.size() && some.size() < batch(); ++next)
@@ -197,7 +197,7 @@ class Search {
       all = false;
       if constexpr (std::is_same_v<Question, NodeQuestion>)
         failed_on_path_.insert(failed_on_path_.end(), failed.begin(), failed.end());
-      grow(failed);
+      expand_failed_region(failed);
     }
     return all;
   }
@@ -227,7 +227,7 @@ class Search {
     const auto ask_from = [&](int first, int step) {
       for (int slot = first; slot < slots;) {
         questions.clear();
-        for (; slot < slots && questions.size() < kGrownAtOnce; slot += step) {
+        for (; slot < slots && questions.size() < kRegionQuestionsAtOnce; slot += step) {
           const Verdict known = verdicts_.node(like.layer, slot);
           if (known == Verdict::kValid) return false;
           if (known == Verdict::kRemoved) continue;
@@ -246,22 +246,22 @@ class Search {
   /// is asked only whether the scene blocks them: proving them valid involves the robot's own
   /// pairs, too, which take long since they are near by design, and few of these nodes come to lie
   /// on a path.
-  void grow(const std::vector<Failure>& failed) {
+  void expand_failed_region(const std::vector<Failure>& failed) {
     std::deque<Failure> frontier;
-    grow(failed, frontier);
+    expand_failed_region(failed, frontier);
   }
 
   /// Continues regions that ended at nodes which no path reached at the cost of that time, and
   /// which paths reach by now.
-  void grow_on() {
+  void expand_reached_regions() {
     std::deque<Failure> frontier;
-    std::erase_if(beyond_reach_, [&](const Failure& x) {
+    std::erase_if(deferred_, [&](const Failure& x) {
       const bool known = verdicts_.node(x.layer, x.slot) != Verdict::kUnknown;
       if (!known && cost_to_go_.at(x.layer, x.slot) == kUnreachable) return false;
       if (!known) frontier.push_back(x);
       return true;
     });
-    grow({}, frontier);
+    expand_failed_region({}, frontier);
   }
 
   /// Neighbours of a region that are asked about at once.
@@ -276,7 +276,7 @@ class Search {
     }
     [[nodiscard]] bool has(std::int64_t key) const { return std::find(keys.begin(), keys.end(), key) != keys.end(); }
   };
-  void grow(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
+  void expand_failed_region(const std::vector<Failure>& failed, std::deque<Failure>& frontier) {
     const auto add = [&](int layer, int slot, FailureId failure) {
       if (slot >= 0 && verdicts_.node(layer, slot) == Verdict::kUnknown) frontier.push_back({layer, slot, failure});
     };
@@ -294,8 +294,9 @@ class Search {
     // that there mostly is another.
     const auto most = [&] {
       constexpr std::size_t kFewest = 16;
-      const std::size_t at_once = options_.grow_beside ? std::max(kFewest, frontier.size() / 2) : kGrownAtOnce;
-      return std::min({at_once, kGrownAtOnce, static_cast<std::size_t>(left_to_grow_)});
+      const std::size_t at_once =
+          options_.overlap_region_questions ? std::max(kFewest, frontier.size() / 2) : kRegionQuestionsAtOnce;
+      return std::min({at_once, kRegionQuestionsAtOnce, static_cast<std::size_t>(region_questions_left_)});
     };
     const auto fill = [&](Wave& wave, const Wave& asked) {
       for (const std::size_t enough = most(); !frontier.empty() && wave.questions.size() < enough;) {
@@ -304,7 +305,7 @@ class Search {
         if (verdicts_.node(layer, slot) != Verdict::kUnknown) continue;
         if (wave.has(key(layer, slot)) || asked.has(key(layer, slot))) continue;
         if (cost_to_go_.at(layer, slot) == kUnreachable) {
-          beyond_reach_.push_back({layer, slot, failure});
+          deferred_.push_back({layer, slot, failure});
           continue;
         }
         if (const auto known = clear_of_scene_.find(key(layer, slot)); known != clear_of_scene_.end() && known->second == failure)
@@ -312,7 +313,7 @@ class Search {
         wave.questions.push_back({layer, slot, cost_to_go_.config(layer, slot), failure, failure != kNoFailure});
         wave.keys.push_back(key(layer, slot));
       }
-      left_to_grow_ -= static_cast<int>(wave.questions.size());
+      region_questions_left_ -= static_cast<int>(wave.questions.size());
       wave.answers.assign(wave.questions.size(), {});
     };
     const auto take_wave = [&](Wave& wave) {
@@ -321,7 +322,7 @@ class Search {
     };
     Wave before, now, next;
     for (fill(now, before); !now.questions.empty();) {
-      if (options_.grow_beside)
+      if (options_.overlap_region_questions)
         validity_.nodes_beside(now.questions, now.answers, [&] {
           const TraceSpan span("neighbours");
           take_wave(before);
@@ -339,7 +340,7 @@ class Search {
 
   /// Asks about the region of failing edges around those just found: neighbours of a failing edge,
   /// and its continuations along the path, often fail as it does.
-  void grow(const std::vector<EdgeQuestion>& failed) {
+  void expand_failed_region(const std::vector<EdgeQuestion>& failed) {
     struct Edge {
       int layer, a, b;
       bool operator==(const Edge&) const = default;
@@ -361,10 +362,10 @@ class Search {
     for (const EdgeQuestion& edge : failed) add_neighbours(edge);
     std::vector<Edge> asked;
     std::vector<EdgeQuestion> questions;
-    for (int& left = left_to_grow_; left > 0 && !frontier.empty();) {
+    for (int& left = region_questions_left_; left > 0 && !frontier.empty();) {
       asked.clear();
       questions.clear();
-      while (!frontier.empty() && questions.size() < std::min(kGrownAtOnce, static_cast<std::size_t>(left))) {
+      while (!frontier.empty() && questions.size() < std::min(kRegionQuestionsAtOnce, static_cast<std::size_t>(left))) {
         const Edge x = frontier.front();
         frontier.pop_front();
         if (cost_to_go_.at(x.layer, x.a) == kUnreachable || cost_to_go_.at(x.layer + 1, x.b) == kUnreachable ||
@@ -381,8 +382,9 @@ class Search {
       for (const EdgeQuestion& edge : ask(std::span<const EdgeQuestion>(questions))) add_neighbours(edge);
     }
   }
-  [[nodiscard]] int most_grown() const {
-    return options_.grow + static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.grow_one_in, 1'000'000));
+  [[nodiscard]] int most_region_questions() const {
+    return options_.region_questions +
+           static_cast<int>(std::min<std::int64_t>(lattice_.nodes() / options_.nodes_per_region_question, 1'000'000));
   }
 
   /// Notes the answers to questions about nodes. Returns the nodes that failed.
@@ -445,13 +447,13 @@ class Search {
   int cost_reach_ = 0;                   // neighbours on either side that costs_more() asks about
   std::int64_t asked_ = 0;               // questions in this round
   std::vector<Failure> failed_on_path_;  // in this round
-  int left_to_grow_ = 0;                 // questions about neighbours left in this round
-  static constexpr std::size_t kGrownAtOnce = 32;
-  // By key(): the failure that grow() asked about last, of nodes that the scene did not block.
+  int region_questions_left_ = 0;        // questions about neighbours left in this round
+  static constexpr std::size_t kRegionQuestionsAtOnce = 32;
+  // By key(): the failure that expand_failed_region() asked about last, of nodes that the scene did not block.
   std::unordered_map<std::int64_t, FailureId> clear_of_scene_;
   static constexpr double kMuchDearer = 1.2;
-  double first_cost_ = 0;              // cost of the first path
-  std::vector<Failure> beyond_reach_;  // nodes at which regions ended
+  double first_cost_ = 0;          // cost of the first path
+  std::vector<Failure> deferred_;  // nodes at which regions ended
   FailFirst fail_first_;
   std::vector<NodeAnswer> answers_;
   std::vector<std::uint8_t> edge_answers_;

@@ -54,7 +54,8 @@ Found search_lazily(CostToGo& cost_to_go, bool swept, Validity& validity, const 
   if (options.hooks.check)
     path_first_options.batch = 32;
   else if (options.planner == PlannerKind::kParallel)
-    path_first_options = {.batch = 16, .worth_a_round = 128, .grow_beside = shares_work(cost_to_go.lattice())};
+    path_first_options = {
+        .batch = 16, .min_questions_per_iteration = 128, .overlap_region_questions = shares_work(cost_to_go.lattice())};
   try {
     if (!swept) {
       check_failure_hints(cost_to_go, validity, failure_hints);

@@ -59,14 +59,14 @@ struct PathFirstOptions {
   int batch = 1;  ///< questions asked at once; answers, not their timing, decide what follows
   /// A path that has failed is asked about further until the round has asked so many questions,
   /// which take about as long as a repair and the next path.
-  int worth_a_round = 64;
+  int min_questions_per_iteration = 64;
   /// Most questions in a round about the neighbours of failed nodes: `grow`, and one more for every
-  /// `grow_one_in` nodes of the lattice, since an obstacle blocks more nodes of a finer lattice,
+  /// `nodes_per_region_question` nodes of the lattice, since an obstacle blocks more nodes of a finer lattice,
   /// and a round costs more.
-  int grow = 64, grow_one_in = 64;
+  int region_questions = 64, nodes_per_region_question = 64;
   /// True: neighbours are asked about on other threads while the caller takes the answers about
   /// those before them.
-  bool grow_beside = false;
+  bool overlap_region_questions = false;
 };
 
 /// The work of a search.
