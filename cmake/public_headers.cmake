@@ -34,7 +34,7 @@ set(SWIVEL_PUBLIC_HEADERS
   swivel/collision/world/world.hpp
   swivel/graph/cost_to_go/cost_to_go.hpp
   swivel/graph/lattice_graph/implicit_lattice.hpp
-  swivel/graph/verdicts/shared_work.hpp
+  swivel/graph/verdicts/parallel_for.hpp
   swivel/graph/verdicts/verdicts.hpp
   swivel/planner/certificate/infeasibility_certificate.hpp
   swivel/planner/measure/measure.hpp

@@ -56,20 +56,20 @@ void Executor::for_each(int count, const std::function<void(int, int)>& body) {
   for (int index = 0; index < count; ++index) body(index, 0);
 }
 
-void Executor::begin_brief() {
+void Executor::start_helpers() {
   if (impl_->threads == 1) return;
   if (!impl_->helpers)
     impl_->helpers = std::make_unique<detail::Helpers>(impl_->in_arena(), std::min(kMostHelpers, impl_->threads - 1));
   impl_->helpers->start();
 }
 
-void Executor::for_each_beside(int count, const std::function<void(int, int)>& body, const std::function<void()>& work) {
+void Executor::for_each_overlapped(int count, const std::function<void(int, int)>& body, const std::function<void()>& work) {
   if (count > 0 && impl_->helpers && impl_->helpers->any()) return impl_->helpers->share(0, count, body, &work);
   work();
-  for_each_brief(count, body);
+  for_each_short(count, body);
 }
 
-void Executor::for_each_brief(int count, const std::function<void(int, int)>& body) {
+void Executor::for_each_short(int count, const std::function<void(int, int)>& body) {
   if (impl_->threads == 1 || count <= 1) {
     for (int index = 0; index < count; ++index) body(index, 0);
     return;
@@ -80,7 +80,7 @@ void Executor::for_each_brief(int count, const std::function<void(int, int)>& bo
     const Clock::duration lasted = Clock::now() - begin;
     const Clock::duration left = index > 0 ? lasted / index * (count - index) : Clock::duration(0);
     if (left > kWorthSharing && impl_->alone + left > (impl_->helpers ? kWorthWaking : kWorthBeginning)) {
-      begin_brief();
+      start_helpers();
       impl_->alone = Clock::duration(0);
       return impl_->helpers->share(index, count, body);
     }

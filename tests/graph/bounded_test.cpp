@@ -59,7 +59,7 @@ std::vector<std::vector<double>> cost_to_come(GridCostToGo& whole) {
 }
 
 /// Three threads, made for every call.
-SharedWork shared_by_threads() {
+ParallelFor shared_by_threads() {
   return {3, [](int parts, const std::function<void(int, int)>& body) {
             std::atomic<int> next{0};
             std::vector<std::thread> threads;

@@ -29,7 +29,7 @@ void keep_busy(int steps) {
 
 TEST(Executor, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
   using Method = void (Executor::*)(int, const std::function<void(int, int)>&);
-  for (const Method for_each : {Method(&Executor::for_each), Method(&Executor::for_each_brief)})
+  for (const Method for_each : {Method(&Executor::for_each), Method(&Executor::for_each_short)})
     for (const int threads : {1, 2, 3, 8}) {
       Executor executor(threads);
       EXPECT_EQ(executor.threads(), threads);
@@ -57,10 +57,10 @@ TEST(Executor, EveryIndexIsVisitedOnceAndExceptionsArePassedOn) {
 
 TEST(Executor, WorkBesideACallMayNotShareItself) {
   Executor executor(2);
-  executor.begin_brief();
+  executor.start_helpers();
   const auto nothing = [](int, int) {};
-  EXPECT_THROW(executor.for_each_beside(4, nothing, [&] { executor.for_each_brief(4, nothing); }), std::logic_error);
-  executor.for_each_brief(4, nothing);
+  EXPECT_THROW(executor.for_each_overlapped(4, nothing, [&] { executor.for_each_short(4, nothing); }), std::logic_error);
+  executor.for_each_short(4, nothing);
 }
 
 /// Calls of some microseconds each, with pauses in which helpers stay awake or fall asleep, and some that throw.
@@ -70,9 +70,9 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
   for (const int threads : {1, 2, 3, 8}) {
     Executor executor(threads);
     if (threads == 3)
-      executor.begin_brief();
+      executor.start_helpers();
     else
-      executor.for_each_brief(40, [&](int, int) { keep_busy(1'000'000); });  // begins threads, too
+      executor.for_each_short(40, [&](int, int) { keep_busy(1'000'000); });  // begins threads, too
     std::vector<int> visits;
     for (int call = 0; call < trials(2000); ++call) {
       const int count = random.below(20), steps = random.below(2000);
@@ -91,7 +91,7 @@ TEST(Executor, BriefCallsInARowVisitEveryIndexOnce) {
         ++worked;
         if (work_fails) throw std::invalid_argument("y");
       };
-      const auto call_it = [&] { beside ? executor.for_each_beside(count, body, work) : executor.for_each_brief(count, body); };
+      const auto call_it = [&] { beside ? executor.for_each_overlapped(count, body, work) : executor.for_each_short(count, body); };
       if (beside && work_fails) {
         ASSERT_THROW(call_it(), std::invalid_argument);
         ++thrown;
@@ -117,7 +117,7 @@ TEST(Executor, AProcessThatForksNeedNotWaitForHelpers) {
   auto executor = std::make_unique<Executor>(4);
   const auto work = [&] {
     std::atomic<int> sum{0};
-    executor->for_each_brief(40, [&](int index, int) {
+    executor->for_each_short(40, [&](int index, int) {
       keep_busy(1'000'000);
       sum += index;
     });
@@ -146,7 +146,7 @@ int loops_until_helped(Executor& executor) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   int loops = 0;
   for (; executor.helped() < 1000 && std::chrono::steady_clock::now() < end; ++loops)
-    executor.for_each_brief(50, [](int, int) { keep_busy(5000); });
+    executor.for_each_short(50, [](int, int) { keep_busy(5000); });
   return loops;
 }
 
@@ -155,9 +155,9 @@ TEST(Executor, WhatTheCallerDoesNotCallItselfIsCalledInTbbsArena) {
   Executor executor(2);
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<std::int64_t> elsewhere{0}, outside{0};
-  executor.begin_brief();
+  executor.start_helpers();
   for (int loop = 0; loop < 20'000 && elsewhere < 1000; ++loop)
-    executor.for_each_brief(50, [&](int, int worker) {
+    executor.for_each_short(50, [&](int, int worker) {
       keep_busy(500);
       if (std::this_thread::get_id() == caller) return;
       ++elsewhere;
@@ -173,8 +173,8 @@ TEST(Executor, AProgramsOwnLimitOfTbbIsKept) {
   Executor executor(4);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    executor.begin_brief();
-    for (int loop = 0; loop < 100; ++loop) executor.for_each_brief(50, [](int, int) { keep_busy(5000); });
+    executor.start_helpers();
+    for (int loop = 0; loop < 100; ++loop) executor.for_each_short(50, [](int, int) { keep_busy(5000); });
     EXPECT_EQ(executor.helped(), 0);
   }
   EXPECT_GT(loops_until_helped(executor), 0);
@@ -185,7 +185,7 @@ TEST(Executor, LimitsNoOtherWorkOfTheProgram) {
   const std::size_t before = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   Executor executor(1 < before ? 2 : 1);
   executor.for_each(10, [](int, int) {});
-  executor.begin_brief();
+  executor.start_helpers();
   EXPECT_EQ(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), before);
 }
 #endif

@@ -323,7 +323,7 @@ class Search {
     Wave before, now, next;
     for (fill(now, before); !now.questions.empty();) {
       if (options_.overlap_region_questions)
-        validity_.nodes_beside(now.questions, now.answers, [&] {
+        validity_.nodes_overlapped(now.questions, now.answers, [&] {
           const TraceSpan span("neighbours");
           take_wave(before);
           fill(next, now);

@@ -54,8 +54,8 @@ int chunks_of(const PlanOptions& options, const Lattice& lattice) {
   return static_cast<int>(std::clamp(lattice.nodes() / kNodesPerChunk, kFewest, kMost));
 }
 
-SharedWork shared_with(Executor& threads) {
-  return {threads.threads(), [&threads](int parts, const auto& body) { threads.for_each_brief(parts, body); }};
+ParallelFor shared_with(Executor& threads) {
+  return {threads.threads(), [&threads](int parts, const auto& body) { threads.for_each_short(parts, body); }};
 }
 
 /// The explicit graph keeps about 64 bytes a node and 56 an edge.
@@ -355,8 +355,8 @@ struct Planner::Impl {
           make_cost_to_go(lattice, lattice.layers() < kFewLayers ? Pruning::kNone : Pruning::kByBound, budget, std::move(recycled));
     if (single_use) cost_to_go->set_single_use();
     const bool shares = shares_work(lattice);
-    if (shares) threads.begin_brief();
-    cost_to_go->share(shares ? shared_with(threads) : SharedWork());
+    if (shares) threads.start_helpers();
+    cost_to_go->share(shares ? shared_with(threads) : ParallelFor());
     const bool swept = cost_to_go->restart(budget);
     std::optional<World> changed;
     if (remembered) {

@@ -71,17 +71,17 @@ void CollisionValidity::ask_open(const Ask& ask, const std::function<void()>* wo
       at(index, worker, chunks_[static_cast<std::size_t>(chunk)]);
   };
   if (work)
-    executor_->for_each_beside(runs, ask_run, *work);
+    executor_->for_each_overlapped(runs, ask_run, *work);
   else
-    executor_->for_each_brief(runs, ask_run);
+    executor_->for_each_short(runs, ask_run);
 }
 
 void CollisionValidity::nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) {
   ask_nodes(questions, answers, nullptr);
 }
 
-void CollisionValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                                     const std::function<void()>& work) {
+void CollisionValidity::nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                         const std::function<void()>& work) {
   ask_nodes(questions, answers, &work);
 }
 

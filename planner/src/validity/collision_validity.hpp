@@ -28,8 +28,8 @@ class CollisionValidity final : public Validity {
                     ClearanceMemory* memory = nullptr, const World* changed = nullptr);
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
-  void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                    const std::function<void()>& work) override;
+  void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                        const std::function<void()>& work) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override;
 

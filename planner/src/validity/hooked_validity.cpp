@@ -20,9 +20,9 @@ void HookedValidity::nodes(std::span<const NodeQuestion> questions, std::span<No
     if (open(k)) answers[k].valid = *allowed++;
 }
 
-void HookedValidity::nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                                  const std::function<void()>& work) {
-  check_ ? Validity::nodes_beside(questions, answers, work) : first_->nodes_beside(questions, answers, work);
+void HookedValidity::nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                      const std::function<void()>& work) {
+  check_ ? Validity::nodes_overlapped(questions, answers, work) : first_->nodes_overlapped(questions, answers, work);
 }
 
 void HookedValidity::edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) {

@@ -16,8 +16,8 @@ class HookedValidity final : public Validity {
       : lattice_(&lattice), first_(&first), check_(hooks.check, budget), cost_(hooks.cost, lattice, budget) {}
 
   void nodes(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers) override;
-  void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                    const std::function<void()>& work) override;
+  void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                        const std::function<void()>& work) override;
   void edges(std::span<const EdgeQuestion> questions, std::span<std::uint8_t> answers) override;
   [[nodiscard]] bool asks_edges() const override { return first_->asks_edges() || check_.checks_motions(); }
   void costs(std::span<const NodeQuestion> questions, std::span<double> costs) override;

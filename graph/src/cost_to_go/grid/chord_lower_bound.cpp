@@ -75,7 +75,7 @@ struct alignas(64) Circle {
 class Chords {
  public:
   /// Prepares chords between the layers c * stride, c = 0, 1, ..., and the last.
-  Chords(const SrsLattice& lattice, int stride, const Budget& budget, const SharedWork& work)
+  Chords(const SrsLattice& lattice, int stride, const Budget& budget, const ParallelFor& work)
       : lattice_(lattice),
         stride_(stride),
         budget_(budget),
@@ -257,7 +257,7 @@ class Chords {
   const SrsLattice& lattice_;
   int stride_;
   const Budget& budget_;
-  const SharedWork& work_;
+  const ParallelFor& work_;
   int n_, window_;
   RelaxTask<float> task_;
   double lost_ = 0;
@@ -268,7 +268,7 @@ class Chords {
 
 }  // namespace
 
-ChordLowerBound::ChordLowerBound(const SrsLattice& lattice, const Budget& budget, const SharedWork& work)
+ChordLowerBound::ChordLowerBound(const SrsLattice& lattice, const Budget& budget, const ParallelFor& work)
     : stride_(stride_of(lattice)), last_(lattice.layers() - 1), width_(lattice.width()) {
   const TraceSpan span("coarse bound");
   Chords chords(lattice, stride_, budget, work);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "swivel/core/lattice/kinds/srs_lattice.hpp"
-#include "swivel/graph/verdicts/shared_work.hpp"
+#include "swivel/graph/verdicts/parallel_for.hpp"
 
 namespace swivel {
 
@@ -17,7 +17,7 @@ namespace swivel {
 class ChordLowerBound {
  public:
   /// Computes the bounds. Throws Stopped.
-  explicit ChordLowerBound(const SrsLattice& lattice, const Budget& budget = {}, const SharedWork& work = {});
+  explicit ChordLowerBound(const SrsLattice& lattice, const Budget& budget = {}, const ParallelFor& work = {});
 
   /// Returns the least bound over the last layer: infinite where some layer stops every path, and
   /// no bound where costs exceed single precision.

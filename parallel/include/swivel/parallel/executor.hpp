@@ -29,15 +29,15 @@ class Executor {
   /// awake. No thread is started before that. Helpers, at most 7, are tasks of a TBB arena that
   /// wait 2 ms for the next loop. Rethrows an exception that a body threw. Throws std::logic_error
   /// if called from within a body that is shared.
-  void for_each_brief(int count, const std::function<void(int index, int worker)>& body);
+  void for_each_short(int count, const std::function<void(int index, int worker)>& body);
   /// Runs `work` on the caller's thread and calls body(index, worker) for each index = 0 ... count
-  /// - 1 as for_each_brief() does: on helpers meanwhile if any are awake, else after `work`. `work`
+  /// - 1 as for_each_short() does: on helpers meanwhile if any are awake, else after `work`. `work`
   /// must not share work itself. Rethrows what `work` threw, else what a body threw.
-  void for_each_beside(int count, const std::function<void(int index, int worker)>& body, const std::function<void()>& work);
-  /// Starts the helpers of for_each_brief() now, for a caller that expects enough work to share.
+  void for_each_overlapped(int count, const std::function<void(int index, int worker)>& body, const std::function<void()>& work);
+  /// Starts the helpers of for_each_short() now, for a caller that expects enough work to share.
   /// Does nothing with one thread.
-  void begin_brief();
-  /// Returns how many indices of for_each_brief() and for_each_beside() ran on helpers; all others
+  void start_helpers();
+  /// Returns how many indices of for_each_short() and for_each_overlapped() ran on helpers; all others
   /// ran on the caller's thread.
   [[nodiscard]] std::int64_t helped() const;
 

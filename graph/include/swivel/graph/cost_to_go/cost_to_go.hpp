@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "swivel/core/lattice/lattice.hpp"
-#include "swivel/graph/verdicts/shared_work.hpp"
+#include "swivel/graph/verdicts/parallel_for.hpp"
 #include "swivel/graph/verdicts/verdicts.hpp"
 
 namespace swivel {
@@ -38,7 +38,7 @@ class CostToGo {
   [[nodiscard]] bool restart(const Budget& budget);
   /// Sets the threads to share work with from now on; without this call there are none. Values are
   /// the same, bit for bit.
-  void share(const SharedWork& work) { work_ = work; }
+  void share(const ParallelFor& work) { work_ = work; }
   /// Declares that restart() will not be called, so that nothing need be kept for it.
   void set_single_use() { restarts_ = false; }
 
@@ -99,7 +99,7 @@ class CostToGo {
   virtual void restore() = 0;
 
   Budget budget_;
-  SharedWork work_;
+  ParallelFor work_;
   int goal_ = 0;
   Verdicts verdicts_;
   std::int64_t ik_nodes_ = 0, edges_ = 0;

@@ -56,8 +56,8 @@ class Validity {
   /// Answers like nodes(), on other threads if there are any while the caller does `work`; without
   /// threads `work` comes first. `work` must ask nothing and touch neither span. If it throws, this
   /// function throws the same, and answers may be missing.
-  virtual void nodes_beside(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
-                            const std::function<void()>& work) {
+  virtual void nodes_overlapped(std::span<const NodeQuestion> questions, std::span<NodeAnswer> answers,
+                                const std::function<void()>& work) {
     work();
     nodes(questions, answers);
   }

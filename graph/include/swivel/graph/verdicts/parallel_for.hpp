@@ -5,7 +5,7 @@
 namespace swivel {
 
 /// Runs work in independent parts: by the caller alone, or by threads that the caller lends.
-struct SharedWork {
+struct ParallelFor {
   int threads = 1;
   /// Calls body(part, worker) for part = 0 ... parts - 1, worker in 0 ... threads - 1, each worker
   /// on one thread at a time.
