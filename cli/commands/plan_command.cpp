@@ -153,12 +153,12 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     }
     result.time_ms["certificate"] = milliseconds_since(start_of_proof);
   }
-  const io::Aftermath aftermath{plan.refinement ? &*plan.refinement : nullptr,
-                                plan.motion ? &*plan.motion : nullptr,
-                                timing.value_or(TimingOptions{}),
-                                advice ? &*advice : nullptr,
-                                proof ? &*proof : nullptr,
-                                certificate.size()};
+  const io::PlanExtras extras{plan.refinement ? &*plan.refinement : nullptr,
+                              plan.motion ? &*plan.motion : nullptr,
+                              timing.value_or(TimingOptions{}),
+                              advice ? &*advice : nullptr,
+                              proof ? &*proof : nullptr,
+                              certificate.size()};
   std::optional<LatticeMap> map;
   std::string page;
   if (draws && result.status != PlanStatus::kTimeout && result.status != PlanStatus::kCancelled) {
@@ -169,7 +169,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
         PageMotion motion;
         if (plan.refinement && plan.refinement->refined) motion.refined = &result.trajectory;
         if (plan.motion && plan.motion->motion) motion.motion = &*plan.motion->motion;
-        page = to_page(view, *map, io::to_json(result, aftermath), motion, budget,
+        page = to_page(view, *map, io::to_json(result, extras), motion, budget,
                        {arguments.episode.words(), answer_text(result) + (advice ? advice_text(*advice) : "")});
       }
     } catch (const Stopped&) {
@@ -200,7 +200,7 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
     outputs->remove("--map-svg");
   }
   if (timeline) outputs->write("--trace", io::to_trace_json(*timeline) + "\n");
-  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result, aftermath) + "\n");
+  if (outputs->wants("--json")) outputs->write("--json", io::to_json(result, extras) + "\n");
   const char* const reason = result.status == PlanStatus::kInfeasible        ? "there is no path now"
                              : executable && outputs->wants("--certificate") ? "there is a path now"
                              : solved && !plan.stopped                       ? "there is no motion now"
@@ -208,8 +208,8 @@ int plan_problem(const PlanArguments& arguments, std::optional<io::OutputFiles>&
   deliver(*outputs, reason, [&] {
     if (!arguments.quiet && !outputs->takes_standard_output()) {
       print_summary(result);
-      print_aftermath(aftermath, result.joint_names);
-      if (proof) say_text(certificate_text(*proof, aftermath.certificate_bytes));
+      print_plan_extras(extras, result.joint_names);
+      if (proof) say_text(certificate_text(*proof, extras.certificate_bytes));
       if (advice) say_text(advice_text(*advice));
     }
     if (!arguments.quiet && timeline) print_self_times(*timeline);

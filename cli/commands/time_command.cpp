@@ -31,7 +31,7 @@ std::vector<TrajectoryRow> refined(const PreparedRobot& robot, const Problem& pr
                                    bool quiet) {
   const Problem smoothed = with_motion_defaults(problem);
   const Refined result = refine(robot, smoothed, rows_on_path(robot, smoothed, rows), {}, Budget(std::nullopt, &interrupted));
-  if (!quiet) print_aftermath({.refinement = &result, .motion = nullptr, .timing = {}}, robot.arm().chain.joint_names);
+  if (!quiet) print_plan_extras({.refinement = &result, .motion = nullptr, .timing = {}}, robot.arm().chain.joint_names);
   return result.rows;
 }
 

@@ -42,20 +42,20 @@ void require_motion_format(const std::string& file) {
   if (!file.empty()) in_the_name_of("--out", [&] { io::require_motion_format(file); });
 }
 
-void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names) {
-  if (const Refined* refined = aftermath.refinement) {
+void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names) {
+  if (const Refined* refined = extras.refinement) {
     if (refined->refined)
       say("refined: cost %.6g before, %.6g now; joints bend by at most %.3g rad/m^2 before, %.3g now\n", refined->cost_before,
           refined->cost, refined->bend_before, refined->bend);
     else
       say("not refined: %s\n", refined->reason.c_str());
   }
-  if (aftermath.motion == nullptr) return;
-  if (const auto& failure = aftermath.motion->failure) {
+  if (extras.motion == nullptr) return;
+  if (const auto& failure = extras.motion->failure) {
     say("not executable: s = %.4f m: %s\n", failure->s, failure->reason.c_str());
     return;
   }
-  const TimedPath& motion = *aftermath.motion->motion;
+  const TimedPath& motion = *extras.motion->motion;
   const TimedPath::Peak* most = &motion.peaks[0][0];
   JointRate rate = JointRate::kSpeed;
   for (const JointRate one : {JointRate::kSpeed, JointRate::kAcceleration, JointRate::kJerk})

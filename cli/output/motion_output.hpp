@@ -25,7 +25,7 @@ struct MotionOptions {
 void require_motion_format(const std::string& file);
 
 /// What became of a plan's path, in a line each, on standard output; warnings on standard error.
-void print_aftermath(const io::Aftermath& aftermath, const io::JointNames& joint_names);
+void print_plan_extras(const io::PlanExtras& extras, const io::JointNames& joint_names);
 
 /// What is worth knowing of a motion, on standard output; warnings on standard error.
 void print_motion(const TimedPath& motion, const io::JointNames& joint_names);

@@ -294,10 +294,10 @@ std::string error_json(const std::string& message) {
 }
 
 std::string to_json(const PlanResult& result) {
-  return to_json(result, Aftermath{});
+  return to_json(result, PlanExtras{});
 }
 
-std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
+std::string to_json(const PlanResult& result, const PlanExtras& extras) {
   const bool solved = result.status == PlanStatus::kSolved;
   // Numbers about a trajectory are null where there is none: a zero would read as a perfect one.
   const auto if_known = [&](bool known, double value) { return solved && known ? Json(value) : Json(nullptr); };
@@ -320,12 +320,11 @@ std::string to_json(const PlanResult& result, const Aftermath& aftermath) {
   json["deepest_contact"] = result.deepest_contact ? contact_json(*result.deepest_contact) : Json(nullptr);
   json["min_manipulability"] = if_known(evidence.postures, result.min_manipulability);
   json["arm_angle"] = result.arm_angle;
-  json["refinement"] = aftermath.refinement ? refinement_json(*aftermath.refinement) : Json(nullptr);
-  json["motion"] = aftermath.motion ? motion_json(*aftermath.motion, aftermath.timing, result.joint_names) : Json(nullptr);
+  json["refinement"] = extras.refinement ? refinement_json(*extras.refinement) : Json(nullptr);
+  json["motion"] = extras.motion ? motion_json(*extras.motion, extras.timing, result.joint_names) : Json(nullptr);
   json["diagnosis"] = result.status == PlanStatus::kInfeasible ? diagnosis_json(result.diagnosis) : Json(nullptr);
-  json["advice"] = aftermath.advice ? advice_json(*aftermath.advice) : Json(nullptr);
-  json["certificate"] =
-      aftermath.certificate ? certificate_json(*aftermath.certificate, aftermath.certificate_bytes) : Json(nullptr);
+  json["advice"] = extras.advice ? advice_json(*extras.advice) : Json(nullptr);
+  json["certificate"] = extras.certificate ? certificate_json(*extras.certificate, extras.certificate_bytes) : Json(nullptr);
   json["trajectory"] = trajectory_json(result.trajectory);
   json["partial"] = trajectory_json(result.partial);
   json["robot_pairs"] = {{"dropped", dropped_json(result.dropped_pairs)}, {"reduced", reduced_json(result.reduced_pairs)}};

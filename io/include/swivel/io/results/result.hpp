@@ -28,7 +28,7 @@ namespace swivel::io {
 [[nodiscard]] std::string to_trace_json(const Timeline& timeline);
 
 /// What followed a plan. A pointer is null if it was not asked for or does not exist.
-struct Aftermath {
+struct PlanExtras {
   const Refined* refinement = nullptr;
   const TimingResult* motion = nullptr;
   TimingOptions timing;                                   ///< the options that the motion was timed with
@@ -38,6 +38,6 @@ struct Aftermath {
 };
 /// Returns RESULT.json as text, as to_json(result) does, with the keys `refinement`, `motion`,
 /// `advice` and `certificate` filled in. docs/formats.md "Result".
-[[nodiscard]] std::string to_json(const PlanResult& result, const Aftermath& aftermath);
+[[nodiscard]] std::string to_json(const PlanResult& result, const PlanExtras& extras);
 
 }  // namespace swivel::io
