@@ -180,9 +180,9 @@ TEST(ArcLattice, NodesReachTheirPosesAndLieCloseTogether) {
           }
         }
         // Of a pair of arcs both have the same nodes, which continue each other's like.
-        for (int slot = 0, half = lattice.slots(i) / 2; motion.twins() && slot < lattice.slots(i); ++slot) {
+        for (int slot = 0, half = lattice.slots(i) / 2; motion.has_flipped_arcs() && slot < lattice.slots(i); ++slot) {
           const int other = slot < half ? slot + half : slot - half;
-          EXPECT_LT(lattice.delta(motion.twin(lattice.point(i, slot).q), lattice.point(i, other).q).norm(), 1e-9);
+          EXPECT_LT(lattice.delta(motion.flipped(lattice.point(i, slot).q), lattice.point(i, other).q).norm(), 1e-9);
           const int before = lattice.point(i, slot).along[0];
           if (before < 0) continue;
           const int half_before = lattice.slots(i - 1) / 2;

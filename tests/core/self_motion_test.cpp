@@ -165,12 +165,12 @@ TEST(SelfMotion, MissesNoArcThatRandomSeedsFind) {
 TEST(SelfMotion, TwinsOfArcsAreTheOtherArcs) {
   Random random(seed("SelfMotion.TwinsOfArcsAreTheOtherArcs"));
   const Chain bounded = chain_of(arms_6r()[2]), shoulder = chain_of(arms_7r()[0]);
-  EXPECT_FALSE(SelfMotion(bounded, lock_method(bounded), 0).twins());    // joint 4 turns by 320 degrees
-  EXPECT_FALSE(SelfMotion(shoulder, lock_method(shoulder), 0).twins());  // joints 1 and 3 by 332
+  EXPECT_FALSE(SelfMotion(bounded, lock_method(bounded), 0).has_flipped_arcs());    // joint 4 turns by 320 degrees
+  EXPECT_FALSE(SelfMotion(shoulder, lock_method(shoulder), 0).has_flipped_arcs());  // joints 1 and 3 by 332
   const Chain chain = chain_of(arms_6r()[0]);
   for (const double margin : {0.0, 0.05}) {
     const SelfMotion motion(chain, lock_method(chain), margin);
-    ASSERT_TRUE(motion.twins());
+    ASSERT_TRUE(motion.has_flipped_arcs());
     const auto apart = [](const Config& a, const Config& b) {
       double most = 0;
       for (int j = 0; j < kDof; ++j) most = std::max(most, std::abs(std::remainder(a[j] - b[j], kTwoPi)));
@@ -179,18 +179,18 @@ TEST(SelfMotion, TwinsOfArcsAreTheOtherArcs) {
     int compared = 0;
     for (int trial = 0; trial < trials(30); ++trial) {
       const Pose tool = chain.tool(random_configuration(chain, random));
-      const auto both = motion.arcs(tool), one = motion.arcs(tool, {}, SelfMotion::Twins::kOne);
+      const auto both = motion.arcs(tool), one = motion.arcs(tool, {}, SelfMotion::Flipped::kOne);
       ASSERT_EQ(both.size(), 2 * one.size());
       for (const SelfMotionArc& arc : one) {
         std::vector<SelfMotionArc> twins;
         for (const SelfMotionArc& other : both)
-          if (motion.is_twin(other.q[other.q.size() / 2]) && other.q.size() == arc.q.size() &&
+          if (motion.is_flipped(other.q[other.q.size() / 2]) && other.q.size() == arc.q.size() &&
               std::abs(other.whole() - arc.whole()) < 1e-9)
             twins.push_back(other);
         for (const Config& q : arc.q) {
-          Config twin = motion.twin(q);
-          EXPECT_TRUE(motion.is_twin(twin) && !motion.is_twin(q));
-          EXPECT_LT(apart(motion.twin(twin), q), 1e-12);
+          Config twin = motion.flipped(q);
+          EXPECT_TRUE(motion.is_flipped(twin) && !motion.is_flipped(q));
+          EXPECT_LT(apart(motion.flipped(twin), q), 1e-12);
           EXPECT_LT((chain.tool(twin).matrix() - tool.matrix()).norm(), 1e-9);
           EXPECT_TRUE(motion.canonical(twin));
           double nearest = kPi;

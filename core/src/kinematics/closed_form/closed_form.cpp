@@ -30,7 +30,7 @@ using Candidate = std::array<Angle, kSix>;
 struct Candidates {
   std::array<Candidate, 24> at;  // four roots, each with at most six starts for the rest
   int count = 0;
-  ClosedForm::Ways ways;
+  ClosedForm::Flips flips;
   void add(const Candidate& candidate) { at[static_cast<std::size_t>(count++)] = candidate; }
 };
 
@@ -172,7 +172,7 @@ void add_wrist(const SphericalWrist& wrist, const Matrix3d& R, Candidate& candid
   for (const double root : {half, -half}) {
     candidate[4] = Angle::of(P * K - Q * root, Q * K + P * root);
     if (apart > kAligned) add(turn_between(a, turned(b, candidate[4], c), target));
-    if (result.ways == ClosedForm::Ways::kOne) break;
+    if (result.flips == ClosedForm::Flips::kOne) break;
   }
   // Axes 4 and 6 are one line, or may be on the exact chain, so joint 4 may have any angle.
   if (apart <= std::max(kAligned, aligned)) {
@@ -519,11 +519,11 @@ std::optional<ClosedForm> ClosedForm::of(const SixChain& chain) {
   return best;
 }
 
-ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Ways ways) const {
+ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Flips flips) const {
   Pose D = product(tool, home_inverse_);
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
-  candidates.ways = ways;
+  candidates.flips = flips;
   std::visit([&](const auto& method) { swivel::solve(method, D, slack_, aligned_, candidates); }, method_);
   Solutions result;
   Candidate last;
@@ -559,11 +559,11 @@ ClosedForm::Solutions ClosedForm::solve(const Pose& tool, Ways ways) const {
   return result;
 }
 
-ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack, Ways ways) const {
+ClosedForm::Solutions ClosedForm::starts(const Pose& tool, double slack, Flips flips) const {
   Pose D = product(tool, home_inverse_);
   if (reversed_) D = D.inverse(Eigen::Isometry);
   Candidates candidates;
-  candidates.ways = ways;
+  candidates.flips = flips;
   std::visit([&](const auto& method) { swivel::solve(method, D, slack, aligned_, candidates); }, method_);
   Solutions result;
   for (; result.count < std::min<int>(candidates.count, kMaxSolutions); ++result.count) {

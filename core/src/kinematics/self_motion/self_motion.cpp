@@ -93,7 +93,7 @@ SelfMotion::SelfMotion(const Chain& chain, const LockMethod& method, double marg
     if (auto form = ClosedForm::of(lock_joint(chain, data->lock, value))) data->forms.emplace_back(value, *form);
   }
   data->flip = flip_of(chain, data->lock, data->alignments, data->forms);
-  data->twins = keeps_limits(chain, *data);
+  data->flip_keeps_limits = keeps_limits(chain, *data);
   data_ = std::move(data);
 }
 
@@ -115,8 +115,8 @@ std::vector<SelfMotionArc> SelfMotion::curves(const Pose& tool) const {
   return result;
 }
 
-std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known, Twins twins) const {
-  const bool both = !data_->flip.none() && !(data_->twins && twins == Twins::kOne);
+std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Config> known, Flipped flipped) const {
+  const bool both = !data_->flip.none() && !(data_->flip_keeps_limits && flipped == Flipped::kOne);
   std::vector<SelfMotionArc> result;
   find_curves(*data_, tool, known, [&](std::vector<Point>& points, bool closed) {
     cut_at_limits(*data_, tool, points, closed, result);
@@ -129,15 +129,15 @@ std::vector<SelfMotionArc> SelfMotion::arcs(const Pose& tool, std::span<const Co
   return result;
 }
 
-bool SelfMotion::twins() const {
-  return data_->twins;
+bool SelfMotion::has_flipped_arcs() const {
+  return data_->flip_keeps_limits;
 }
 
-bool SelfMotion::is_twin(const Config& q) const {
-  return data_->twins && !data_->flip.kept(q);
+bool SelfMotion::is_flipped(const Config& q) const {
+  return data_->flip_keeps_limits && !data_->flip.kept(q);
 }
 
-Config SelfMotion::twin(Config q) const {
+Config SelfMotion::flipped(Config q) const {
   data_->flip.apply(q);
   for (std::size_t j = 0; j < kDof; ++j) {
     double& value = q[static_cast<Eigen::Index>(j)];

@@ -85,7 +85,7 @@ class Curves {
   }
   void add_end(int half) { open_.push_back({half, at(half).q}); }
   /// Of the pairs that a flip makes one is computed.
-  [[nodiscard]] ClosedForm::Ways ways() const { return data_.flip.none() ? ClosedForm::Ways::kBoth : ClosedForm::Ways::kOne; }
+  [[nodiscard]] ClosedForm::Flips flips() const { return data_.flip.none() ? ClosedForm::Flips::kBoth : ClosedForm::Flips::kOne; }
   [[nodiscard]] Config kept(Config q) const {
     if (!data_.flip.kept(q)) data_.flip.apply(q);
     return q;
@@ -182,7 +182,7 @@ void Curves::add_seeds() {
     const bool exact = form.fit().exact;
     auto& list = exact ? solved : started;
     const std::size_t before = list.q.size();
-    for (const Config6& six : exact ? form.solve(tool_, ways()) : form.starts(tool_, 1e-2, ways())) {
+    for (const Config6& six : exact ? form.solve(tool_, flips()) : form.starts(tool_, 1e-2, flips())) {
       const Config q = kept(with_joint(six, data_.lock, value));
       list.q.push_back(q);
       list.lock.push_back(value);
@@ -565,7 +565,7 @@ void Curves::find(std::span<const Config> known_points) {
     if (few_[k] == 0) continue;
     const auto& [value, form] = data_.forms[k];
     const bool parallel = form.fit().structure == Structure::kParallel;
-    for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple, ways())) {
+    for (const Config6& six : form.starts(tool_, parallel ? kFarParallel : kFarTriple, flips())) {
       const Config start = kept(with_joint(six, data_.lock, value));
       const auto seed = [&](const Vertex& v) {
         return maybe_near(v.q, start, data_.other, kSeed) && difference(v.q, start).squaredNorm() < kSeed * kSeed;

@@ -94,7 +94,7 @@ struct SelfMotionData {
   Config scale, scale2;
   std::vector<Alignment> alignments;
   self_motion::Flip flip;                            // of curves, one of two is sought
-  bool twins = false;                                // the flip keeps the limits
+  bool flip_keeps_limits = false;                    // the flip keeps the limits
   std::vector<std::pair<double, ClosedForm>> forms;  // by lock value; none without a lock
   std::vector<Config> starts;                        // of Newton, without a lock
 

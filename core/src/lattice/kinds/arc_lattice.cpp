@@ -155,7 +155,7 @@ struct Before {
   bool start = false;
   [[nodiscard]] int start_slot() const { return nodes; }
   /// The slot of a node's twin; of the start, one that nothing else has.
-  [[nodiscard]] int twin_of(int slot) const {
+  [[nodiscard]] int flipped_of(int slot) const {
     if (slot < 0) return slot;
     return slot >= nodes ? slot ^ 1 : slot < nodes / 2 ? slot + nodes / 2 : slot - nodes / 2;
   }
@@ -195,7 +195,7 @@ class Layer {
   /// Leaves out the points whose roll the layer does not allow. Returns the slot of each that there was, -1: none.
   std::vector<int> keep_window(const PathLayer& layer);
   /// Adds the twins of all points.
-  void add_twins(const Before& before);
+  void add_flipped(const Before& before);
   std::vector<Point> points;
   std::vector<std::pair<int, int>> continued;  // slot of the layer before, and the slot here that continues it
 
@@ -314,18 +314,18 @@ std::vector<int> Layer::keep_window(const PathLayer& layer) {
   return slot_of;
 }
 
-void Layer::add_twins(const Before& before) {
+void Layer::add_flipped(const Before& before) {
   const auto half = points.size(), links = continued.size();
   const auto by = static_cast<int>(half);
   for (std::size_t k = 0; k < half; ++k) {
     Point point = points[k];
-    point.q = motion_.twin(point.q);
+    point.q = motion_.flipped(point.q);
     for (int& slot : point.beside)
       if (slot >= 0) slot += by;
-    point.along[0] = before.twin_of(point.along[0]);
+    point.along[0] = before.flipped_of(point.along[0]);
     points.push_back(point);
   }
-  for (std::size_t k = 0; k < links; ++k) continued.emplace_back(before.twin_of(continued[k].first), continued[k].second + by);
+  for (std::size_t k = 0; k < links; ++k) continued.emplace_back(before.flipped_of(continued[k].first), continued[k].second + by);
 }
 
 std::array<double, kDof> weights_of(const Chain& chain, const Cost& cost) {
@@ -357,7 +357,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
   const auto least = problem.cost.metric == CostMetric::kL2 ? SelfMotion::Least::kNorm : SelfMotion::Least::kLargest;
   Layers result;
   for (std::size_t j = 0; j < kDof; ++j) result.circles[j] = motion.circles()[j] && !chain.limit[j].continuous;
-  const bool twins = motion.twins();
+  const bool twins = motion.has_flipped_arcs();
   Before before;
   for (int i = 0; i < path.size(); ++i) {
     budget.poll();
@@ -367,7 +367,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     const std::vector<std::optional<Config>> moved = motion.images(before.q, tool, least);
     for (const auto& q : moved)
       if (method.best < 0 && q) followed.push_back(*q);
-    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed, SelfMotion::Twins::kOne);
+    std::vector<SelfMotionArc> arcs = motion.arcs(tool, followed, SelfMotion::Flipped::kOne);
     std::vector<std::vector<Image>> images;
     std::vector<Config> strays;
     const auto place_images = [&] {
@@ -379,9 +379,9 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
         if (!q) continue;
         int source = before.slots[k];
         const bool inside = motion.canonical(*q);
-        if (motion.is_twin(*q)) {  // it came over to the other side, and its twin to this one
-          q = motion.twin(*q);
-          source = before.twin_of(source);
+        if (motion.is_flipped(*q)) {  // it came over to the other side, and its twin to this one
+          q = motion.flipped(*q);
+          source = before.flipped_of(source);
         }
         const auto place = finder.find(*q);
         if (!place) {
@@ -398,7 +398,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     place_images();
     if (!strays.empty()) {  // they lie on arcs of which the closed form shows nothing
       strays.insert(strays.end(), followed.begin(), followed.end());
-      arcs = motion.arcs(tool, strays, SelfMotion::Twins::kOne);
+      arcs = motion.arcs(tool, strays, SelfMotion::Flipped::kOne);
       place_images();
     }
     Layer layer(motion, tool, problem.resolution.arc);
@@ -420,7 +420,7 @@ ArcLattice::Layers ArcLattice::build(const Chain& chain, const LockMethod& metho
     std::vector<int> slot_of(nodes.size());
     std::iota(slot_of.begin(), slot_of.end(), 0);
     if (chain.roll) slot_of = layer.keep_window(path.layer(i));
-    if (twins) layer.add_twins(before);
+    if (twins) layer.add_flipped(before);
     result.arcs += static_cast<std::int64_t>(arcs.size()) * (twins ? 2 : 1);
     const int slots = static_cast<int>(layer.points.size());
     if (i == 0 && problem.start) {

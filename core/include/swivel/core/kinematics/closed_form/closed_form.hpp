@@ -122,18 +122,18 @@ class ClosedForm {
 
   /// Whether both configurations of three axes that meet are wanted, or one of them: they differ by
   /// half a turn of the first and the third.
-  enum class Ways { kBoth, kOne };
+  enum class Flips { kBoth, kOne };
 
   /// Returns the distinct configurations, in (-pi, pi], at a tool pose, in a fixed order; joint
   /// limits are not applied. Each reaches the pose within 1e-9 m and rad on the exact chain, by
   /// forward kinematics. A singular pose with infinitely many gets some representatives. Allocates
   /// nothing; uses only IEEE arithmetic and atan2 (and sin, cos where Newton is needed).
-  [[nodiscard]] Solutions solve(const Pose& tool, Ways ways = Ways::kBoth) const;
+  [[nodiscard]] Solutions solve(const Pose& tool, Flips flips = Flips::kBoth) const;
 
   /// Returns unchecked starts, in (-pi, pi], for an iteration that may move the locked joint too:
   /// solutions of the fitted chain, and real starts beside complex ones whose discriminants are
   /// within `slack` (relative) of zero.
-  [[nodiscard]] Solutions starts(const Pose& tool, double slack, Ways ways = Ways::kBoth) const;
+  [[nodiscard]] Solutions starts(const Pose& tool, double slack, Flips flips = Flips::kBoth) const;
 
   /// Returns the exact chain.
   [[nodiscard]] const SixChain& chain() const { return chain_; }

@@ -59,20 +59,20 @@ class SelfMotion {
   ~SelfMotion();
 
   /// Whether both curves of a pair are wanted, or one of them.
-  enum class Twins { kBoth, kOne };
+  enum class Flipped { kBoth, kOne };
   /// Returns the arcs at a tool pose, in the order of their first points; deterministic. `known`
   /// are configurations at this pose that may lie on curves of which the closed form shows nothing.
   /// With Twins::kOne, where twins() is true, arcs that are twins of others are left out.
   [[nodiscard]] std::vector<SelfMotionArc> arcs(const Pose& tool, std::span<const Config> known = {},
-                                                Twins twins = Twins::kBoth) const;
+                                                Flipped flipped = Flipped::kBoth) const;
   /// Returns true if curves come in pairs that the joint limits cut alike, as those of a wrist
   /// whose outer joints turn all round.
-  [[nodiscard]] bool twins() const;
+  [[nodiscard]] bool has_flipped_arcs() const;
   /// Returns true if q is on one of the curves that Twins::kOne leaves out.
-  [[nodiscard]] bool is_twin(const Config& q) const;
+  [[nodiscard]] bool is_flipped(const Config& q) const;
   /// Returns the configuration that corresponds to q on the other curve of its pair, with the whole
   /// turns that arcs have. Only where twins() is true.
-  [[nodiscard]] Config twin(Config q) const;
+  [[nodiscard]] Config flipped(Config q) const;
   /// Returns the whole curves at a tool pose, joint limits ignored, with arbitrary whole turns of
   /// joints.
   [[nodiscard]] std::vector<SelfMotionArc> curves(const Pose& tool) const;
