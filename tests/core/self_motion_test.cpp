@@ -8,7 +8,7 @@
 
 #include "arms.hpp"
 #include "seed.hpp"
-#include "swivel/core/kinematics/newton/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 
 namespace swivel {
 namespace {
@@ -291,7 +291,7 @@ TEST(PostureBeside, IsTheNearestThatIsAllowedToBothSides) {
       const int joint = random.below(kDof);
       const double by = random.uniform(0, 0.1);
       const auto moved = [&](const Config& x) { return std::abs(x[joint] - q[joint]); };
-      const auto beside = posture_beside(chain, q, kFarthest, [&](const Config& x) { return moved(x) >= by; });
+      const auto beside = nearest_allowed_posture(chain, q, kFarthest, [&](const Config& x) { return moved(x) >= by; });
       const std::string where = arm.name + ", SWIVEL_TEST_SEED=" + std::to_string(base) + " case " + std::to_string(k);
       if (!beside) {
         ++none;

@@ -15,7 +15,7 @@
 #include "motion_problem.hpp"
 #include "swivel/collision/world/world.hpp"
 #include "swivel/core/base/angle.hpp"
-#include "swivel/core/kinematics/newton/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/motion/time_path.hpp"
 #include "swivel/core/problem/tool_path.hpp"
@@ -162,7 +162,7 @@ inline std::optional<TimedRow> beside(const Judged& judged, std::size_t k, doubl
   const Config& q = judged.q(k);
   const int side = random.below(kDof);
   const double sign = random.coin() ? 1 : -1;
-  const auto there = posture_beside(chain, q, 20 * far, [&](const Config& other) {
+  const auto there = nearest_allowed_posture(chain, q, 20 * far, [&](const Config& other) {
     return (other - q).lpNorm<Eigen::Infinity>() >= far && sign * (other - q)[side] > 0;
   });
   if (!there) return std::nullopt;

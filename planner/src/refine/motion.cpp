@@ -8,9 +8,9 @@
 #include <span>
 #include <utility>
 
-#include "measure/first_too_near.hpp"
+#include "measure/first_clearance_violation.hpp"
 #include "measure/measure_rows.hpp"
-#include "swivel/core/kinematics/newton/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 #include "swivel/core/lattice/lattice.hpp"
 #include "swivel/core/lattice/problem_path.hpp"
 #include "swivel/core/messages/formatted.hpp"
@@ -59,7 +59,7 @@ std::optional<Fault> first_fault(const PreparedRobot& robot, const Problem& prob
     samples.push_back(row.row.q);
   }
   const World world(robot.world(), problem, budget, kVerdictBand);
-  const auto found = first_too_near(world, world.edge_rule(robot.radii()), problem.limits, samples, budget);
+  const auto found = first_clearance_violation(world, world.edge_rule(robot.radii()), problem.limits, samples, budget);
   if (!found) return std::nullopt;
   const auto names = world.names(found->pair);
   NoMotion fault{rows[found->row].row.s,
@@ -99,7 +99,7 @@ class Bisection {
     if (!travel) return std::nullopt;
     for (const double other : found_)
       if (std::abs(*travel - other) < kSame) return std::nullopt;
-    const auto q = posture_beside(*chain_, middle.q, kFarthest, [this](const Config& one) { return allowed(one); });
+    const auto q = nearest_allowed_posture(*chain_, middle.q, kFarthest, [this](const Config& one) { return allowed(one); });
     if (!q) return std::nullopt;
     found_.push_back(*travel);
     return BetweenRow{*travel, *q};

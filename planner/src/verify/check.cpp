@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "measure/deepest_contact.hpp"
-#include "measure/first_too_near.hpp"
+#include "measure/first_clearance_violation.hpp"
 #include "swivel/core/base/angle.hpp"
 #include "swivel/core/base/timeline.hpp"
 #include "swivel/core/kinematics/closed_form/arm_class.hpp"
@@ -98,8 +98,8 @@ class Contacts {
   std::optional<BodyPair> on_the_way(const Config& from, const Config& to) {
     return edge_blocked(query_, rule_, from, to, *budget_);
   }
-  [[nodiscard]] std::optional<TooNear> first_along(const Limits& limits, const std::vector<Config>& rows) const {
-    return first_too_near(world_, rule_, limits, rows, *budget_);
+  [[nodiscard]] std::optional<ClearanceViolation> first_along(const Limits& limits, const std::vector<Config>& rows) const {
+    return first_clearance_violation(world_, rule_, limits, rows, *budget_);
   }
   [[nodiscard]] std::string names(const BodyPair& pair) const {
     const auto& name = world_.body_names();

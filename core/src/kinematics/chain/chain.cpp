@@ -55,11 +55,11 @@ Pose joint_motion(const Joint& joint, double position) {
 }
 
 /// The way through the tree of links from base to tip: up to the link that both hang from, which may be the base itself, then down.
-struct Way {
+struct KinematicPath {
   std::vector<int> links, joints;  // joint k leads from link k to link k + 1
   std::size_t up = 0;              // so many joints lead from child to parent
 };
-Way way_between(const RobotModel& robot, int base, int tip) {
+KinematicPath kinematic_path_between(const RobotModel& robot, int base, int tip) {
   const auto above = [&](int link) {
     std::vector<int> links{link};
     for (int joint; (joint = robot.links[static_cast<std::size_t>(links.back())].parent_joint) >= 0;)
@@ -73,7 +73,7 @@ Way way_between(const RobotModel& robot, int base, int tip) {
     fail_key(robot, "tip_link",
              "'" + robot.links[static_cast<std::size_t>(tip)].name + "' is not joined to base_link '" +
                  robot.links[static_cast<std::size_t>(base)].name + "': allowed are links of one tree");
-  Way way;
+  KinematicPath way;
   way.up = up.size();
   way.links = std::move(up);
   way.links.push_back(common);
@@ -171,7 +171,7 @@ std::vector<double> held_positions(const RobotModel& robot, const std::map<std::
 }
 
 /// Movable joints between base and tip that are none of the arm's, from the base on.
-std::vector<HeldJoint> held_between(const RobotModel& robot, const Way& way, const std::vector<int>& arm,
+std::vector<HeldJoint> held_between(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm,
                                     const std::map<std::string, double>& hold, const std::vector<Lead>& leads,
                                     const std::vector<double>& position) {
   std::vector<HeldJoint> held;
@@ -220,7 +220,7 @@ void require_same_after_a_turn(const RobotModel& robot, const Chain& chain, cons
 }
 
 /// Which group each link is of, outwards from the way; joints outside the way that mimic the arm's become followers of the chain.
-void group_links(const RobotModel& robot, const Way& way, const std::vector<int>& arm, const std::vector<Lead>& leads,
+void group_links(const RobotModel& robot, const KinematicPath& way, const std::vector<int>& arm, const std::vector<Lead>& leads,
                  ArmModel& model) {
   constexpr int kUnknown = -1;
   const auto group_of = [&](int link) -> int& { return model.links[static_cast<std::size_t>(link)].group; };
@@ -363,7 +363,7 @@ ArmModel build_arm(const RobotModel& robot, const std::string& base_link, const 
                    const std::map<std::string, double>& hold, const Pose& tool, const std::optional<Roll>& roll) {
   const int base = require_link(robot, "base_link", base_link);
   const int tip = require_link(robot, "tip_link", tip_link);
-  const Way way = way_between(robot, base, tip);
+  const KinematicPath way = kinematic_path_between(robot, base, tip);
   for (const int j : way.joints)
     if (robot.joints[static_cast<std::size_t>(j)].type == Joint::Type::kFree)
       fail(robot,

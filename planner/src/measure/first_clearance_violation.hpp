@@ -10,7 +10,7 @@
 namespace swivel {
 
 /// A pair of bodies that comes too near, and where.
-struct TooNear {
+struct ClearanceViolation {
   std::size_t row = 0;
   BodyPair pair;
   bool between = false;  ///< on the way from the row before to `row`
@@ -21,7 +21,8 @@ struct TooNear {
 /// to row); none if there is none. Distance proofs answer if they can, and for many rows at once:
 /// all rows from one to another are free if the middle one is clear by as much as the bodies move
 /// from there. `rule` and `limits` are those of the world. Throws Stopped.
-[[nodiscard]] std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
-                                                    const std::vector<Config>& rows, const Budget& budget);
+[[nodiscard]] std::optional<ClearanceViolation> first_clearance_violation(const World& world, const EdgeRule& rule,
+                                                                          const Limits& limits, const std::vector<Config>& rows,
+                                                                          const Budget& budget);
 
 }  // namespace swivel

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "measure/first_too_near.hpp"
+#include "measure/first_clearance_violation.hpp"
 
 #include <algorithm>
 #include <array>
@@ -232,17 +232,18 @@ class OpenParts {
 
 }  // namespace
 
-std::optional<TooNear> first_too_near(const World& world, const EdgeRule& rule, const Limits& limits,
-                                      const std::vector<Config>& rows, const Budget& budget) {
+std::optional<ClearanceViolation> first_clearance_violation(const World& world, const EdgeRule& rule, const Limits& limits,
+                                                            const std::vector<Config>& rows, const Budget& budget) {
   if (rows.empty()) return std::nullopt;
   World::Query query(world, DistanceProofs::kOn);
   const OpenParts open(world, query, rule, limits, rows, budget);
   for (std::size_t k = 0; k < rows.size(); ++k) {
     budget.poll();
     if (open.rows[k])
-      if (const auto pair = query.find_violating_pair_incremental(rows[k], ClearanceRule::kNode)) return TooNear{k, *pair};
+      if (const auto pair = query.find_violating_pair_incremental(rows[k], ClearanceRule::kNode))
+        return ClearanceViolation{k, *pair};
     if (k > 0 && open.moves[k - 1])
-      if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return TooNear{k, *pair, true};
+      if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k], budget)) return ClearanceViolation{k, *pair, true};
   }
   return std::nullopt;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The proof that rows and the moves between them keep clear, against questions about each of them, by FCL alone.
-#include "measure/first_too_near.hpp"
+#include "measure/first_clearance_violation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,12 +16,13 @@ namespace {
 
 using test::Random;
 
-std::optional<TooNear> by_each(const World& world, const EdgeRule& rule, const Limits& limits, const std::vector<Config>& rows) {
+std::optional<ClearanceViolation> by_each(const World& world, const EdgeRule& rule, const Limits& limits,
+                                          const std::vector<Config>& rows) {
   World::Query query(world);
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (const auto pair = query.find_violating_pair(rows[k], ClearanceRule::kNode)) return TooNear{k, *pair};
+    if (const auto pair = query.find_violating_pair(rows[k], ClearanceRule::kNode)) return ClearanceViolation{k, *pair};
     if (k == 0 || limits.edges != EdgeMode::kContinuous) continue;
-    if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k])) return TooNear{k, *pair, true};
+    if (const auto pair = edge_blocked(query, rule, rows[k - 1], rows[k])) return ClearanceViolation{k, *pair, true};
   }
   return std::nullopt;
 }
@@ -75,7 +76,8 @@ Walks compare_walks(const std::vector<test::TestRobot>& robots, std::uint64_t ba
     const EdgeRule rule = world.edge_rule(robot.radii());
     std::vector<Config> rows = walk(world, robot.arm().chain, random);
     const auto compare = [&] {
-      const auto each = by_each(world, rule, problem.limits, rows), found = first_too_near(world, rule, problem.limits, rows, {});
+      const auto each = by_each(world, rule, problem.limits, rows),
+                 found = first_clearance_violation(world, rule, problem.limits, rows, {});
       rows_asked += static_cast<std::int64_t>(rows.size());
       const std::string what =
           "SWIVEL_TEST_SEED " + std::to_string(base) + " trial " + std::to_string(trial) + " " + problem.source;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "swivel/core/kinematics/newton/posture_beside.hpp"
+#include "swivel/core/kinematics/newton/nearest_allowed_posture.hpp"
 
 #include <array>
 
@@ -7,8 +7,8 @@
 
 namespace swivel {
 
-std::optional<Config> posture_beside(const Chain& chain, const Config& q, double farthest,
-                                     const std::function<bool(const Config&)>& allowed) {
+std::optional<Config> nearest_allowed_posture(const Chain& chain, const Config& q, double farthest,
+                                              const std::function<bool(const Config&)>& allowed) {
   constexpr double kFirst = 1e-4, kGrowth = 1.3;  // rad
   constexpr int kSteps = 6;
   if (allowed(q)) return q;
