@@ -137,7 +137,7 @@ double RobotPart::median(const BodyPair& pair, double far, const std::vector<std
   near.reserve(samples.size());
   for (const auto& moved : samples) {
     budget.poll();
-    if (far == kFar || PlacedPair(*this, pair, moved).proved(far) != DistanceProof::kFree) near.push_back(&moved);
+    if (far == kFar || PlacedPair(*this, pair, moved).prove(far) != DistanceProof::kFree) near.push_back(&moved);
     const std::size_t asked = static_cast<std::size_t>(&moved - samples.data()) + 1;
     if (asked - near.size() > kHalf) return kFar;
   }

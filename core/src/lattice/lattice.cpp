@@ -263,7 +263,7 @@ std::vector<Config> Lattice::path_joints(const std::vector<int>& slots) const {
   std::vector<Config> rows;
   rows.reserve(slots.size());
   for (const int slot : slots) {
-    const Config q = *row(static_cast<int>(rows.size()), slot);
+    const Config q = *exact_config(static_cast<int>(rows.size()), slot);
     rows.push_back(rows.empty() ? q : Config(rows.back() + delta(rows.back(), q)));
   }
   return rows;

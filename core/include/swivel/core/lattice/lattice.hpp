@@ -129,7 +129,7 @@ class Lattice : public BodyPoseClasses, public LatticeDescription {
 
   // --- description, see LatticeDescription
   [[nodiscard]] LatticeInfo describe() const override;
-  [[nodiscard]] int next_on_arc(int layer, int slot) const override { return beside(layer, slot, 1); }
+  [[nodiscard]] int next_on_arc(int layer, int slot) const override { return neighbour_in_redundancy(layer, slot, 1); }
 
   // --- nodes near a node
   /// The slot before (by -1) or after (+1) it along the redundancy coordinate; -1 where there is none.
