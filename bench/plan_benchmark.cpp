@@ -24,6 +24,7 @@
 #include "context.hpp"
 #include "mesh_bodies.hpp"
 #include "settings.hpp"
+#include "swivel/collision/world/world.hpp"
 #include "swivel/core/messages/formatted.hpp"
 #include "swivel/io/io.hpp"
 #include "swivel/planner/plan/planner.hpp"
