@@ -1,4 +1,5 @@
 # Installs BUILD under SCRATCH, looks at what was installed, and builds strangers' projects against it.
+cmake_minimum_required(VERSION 3.25)  # for IN_LIST
 function(run output)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE printed ERROR_VARIABLE complaints)
   if(NOT code EQUAL 0)
